@@ -24,7 +24,7 @@ function compress(folder: string): void {
   }
 }
 
-export function compressed_beside(): Plugin {
+export function compressedBeside(): Plugin {
   let folder = "";
   return {
     name: "compressed-beside",

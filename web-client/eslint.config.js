@@ -15,6 +15,23 @@ export default tseslint.config(
         "error",
         { fixStyle: "inline-type-imports", disallowTypeAnnotations: false },
       ],
+      // Names of data are those of the contract and of the texts, so properties of types and of
+      // object literals may have underscores.
+      "@typescript-eslint/naming-convention": [
+        "error",
+        {
+          selector: ["variable", "parameter", "function"],
+          format: ["camelCase", "PascalCase"],
+          leadingUnderscore: "allow",
+          filter: { regex: "^_+$", match: false }, // what is not used
+        },
+        {
+          selector: ["classProperty", "parameterProperty", "classMethod", "classicAccessor"],
+          format: ["camelCase"],
+          leadingUnderscore: "allow",
+        },
+        { selector: "typeLike", format: ["PascalCase"] },
+      ],
       "@typescript-eslint/no-floating-promises": "error",
       "@typescript-eslint/no-misused-promises": ["error", { checksVoidReturn: false }],
       "@typescript-eslint/no-unnecessary-type-assertion": "error",

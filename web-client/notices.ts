@@ -6,14 +6,14 @@ import type { Plugin } from "vite";
 
 const kFolder = /^(.*\/node_modules\/((?:@[^/]+\/)?[^/]+))\//;
 
-function notice_of(folder: string): string {
+function noticeOf(folder: string): string {
   const file = readdirSync(folder).find((name) => /^licen[cs]e/i.test(name));
   if (!file || !existsSync(join(folder, file)))
     throw new Error(`${folder} has no licence file: its code cannot be shipped`);
   return readFileSync(join(folder, file), "utf8").trim();
 }
 
-export function third_party_notices(): Plugin {
+export function thirdPartyNotices(): Plugin {
   return {
     name: "third-party-notices",
     apply: "build",
@@ -28,7 +28,7 @@ export function third_party_notices(): Plugin {
         const { version } = JSON.parse(readFileSync(join(folder, "package.json"), "utf8")) as {
           version: string;
         };
-        return `${name} ${version}\n\n${notice_of(folder)}\n`;
+        return `${name} ${version}\n\n${noticeOf(folder)}\n`;
       });
       this.emitFile({
         type: "asset",

@@ -1,12 +1,12 @@
 import { defineConfig } from "vitest/config";
-import { compressed_beside } from "./compress";
-import { third_party_notices } from "./notices";
+import { compressedBeside } from "./compress";
+import { thirdPartyNotices } from "./notices";
 
 // The server's address while developing the page with `npm run dev`.
 const server = process.env["STRATA_SERVER"] ?? "http://127.0.0.1:8080";
 
 export default defineConfig({
-  plugins: [third_party_notices(), compressed_beside()],
+  plugins: [thirdPartyNotices(), compressedBeside()],
   build: {
     outDir: "dist",
     target: "es2022",

@@ -32,7 +32,7 @@ export class FakeSocket implements SocketLike {
   receive(message: ServerMessage): void {
     this.onmessage?.({ data: JSON.stringify(message) });
   }
-  receive_raw(data: unknown): void {
+  receiveRaw(data: unknown): void {
     this.onmessage?.({ data });
   }
   /** The network is gone. */
@@ -40,7 +40,7 @@ export class FakeSocket implements SocketLike {
     this.onclose?.({ code: 1006, reason: "" });
   }
 
-  sent_ops(): string[] {
+  sentOps(): string[] {
     return this.sent.map((message) => message.op);
   }
   of<Op extends ClientMessage["op"]>(op: Op): Extract<ClientMessage, { op: Op }>[] {

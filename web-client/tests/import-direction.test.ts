@@ -1,15 +1,15 @@
 import { readdirSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, it } from "vitest";
-import { circles, imports_of, read_imports, wrong_imports, type Import } from "./import-graph";
+import { circles, importsOf, readImports, wrongImports, type Import } from "./import-graph";
 
 const kSource = join(__dirname, "../src");
-const graph = read_imports(kSource);
+const graph = readImports(kSource);
 
-const value = (to: string): Import => ({ to, type_only: false });
-const type = (to: string): Import => ({ to, type_only: true });
+const value = (to: string): Import => ({ to, typeOnly: false });
+const type = (to: string): Import => ({ to, typeOnly: true });
 const planted = (from: string, to: Import): string[] =>
-  wrong_imports(new Map([...graph, [from, [...(graph.get(from) ?? []), to]]]));
+  wrongImports(new Map([...graph, [from, [...(graph.get(from) ?? []), to]]]));
 
 describe("The imports of the page", () => {
   it("are all read", () => {
@@ -24,7 +24,7 @@ describe("The imports of the page", () => {
       export type { E } from "./e";
       const f: typeof import("./f") = await import("./g");
       import { html } from "lit";`;
-    expect(imports_of("ui/x.ts", code)).toEqual([
+    expect(importsOf("ui/x.ts", code)).toEqual([
       value("ui/a"),
       value("b"),
       type("ui/c"),
@@ -36,7 +36,7 @@ describe("The imports of the page", () => {
   });
 
   it("lead from features to what they share, and never the other way or to other features", () => {
-    expect(wrong_imports(graph)).toEqual([]);
+    expect(wrongImports(graph)).toEqual([]);
   });
 
   it("form no circle, not even of types", () => {
@@ -64,9 +64,9 @@ describe("The imports of the page", () => {
   });
 
   it("are refused where they form a circle", () => {
-    const with_circle = new Map([...graph, ["math/vector.ts", [type("math/camera.ts")]]]);
-    expect(circles(with_circle).length).toBeGreaterThan(0);
-    expect(circles(with_circle)[0]).toContain("math/vector.ts");
+    const withCircle = new Map([...graph, ["math/vector.ts", [type("math/camera.ts")]]]);
+    expect(circles(withCircle).length).toBeGreaterThan(0);
+    expect(circles(withCircle)[0]).toContain("math/vector.ts");
   });
 });
 

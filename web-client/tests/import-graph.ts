@@ -7,7 +7,7 @@ import ts from "typescript";
 export interface Import {
   to: string;
   /** Nothing of it is left when the page runs. */
-  type_only: boolean;
+  typeOnly: boolean;
 }
 /** Files by their path within `src`, with `/` between its parts. */
 export type ImportGraph = ReadonlyMap<string, readonly Import[]>;
@@ -32,28 +32,28 @@ const kEntry = "shell/main.ts";
 /** The interface that names the parts of all features. */
 const kSession = "session/model-session.ts";
 
-export function read_imports(root: string): ImportGraph {
+export function readImports(root: string): ImportGraph {
   const files = readdirSync(root, { recursive: true, encoding: "utf8" })
     .map((file) => file.replaceAll("\\", "/"))
     .filter((file) => file.endsWith(".ts"));
   const known = new Set(files);
   return new Map(
     files.map((file) => {
-      const found = imports_of(file, readFileSync(join(root, file), "utf8"));
+      const found = importsOf(file, readFileSync(join(root, file), "utf8"));
       return [file, found.flatMap((each) => resolve(each, known))];
     }),
   );
 }
 
 /** Targets as they are written, from the folder of the file. */
-export function imports_of(file: string, code: string): Import[] {
+export function importsOf(file: string, code: string): Import[] {
   const found: Import[] = [];
-  const add = (specifier: ts.Node | undefined, type_only: boolean): void => {
+  const add = (specifier: ts.Node | undefined, typeOnly: boolean): void => {
     if (specifier && ts.isStringLiteralLike(specifier) && specifier.text.startsWith("."))
-      found.push({ to: posix.join(posix.dirname(file), specifier.text), type_only });
+      found.push({ to: posix.join(posix.dirname(file), specifier.text), typeOnly });
   };
   const visit = (node: ts.Node): void => {
-    if (ts.isImportDeclaration(node)) add(node.moduleSpecifier, is_of_types(node.importClause));
+    if (ts.isImportDeclaration(node)) add(node.moduleSpecifier, isOfTypes(node.importClause));
     else if (ts.isExportDeclaration(node)) add(node.moduleSpecifier, node.isTypeOnly);
     else if (ts.isImportTypeNode(node) && ts.isLiteralTypeNode(node.argument))
       add(node.argument.literal, true);
@@ -65,7 +65,7 @@ export function imports_of(file: string, code: string): Import[] {
   return found;
 }
 
-function is_of_types(clause: ts.ImportClause | undefined): boolean {
+function isOfTypes(clause: ts.ImportClause | undefined): boolean {
   if (!clause || clause.isTypeOnly) return clause !== undefined;
   const { namedBindings: named } = clause;
   return (
@@ -77,27 +77,27 @@ function is_of_types(clause: ts.ImportClause | undefined): boolean {
   );
 }
 
-function resolve({ to, type_only }: Import, known: ReadonlySet<string>): Import[] {
+function resolve({ to, typeOnly }: Import, known: ReadonlySet<string>): Import[] {
   const file = [`${to}.ts`, `${to}/index.ts`].find((each) => known.has(each));
-  return file ? [{ to: file, type_only }] : [];
+  return file ? [{ to: file, typeOnly }] : [];
 }
 
-const folder_of = (file: string): string => file.slice(0, file.indexOf("/"));
-const feature_of = (file: string): string => file.split("/")[1]!;
+const folderOf = (file: string): string => file.slice(0, file.indexOf("/"));
+const featureOf = (file: string): string => file.split("/")[1]!;
 
-function may_import(from: string, { to, type_only }: Import): boolean {
-  const [own, other] = [folder_of(from), folder_of(to)];
+function mayImport(from: string, { to, typeOnly }: Import): boolean {
+  const [own, other] = [folderOf(from), folderOf(to)];
   if (own === "kiosk") return kOfKiosk.includes(other);
   if (other === "kiosk") return from === kEntry;
-  if (own === "features" && other === "features") return feature_of(from) === feature_of(to);
-  if (from === kSession && other === "features") return type_only;
+  if (own === "features" && other === "features") return featureOf(from) === featureOf(to);
+  if (from === kSession && other === "features") return typeOnly;
   return kFolders.includes(own) && kFolders.indexOf(other) <= kFolders.indexOf(own);
 }
 
 /** Imports that lead from a lower folder to a higher one, or from one feature to another. */
-export const wrong_imports = (graph: ImportGraph): string[] =>
+export const wrongImports = (graph: ImportGraph): string[] =>
   [...graph].flatMap(([from, imports]) =>
-    imports.filter((each) => !may_import(from, each)).map(({ to }) => `${from} imports ${to}`),
+    imports.filter((each) => !mayImport(from, each)).map(({ to }) => `${from} imports ${to}`),
   );
 
 /** Files that import each other in a circle: one circle for each file that is found again. */

@@ -5,9 +5,9 @@ import { kRoot, load_module } from "./modules.mjs";
 export function texts_of(language) {
   const { buildSync } = load_module("esbuild"); // vite's
   const contents = `
-    import { set_locale } from "./core/locale";
+    import { setLocale } from "./core/locale";
     export { texts } from "./texts/${language}";
-    set_locale("${language}", true, []);`;
+    setLocale("${language}", true, []);`;
   const stdin = { contents, resolveDir: join(kRoot, "web-client", "src"), loader: "ts" };
   const [{ text }] = buildSync({
     stdin,

@@ -2,30 +2,30 @@
 // to), the value lives as long as the page.
 
 export class Kept<T> {
-  private value_: T;
+  private _value: T;
 
   constructor(
-    private readonly storage_: () => Storage | undefined,
-    private readonly name_: string,
+    private readonly _storage: () => Storage | undefined,
+    private readonly _name: string,
     first: T,
   ) {
-    this.value_ = first;
+    this._value = first;
     try {
-      const text = storage_()?.getItem(name_);
-      if (text) this.value_ = JSON.parse(text) as T;
+      const text = _storage()?.getItem(_name);
+      if (text) this._value = JSON.parse(text) as T;
     } catch {
       // What stands there is not ours, or must not be read: as if there were nothing.
     }
   }
 
   get value(): T {
-    return this.value_;
+    return this._value;
   }
 
   set value(value: T) {
-    this.value_ = value;
+    this._value = value;
     try {
-      this.storage_()?.setItem(this.name_, JSON.stringify(value));
+      this._storage()?.setItem(this._name, JSON.stringify(value));
     } catch {
       // It is kept here.
     }

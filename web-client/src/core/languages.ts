@@ -1,6 +1,6 @@
 // Languages by their tags (BCP 47), and names of things in several of them.
 
-import { page_locale } from "./locale";
+import { pageLocale } from "./locale";
 import type { Labels } from "./protocol.gen";
 
 /** Those that are offered; any other tag may be written. */
@@ -55,7 +55,7 @@ export const kCommonLanguages: readonly string[] = [
 ];
 
 /** As tags are usually written, "pt-BR"; null where it is none. */
-export function well_written_tag(tag: string): string | null {
+export function wellWrittenTag(tag: string): string | null {
   try {
     return Intl.getCanonicalLocales(tag)[0] ?? null;
   } catch {
@@ -64,17 +64,17 @@ export function well_written_tag(tag: string): string | null {
 }
 
 /** What those who speak it call it: "español"; empty where that is not known. */
-export function name_of_language(tag: string): string {
-  const locale = well_written_tag(tag);
+export function nameOfLanguage(tag: string): string {
+  const locale = wellWrittenTag(tag);
   if (!locale) return "";
   return new Intl.DisplayNames([locale], { type: "language", fallback: "none" }).of(locale) ?? "";
 }
 
 /** What this person's page calls it: "Spanish"; the tag itself where that is not known. */
-export const language_in_words = (tag: string): string => {
-  const locale = well_written_tag(tag);
+export const languageInWords = (tag: string): string => {
+  const locale = wellWrittenTag(tag);
   return locale
-    ? (new Intl.DisplayNames([page_locale()], { type: "language" }).of(locale) ?? tag)
+    ? (new Intl.DisplayNames([pageLocale()], { type: "language" }).of(locale) ?? tag)
     : tag;
 };
 
@@ -87,7 +87,7 @@ export interface LabelRow {
 export type ReadLabels = { labels: Labels } | { row: number; wrong: "no_language" | "twice" };
 
 /** One row for each language, by tag. */
-export const rows_of = (labels: Labels, descriptions: Labels = {}): LabelRow[] =>
+export const rowsOf = (labels: Labels, descriptions: Labels = {}): LabelRow[] =>
   [...new Set([...Object.keys(labels), ...Object.keys(descriptions)])].sort().map((language) => ({
     language,
     label: labels[language] ?? "",
@@ -98,7 +98,7 @@ export const rows_of = (labels: Labels, descriptions: Labels = {}): LabelRow[] =
  * What the rows say; those without a label say nothing. Whether a tag is one is for the server to
  * judge.
  */
-export function labels_of(rows: readonly LabelRow[]): ReadLabels {
+export function labelsOf(rows: readonly LabelRow[]): ReadLabels {
   const labels = new Map<string, string>();
   const taken = new Set<string>();
   for (const [row, { language, label, description = "" }] of rows.entries()) {
@@ -112,8 +112,8 @@ export function labels_of(rows: readonly LabelRow[]): ReadLabels {
   return { labels: Object.fromEntries(labels) };
 }
 
-/** The descriptions of rows in which labels_of() finds nothing wrong. */
-export const descriptions_of = (rows: readonly LabelRow[]): Labels =>
+/** The descriptions of rows in which labelsOf() finds nothing wrong. */
+export const descriptionsOf = (rows: readonly LabelRow[]): Labels =>
   Object.fromEntries(
     rows
       .map(({ language, description = "" }) => [language.trim(), description.trim()])

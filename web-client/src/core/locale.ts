@@ -8,18 +8,17 @@ let locale = "en-GB";
 let languages: readonly string[] = [locale];
 let decimal = ".";
 
-const language_of = (tag: string): string => tag.toLowerCase().split("-")[0]!;
-const is_page_language = (language: string): language is PageLanguage =>
+const languageOf = (tag: string): string => tag.toLowerCase().split("-")[0]!;
+const isPageLanguage = (language: string): language is PageLanguage =>
   (kPageLanguages as readonly string[]).includes(language);
 
 /**
  * What was chosen, else the first of the browser's languages that the page is written in, else
  * English.
  */
-export function page_language(chosen: string | null, browser: readonly string[]): PageLanguage {
+export function pageLanguage(chosen: string | null, browser: readonly string[]): PageLanguage {
   return (
-    [...(chosen === null ? [] : [chosen]), ...browser].map(language_of).find(is_page_language) ??
-    "en"
+    [...(chosen === null ? [] : [chosen]), ...browser].map(languageOf).find(isPageLanguage) ?? "en"
   );
 }
 
@@ -28,7 +27,7 @@ export function page_language(chosen: string | null, browser: readonly string[])
  * where it names one ("de-CH"), and data with names in several languages are called by the language
  * that was chosen, or else by the browser's.
  */
-export function set_locale(
+export function setLocale(
   language: PageLanguage,
   chosen: boolean,
   browser: readonly string[],
@@ -37,7 +36,7 @@ export function set_locale(
   const known = browser.filter(
     (tag) => Intl.NumberFormat.supportedLocalesOf(tag, { localeMatcher: "lookup" }).length > 0,
   );
-  locale = known.find((tag) => tag.includes("-") && language_of(tag) === language) ?? usual;
+  locale = known.find((tag) => tag.includes("-") && languageOf(tag) === language) ?? usual;
   languages =
     chosen || browser.length === 0 ? [locale, ...browser.filter((tag) => tag !== locale)] : browser;
   decimal =
@@ -47,42 +46,42 @@ export function set_locale(
 }
 
 /** The tag whose rules numbers, moments and plurals follow: "en-GB". */
-export const page_locale = (): string => locale;
+export const pageLocale = (): string => locale;
 /** Those that this person reads, the best first. */
-export const person_languages = (): readonly string[] => languages;
+export const personLanguages = (): readonly string[] => languages;
 
-export const format_count = (n: number): string => n.toLocaleString(locale);
+export const formatCount = (n: number): string => n.toLocaleString(locale);
 /** With that many decimals, none grouped: for coordinates. */
-export const format_fixed = (value: number, decimals: number): string =>
+export const formatFixed = (value: number, decimals: number): string =>
   value.toLocaleString(locale, {
     minimumFractionDigits: decimals,
     maximumFractionDigits: decimals,
     useGrouping: false,
   });
-export const format_list = (items: readonly string[]): string =>
+export const formatList = (items: readonly string[]): string =>
   new Intl.ListFormat(locale, { style: "short", type: "unit" }).format(items);
 /**
  * Numbers that belong together, as the coordinates of a place: parted by what is no decimal sign.
  */
-export const format_place = (numbers: readonly string[]): string =>
+export const formatPlace = (numbers: readonly string[]): string =>
   numbers.join(decimal === "," ? "; " : ", ");
 
 /** A number with all of its digits, as it is typed into a field. */
-export const typed_number = (value: number): string => with_decimal_sign(String(value));
+export const typedNumber = (value: number): string => withDecimalSign(String(value));
 /**
  * Between the cells of CSV files, as spreadsheets of the language's countries take them: a comma
  * stands in their numbers.
  */
-export const csv_separator = (): "comma" | "semicolon" => (decimal === "," ? "semicolon" : "comma");
+export const csvSeparator = (): "comma" | "semicolon" => (decimal === "," ? "semicolon" : "comma");
 /** What JavaScript wrote with a point. */
-export const with_decimal_sign = (plain: string): string => plain.replace(".", decimal);
+export const withDecimalSign = (plain: string): string => plain.replace(".", decimal);
 
 /**
  * What was typed into a field: with the decimal sign of the language, or a point. NaN where it is
  * no number, and where it may be either of two: in languages with a decimal comma "1.500" is not
  * told from a grouped 1500. Nothing is guessed.
  */
-export function read_number(typed: string): number {
+export function readNumber(typed: string): number {
   const text = typed.trim();
   if (decimal !== "." && /^[-+]?[1-9]\d{0,2}(\.\d{3})+$/.test(text)) return Number.NaN;
   const plain = decimal === "." ? text : text.replace(decimal, ".");
@@ -90,4 +89,4 @@ export function read_number(typed: string): number {
 }
 
 /** As dictionaries of the language order words. */
-export const compare_words = (a: string, b: string): number => a.localeCompare(b, locale);
+export const compareWords = (a: string, b: string): number => a.localeCompare(b, locale);

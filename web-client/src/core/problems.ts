@@ -16,5 +16,5 @@ export interface OwnProblems {
 
 let words: OwnProblems;
 
-export const say_own_problems_in = (language: OwnProblems): void => void (words = language);
-export const own_problems = (): OwnProblems => words;
+export const sayOwnProblemsIn = (language: OwnProblems): void => void (words = language);
+export const ownProblems = (): OwnProblems => words;

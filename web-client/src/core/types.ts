@@ -55,7 +55,7 @@ export interface ProblemBody {
 }
 
 /** `min` and `max` default to the outer points. */
-export function complete_palette(palette: wire.Palette): Palette {
+export function completePalette(palette: wire.Palette): Palette {
   const points = [...(palette.points ?? [])].sort((a, b) => a.at - b.at);
   return {
     ...palette,
@@ -65,9 +65,9 @@ export function complete_palette(palette: wire.Palette): Palette {
   };
 }
 
-export const complete_layer = (layer: wire.Layer): Layer => ({
+export const completeLayer = (layer: wire.Layer): Layer => ({
   ...layer,
-  palette: complete_palette(layer.palette),
+  palette: completePalette(layer.palette),
 });
 
 /** Each may do what the ones before may. */
@@ -83,27 +83,27 @@ export const kRoles: readonly wire.Role[] = [
 export const kProjectRoles: readonly wire.ProjectRole[] = ["viewer", "annotator", "curator"];
 
 /** Who gets the files of a model's scan, and what is as good as they are. */
-export const may_download = (
+export const mayDownload = (
   role: wire.Role,
-  { source_download }: Pick<wire.Model, "source_download">,
-): boolean => kRoles.indexOf(role) >= kRoles.indexOf(source_download);
+  { source_download: sourceDownload }: Pick<wire.Model, "source_download">,
+): boolean => kRoles.indexOf(role) >= kRoles.indexOf(sourceDownload);
 /** Who may change what layers hold. */
-export const may_paint = (role: wire.Role): boolean =>
+export const mayPaint = (role: wire.Role): boolean =>
   kRoles.indexOf(role) >= kRoles.indexOf("annotator");
 /** Who may change what layers and models there are, and what they are called. */
-export const may_curate = (role: wire.Role): boolean =>
+export const mayCurate = (role: wire.Role): boolean =>
   kRoles.indexOf(role) >= kRoles.indexOf("curator");
 /**
  * Its values are what was computed: nobody changes them until it is unlocked to be edited by hand.
  */
-export const is_as_computed = ({
+export const isAsComputed = ({
   computed,
   locked,
-  edited_by_hand,
+  edited_by_hand: editedByHand,
 }: Pick<wire.Layer, "computed" | "locked" | "edited_by_hand">): boolean =>
-  computed !== undefined && locked && edited_by_hand !== true;
+  computed !== undefined && locked && editedByHand !== true;
 /** Who may invite people, and say what they may do. */
-export const may_administer = (role: wire.Role): boolean =>
+export const mayAdminister = (role: wire.Role): boolean =>
   kRoles.indexOf(role) >= kRoles.indexOf("administrator");
 
 const kRanges: Record<wire.ValueType, [number, number]> = {
@@ -117,5 +117,5 @@ const kRanges: Record<wire.ValueType, [number, number]> = {
   f32: [-3.4028234663852886e38, 3.4028234663852886e38],
 };
 
-export const value_range = (type: wire.ValueType): [number, number] => kRanges[type];
-export const holds_fractions = (type: wire.ValueType): boolean => type === "f16" || type === "f32";
+export const valueRange = (type: wire.ValueType): [number, number] => kRanges[type];
+export const holdsFractions = (type: wire.ValueType): boolean => type === "f16" || type === "f32";

@@ -8,38 +8,38 @@ export interface ActivityLog {
   next: string | undefined; // nothing: all of it is here
 }
 
-const is_newer = (a: Activity, b: Activity): number =>
+const isNewer = (a: Activity, b: Activity): number =>
   a.time < b.time ? 1 : a.time > b.time ? -1 : b.id - a.id;
 
 /**
  * With a newer first page. A line that went on since has moved to the top; where the page does not
  * reach what is known, it is all there is.
  */
-export function with_first_page(log: ActivityLog, page: ActivityLog): ActivityLog {
+export function withFirstPage(log: ActivityLog, page: ActivityLog): ActivityLog {
   const ids = new Set(page.lines.map(({ id }) => id));
   const oldest = page.lines[page.lines.length - 1];
   const known = log.lines.filter(({ id }) => !ids.has(id));
   const meets = page.next === undefined || known.length < log.lines.length;
   if (!oldest || !meets) return page;
   return {
-    lines: [...page.lines, ...known.filter((line) => is_newer(line, oldest) > 0)],
+    lines: [...page.lines, ...known.filter((line) => isNewer(line, oldest) > 0)],
     next: log.next,
   };
 }
 
-export function with_next_page(log: ActivityLog, page: ActivityLog): ActivityLog {
+export function withNextPage(log: ActivityLog, page: ActivityLog): ActivityLog {
   const ids = new Set(log.lines.map(({ id }) => id));
   return { lines: [...log.lines, ...page.lines.filter(({ id }) => !ids.has(id))], next: page.next };
 }
 
-/** By the day of their last time, as `day_of` names it. */
-export function by_day(
+/** By the day of their last time, as `dayOf` names it. */
+export function byDay(
   lines: readonly Activity[],
-  day_of: (iso: string) => string,
+  dayOf: (iso: string) => string,
 ): { day: string; lines: Activity[] }[] {
   const days: { day: string; lines: Activity[] }[] = [];
   for (const line of lines) {
-    const day = day_of(line.time);
+    const day = dayOf(line.time);
     const last = days[days.length - 1];
     if (last?.day === day) last.lines.push(line);
     else days.push({ day, lines: [line] });

@@ -1,12 +1,12 @@
 // Values of records as people read and write them. The server judges what a value may be; here is
 // only what a field needs.
 
-import { person_languages, read_number, typed_number } from "../core/locale";
-import { is_list_of_marks } from "./marks";
+import { personLanguages, readNumber, typedNumber } from "../core/locale";
+import { isListOfMarks } from "./marks";
 import type { CellValue, Column, Labels, Table, TableRecord } from "../core/protocol.gen";
 
 /** The language and those that it is a kind of, in lower case: "es-mx", "es". */
-function kinds_of_language(language: string): string[] {
+function kindsOfLanguage(language: string): string[] {
   const tags: string[] = [];
   for (
     let tag = language.toLowerCase();
@@ -21,14 +21,14 @@ function kinds_of_language(language: string): string[] {
  * What it is called in the first of the person's languages that it has a name in: of "es-MX" also
  * the name in "es".
  */
-export function label_of(
+export function labelOf(
   thing: { name: string; labels: Labels },
-  languages: readonly string[] = person_languages(),
+  languages: readonly string[] = personLanguages(),
 ): string {
   const labels = new Map(
     Object.entries(thing.labels).map(([tag, label]) => [tag.toLowerCase(), label]),
   );
-  for (const tag of languages.flatMap(kinds_of_language)) {
+  for (const tag of languages.flatMap(kindsOfLanguage)) {
     const label = labels.get(tag);
     if (label) return label;
   }
@@ -36,21 +36,21 @@ export function label_of(
 }
 
 /** The same of what is said of it. */
-export const description_in = (
+export const descriptionIn = (
   thing: { description: string; descriptions: Labels },
   languages?: readonly string[],
-): string => label_of({ name: thing.description, labels: thing.descriptions }, languages);
+): string => labelOf({ name: thing.description, labels: thing.descriptions }, languages);
 
-export const is_number = (column: Column): boolean =>
+export const isNumber = (column: Column): boolean =>
   column.kind === "integer" || column.kind === "numeric";
-export const holds_files = (column: Column): boolean =>
+export const holdsFiles = (column: Column): boolean =>
   column.kind === "picture" || column.kind === "document";
-export const names_records = (column: Column): boolean =>
+export const namesRecords = (column: Column): boolean =>
   column.kind === "term" || column.kind === "relation";
 
 /** Keys of the records that a term or a relation names. */
-export function named_keys(value: CellValue | undefined): number[] {
-  if (is_list_of_marks(value)) return [];
+export function namedKeys(value: CellValue | undefined): number[] {
+  if (isListOfMarks(value)) return [];
   if (Array.isArray(value)) return value;
   return typeof value === "number" ? [value] : [];
 }
@@ -59,26 +59,26 @@ export function named_keys(value: CellValue | undefined): number[] {
  * As it is typed and shown; what names records is shown by their labels instead, and of lines and
  * points how many there are.
  */
-export function cell_text(value: CellValue | undefined): string {
+export function cellText(value: CellValue | undefined): string {
   if (value === null || value === undefined) return "";
-  if (typeof value === "number") return typed_number(value);
+  if (typeof value === "number") return typedNumber(value);
   if (!Array.isArray(value)) return String(value);
-  return is_list_of_marks(value) ? String(value.length) : value.join(" ");
+  return isListOfMarks(value) ? String(value.length) : value.join(" ");
 }
 
-export const same_value = (a: CellValue | undefined, b: CellValue | undefined): boolean =>
+export const sameValue = (a: CellValue | undefined, b: CellValue | undefined): boolean =>
   JSON.stringify(a ?? null) === JSON.stringify(b ?? null);
 
 export type Parsed = { value: CellValue } | { wrong: "number" | "whole" };
 
 /** What was typed into a field of the column; nothing is no value. */
-export function parse_cell(column: Pick<Column, "kind">, text: string): Parsed {
+export function parseCell(column: Pick<Column, "kind">, text: string): Parsed {
   const typed = column.kind === "text" ? text : text.trim();
   if (typed === "") return { value: null };
   switch (column.kind) {
     case "integer":
     case "numeric": {
-      const number = read_number(typed);
+      const number = readNumber(typed);
       if (!Number.isFinite(number)) return { wrong: "number" };
       return column.kind === "integer" && !Number.isInteger(number)
         ? { wrong: "whole" }
@@ -102,7 +102,7 @@ type Naming = Pick<Table, "columns" | "kind" | "title_column">;
 export type NameOfKey = (table: number, key: number) => string | null;
 
 /** Whether what a record has in the column can be what it is called. */
-export const can_be_title = ({ kind }: Pick<Column, "kind">): boolean =>
+export const canBeTitle = ({ kind }: Pick<Column, "kind">): boolean =>
   kind !== "relation" &&
   kind !== "picture" &&
   kind !== "document" &&
@@ -114,12 +114,12 @@ export const can_be_title = ({ kind }: Pick<Column, "kind">): boolean =>
  * The column that tells records apart for people: the one that they chose, or the best one; null
  * where no column does.
  */
-export function label_column(table: Pick<Table, "columns" | "title_column">): Column | null {
+export function labelColumn(table: Pick<Table, "columns" | "title_column">): Column | null {
   const chosen = table.columns.find(({ id }) => id === table.title_column);
-  return chosen && can_be_title(chosen) ? chosen : best_label_column(table);
+  return chosen && canBeTitle(chosen) ? chosen : bestLabelColumn(table);
 }
 
-function best_label_column(table: Pick<Table, "columns">): Column | null {
+function bestLabelColumn(table: Pick<Table, "columns">): Column | null {
   const texts = table.columns.filter((column) => column.kind === "text");
   return (
     texts.find((column) => column.required && column.unique) ??
@@ -127,7 +127,7 @@ function best_label_column(table: Pick<Table, "columns">): Column | null {
     // what an observation is of, and not who made it
     table.columns.slice(0, 1).find(({ kind }) => kind === "term") ??
     texts[0] ??
-    table.columns.find((column) => column.unique && !names_records(column)) ??
+    table.columns.find((column) => column.unique && !namesRecords(column)) ??
     null
   );
 }
@@ -136,11 +136,11 @@ function best_label_column(table: Pick<Table, "columns">): Column | null {
  * The columns that may name a record, the best first: of terms their labels in the person's
  * languages, the label of none, and the code.
  */
-export function naming_columns(table: Naming, languages?: readonly string[]): Column[] {
-  const last = [label_column(table) ?? [], best_label_column(table) ?? []].flat();
+export function namingColumns(table: Naming, languages?: readonly string[]): Column[] {
+  const last = [labelColumn(table) ?? [], bestLabelColumn(table) ?? []].flat();
   if (table.kind !== "terms") return [...new Set(last)];
-  const slugs = (languages ?? person_languages())
-    .flatMap(kinds_of_language)
+  const slugs = (languages ?? personLanguages())
+    .flatMap(kindsOfLanguage)
     .map((tag) => `label-${tag}`);
   const labels = [...slugs, "label"].map(
     (slug) => table.columns.find((column) => column.kind === "text" && column.slug === slug) ?? [],
@@ -149,45 +149,45 @@ export function naming_columns(table: Naming, languages?: readonly string[]): Co
 }
 
 /**
- * What the record is called; empty where it has no name. `name_of`: of what a term names; without
+ * What the record is called; empty where it has no name. `nameOf`: of what a term names; without
  * it another column says the name.
  */
-export function label_of_record(
+export function labelOfRecord(
   table: Naming,
   record: Pick<TableRecord, "values">,
   languages?: readonly string[],
-  name_of: NameOfKey = () => null,
+  nameOf: NameOfKey = () => null,
 ): string {
-  for (const column of naming_columns(table, languages)) {
+  for (const column of namingColumns(table, languages)) {
     const value = record.values[column.slug];
     const name =
       column.kind === "term"
-        ? named_keys(value)
-            .map((key) => name_of(column.target ?? 0, key) ?? "")
+        ? namedKeys(value)
+            .map((key) => nameOf(column.target ?? 0, key) ?? "")
             .join("")
-        : cell_text(value);
+        : cellText(value);
     if (name !== "") return name;
   }
   return "";
 }
 
 /** The first one that the record has: the number of its file. */
-export function first_picture(
+export function firstPicture(
   table: Pick<Table, "columns">,
   { values }: Pick<TableRecord, "values">,
 ): number | null {
   return (
     table.columns
       .filter(({ kind }) => kind === "picture")
-      .flatMap(({ slug }) => named_keys(values[slug]))[0] ?? null
+      .flatMap(({ slug }) => namedKeys(values[slug]))[0] ?? null
   );
 }
 
 /** Those that say something of the record in words: not the one that names it, nor pictures. */
-export function telling_columns(table: Naming, { values }: Pick<TableRecord, "values">): Column[] {
-  const [name] = naming_columns(table);
+export function tellingColumns(table: Naming, { values }: Pick<TableRecord, "values">): Column[] {
+  const [name] = namingColumns(table);
   return table.columns.filter(
     (column) =>
-      column !== name && column.kind !== "picture" && cell_text(values[column.slug]) !== "",
+      column !== name && column.kind !== "picture" && cellText(values[column.slug]) !== "",
   );
 }

@@ -2,7 +2,7 @@
 // (CQL2 text) and back. The text is all that there is: a condition that was built here is found in
 // it again, and what somebody typed beside it stays.
 
-import { name_in_text } from "./completion";
+import { nameInText } from "./completion";
 import type { Column } from "../core/protocol.gen";
 
 export type FilterValue = string | number | boolean;
@@ -20,19 +20,19 @@ export type ColumnFilter =
 
 export type FilterKind = ColumnFilter["is"];
 
-const is_number = ({ kind }: Pick<Column, "kind">): boolean =>
+const isNumber = ({ kind }: Pick<Column, "kind">): boolean =>
   kind === "integer" || kind === "numeric";
-const is_time = ({ kind }: Pick<Column, "kind">): boolean =>
+const isTime = ({ kind }: Pick<Column, "kind">): boolean =>
   kind === "date" || kind === "timestamp" || kind === "period";
-const is_text = ({ kind }: Pick<Column, "kind">): boolean => kind === "text" || kind === "url";
+const isText = ({ kind }: Pick<Column, "kind">): boolean => kind === "text" || kind === "url";
 
 /** What can be asked of a column, the most usual first. */
-export function filter_kinds(column: Pick<Column, "kind">): FilterKind[] {
+export function filterKinds(column: Pick<Column, "kind">): FilterKind[] {
   const kinds: FilterKind[] = [];
-  if (is_number(column) || is_time(column)) kinds.push("range");
+  if (isNumber(column) || isTime(column)) kinds.push("range");
   if (!["picture", "document", "line", "point", "timestamp"].includes(column.kind))
     kinds.push("one_of");
-  if (is_text(column)) kinds.push("contains");
+  if (isText(column)) kinds.push("contains");
   return [...kinds, "filled", "empty"];
 }
 
@@ -42,21 +42,21 @@ export function filter_kinds(column: Pick<Column, "kind">): FilterKind[] {
 const quoted = (text: string): string => `'${text.replaceAll("'", "''")}'`;
 const literal = (value: FilterValue): string =>
   typeof value === "string" ? quoted(value) : String(value);
-const pattern_of = (text: string): string => quoted(`%${text.replaceAll(/[\\%_]/g, "\\$&")}%`);
+const patternOf = (text: string): string => quoted(`%${text.replaceAll(/[\\%_]/g, "\\$&")}%`);
 
 /** Empty: nothing is asked, so that all records stay. */
-export function condition_of(column: Pick<Column, "slug" | "kind">, filter: ColumnFilter): string {
-  const name = name_in_text(column.slug);
+export function conditionOf(column: Pick<Column, "slug" | "kind">, filter: ColumnFilter): string {
+  const name = nameInText(column.slug);
   switch (filter.is) {
     case "empty":
       return `${name} is null`;
     case "filled":
       return `${name} is not null`;
     case "contains":
-      return filter.text === "" ? "" : `casei(${name}) like casei(${pattern_of(filter.text)})`;
+      return filter.text === "" ? "" : `casei(${name}) like casei(${patternOf(filter.text)})`;
     case "range": {
       const [from, to] = [filter.from, filter.to].map((end) =>
-        end === "" || is_number(column) ? end : quoted(end),
+        end === "" || isNumber(column) ? end : quoted(end),
       );
       if (from && to) return `${name} between ${from} and ${to}`;
       return from ? `${name} >= ${from}` : to ? `${name} <= ${to}` : "";
@@ -80,23 +80,23 @@ export function condition_of(column: Pick<Column, "slug" | "kind">, filter: Colu
 
 const kLiteral = String.raw`-?\d+(?:\.\d+)?(?:e[-+]?\d+)?|'(?:[^']|'')*'|true|false`;
 
-const value_of = (text: string): FilterValue => {
+const valueFor = (text: string): FilterValue => {
   if (text.startsWith("'")) return text.slice(1, -1).replaceAll("''", "'");
   return text === "true" || text === "false" ? text === "true" : Number(text);
 };
-const end_of = (text: string): string => String(value_of(text));
-const values_in = (list: string): FilterValue[] =>
-  (list.match(new RegExp(kLiteral, "g")) ?? []).map(value_of);
+const endOf = (text: string): string => String(valueFor(text));
+const valuesIn = (list: string): FilterValue[] =>
+  (list.match(new RegExp(kLiteral, "g")) ?? []).map(valueFor);
 
 /**
- * What a condition asks of the column, where it is one that condition_of() writes; null for all
+ * What a condition asks of the column, where it is one that conditionOf() writes; null for all
  * others.
  */
-export function filter_of(
+export function filterOf(
   column: Pick<Column, "slug" | "kind">,
   condition: string,
 ): ColumnFilter | null {
-  const name = name_in_text(column.slug).replaceAll(/[.*+?^${}()|[\]\\]/g, "\\$&");
+  const name = nameInText(column.slug).replaceAll(/[.*+?^${}()|[\]\\]/g, "\\$&");
   const match = (form: string): RegExpExecArray | null => new RegExp(`^${form}$`).exec(condition);
   if (match(`${name} is null`)) return { is: "empty" };
   if (match(`${name} is not null`)) return { is: "filled" };
@@ -106,28 +106,28 @@ export function filter_of(
       is: "contains",
       text: contains[1]!.replaceAll("''", "'").replaceAll(/\\([\\%_])/g, "$1"),
     };
-  if (is_number(column) || is_time(column)) {
+  if (isNumber(column) || isTime(column)) {
     const between = match(`${name} between (${kLiteral}) and (${kLiteral})`);
-    if (between) return { is: "range", from: end_of(between[1]!), to: end_of(between[2]!) };
+    if (between) return { is: "range", from: endOf(between[1]!), to: endOf(between[2]!) };
     const from = match(`${name} >= (${kLiteral})`);
-    if (from) return { is: "range", from: end_of(from[1]!), to: "" };
+    if (from) return { is: "range", from: endOf(from[1]!), to: "" };
     const to = match(`${name} <= (${kLiteral})`);
-    if (to) return { is: "range", from: "", to: end_of(to[1]!) };
+    if (to) return { is: "range", from: "", to: endOf(to[1]!) };
   }
   const list = `(?:${kLiteral})(?:, (?:${kLiteral}))*`;
   const any = `(?:${name} = (${kLiteral})|${name} in \\((${list})\\)|a_overlaps\\(${name}, \\((${list})\\)\\))`;
-  const one_of = match(any);
-  if (one_of)
+  const oneOf = match(any);
+  if (oneOf)
     return {
       is: "one_of",
-      values: values_in(one_of.slice(1).find((part) => part !== undefined)!),
+      values: valuesIn(oneOf.slice(1).find((part) => part !== undefined)!),
       empty: false,
     };
-  const or_empty = match(`\\(${any} or ${name} is null\\)`);
-  if (or_empty)
+  const orEmpty = match(`\\(${any} or ${name} is null\\)`);
+  if (orEmpty)
     return {
       is: "one_of",
-      values: values_in(or_empty.slice(1).find((part) => part !== undefined)!),
+      values: valuesIn(orEmpty.slice(1).find((part) => part !== undefined)!),
       empty: true,
     };
   return null;
@@ -140,7 +140,7 @@ export function filter_of(
  * The conditions that a filter joins by "and"; one that joins by "or" is a single one, in
  * parentheses.
  */
-export function conditions_of(filter: string): string[] {
+export function conditionsOf(filter: string): string[] {
   const text = filter.trim();
   if (text === "") return [];
   const parts: string[] = [];
@@ -167,28 +167,28 @@ export function conditions_of(filter: string): string[] {
 }
 
 /** What the filter asks of the column, as far as it was chosen and not typed otherwise. */
-export const chosen_in = (
+export const chosenIn = (
   filter: string,
   column: Pick<Column, "slug" | "kind">,
 ): ColumnFilter | null =>
-  conditions_of(filter)
-    .map((part) => filter_of(column, part))
+  conditionsOf(filter)
+    .map((part) => filterOf(column, part))
     .find((found) => found !== null) ?? null;
 
 /** The filter with another choice for the column, or none. */
-export function with_choice(
+export function withChoice(
   filter: string,
   column: Pick<Column, "slug" | "kind">,
   choice: ColumnFilter | null,
 ): string {
-  const others = conditions_of(filter).filter((part) => filter_of(column, part) === null);
-  const own = choice ? condition_of(column, choice) : "";
-  if (own === "" && others.length === 1) return without_parentheses(others[0]!);
+  const others = conditionsOf(filter).filter((part) => filterOf(column, part) === null);
+  const own = choice ? conditionOf(column, choice) : "";
+  if (own === "" && others.length === 1) return withoutParentheses(others[0]!);
   return [...others, own].filter((part) => part !== "").join(" and ");
 }
 
 /** Of a condition that stands alone again. */
-function without_parentheses(condition: string): string {
+function withoutParentheses(condition: string): string {
   const inner = condition.startsWith("(") && condition.endsWith(")") ? condition.slice(1, -1) : "";
-  return inner !== "" && conditions_of(inner)[0] === condition ? inner : condition;
+  return inner !== "" && conditionsOf(inner)[0] === condition ? inner : condition;
 }

@@ -20,15 +20,15 @@ export interface ThreadFilter {
   words: string;
 }
 
-const is_first = (comment: Comment): comment is FirstComment =>
+const isFirst = (comment: Comment): comment is FirstComment =>
   comment.thread === undefined && comment.position !== undefined && comment.normal !== undefined;
 
 /** Those that somebody wrote in last come first. */
-export function threads_of(comments: Iterable<Comment>): Thread[] {
+export function threadsOf(comments: Iterable<Comment>): Thread[] {
   const threads = new Map<number, Thread>();
   const all = [...comments].sort((a, b) => a.id - b.id);
   for (const comment of all)
-    if (is_first(comment))
+    if (isFirst(comment))
       threads.set(comment.id, { first: comment, replies: [], newest: comment.id });
   for (const comment of all) {
     const thread = comment.thread === undefined ? undefined : threads.get(comment.thread);
@@ -39,10 +39,10 @@ export function threads_of(comments: Iterable<Comment>): Thread[] {
   return [...threads.values()].sort((a, b) => b.newest - a.newest);
 }
 
-export const comments_in = ({ first, replies }: Thread): Comment[] => [first, ...replies];
+export const commentsIn = ({ first, replies }: Thread): Comment[] => [first, ...replies];
 
 /** Every word must begin one of somebody's text or name in the thread, in any case. */
-export function find_threads(
+export function findThreads(
   threads: readonly Thread[],
   { state, of, words }: ThreadFilter,
 ): Thread[] {
@@ -52,11 +52,13 @@ export function find_threads(
     .filter((word) => word !== "");
   return threads.filter((thread) => {
     if (state !== "all" && thread.first.state !== state) return false;
-    const comments = comments_in(thread);
+    const comments = commentsIn(thread);
     if (of !== null && !comments.some(({ user, text }) => user === of || mentions(text, of)))
       return false;
     const said = comments
-      .map(({ user, full_name, text }) => `${user} ${full_name ?? ""} ${text}`.toLowerCase())
+      .map(({ user, full_name: fullName, text }) =>
+        `${user} ${fullName ?? ""} ${text}`.toLowerCase(),
+      )
       .join(" ");
     return wanted.every((word) => said.includes(word));
   });
@@ -70,7 +72,7 @@ export type TextPart =
 const kParts = /\bhttps?:\/\/[^\s<>"]+|(?<![A-Za-z0-9._@-])@[A-Za-z0-9][A-Za-z0-9._@-]*/giu;
 
 /** Plain text with its addresses and the @names of those people. */
-export function text_parts(text: string, people: ReadonlySet<string>): TextPart[] {
+export function textParts(text: string, people: ReadonlySet<string>): TextPart[] {
   const known = new Set([...people].map((name) => name.toLowerCase()));
   const parts: TextPart[] = [];
   const add = (part: TextPart): void => {
@@ -81,7 +83,7 @@ export function text_parts(text: string, people: ReadonlySet<string>): TextPart[
   let at = 0;
   for (const found of text.matchAll(kParts)) {
     add({ kind: "text", text: text.slice(at, found.index) });
-    const whole = found[0].startsWith("@") ? mention_in(found[0], known) : link_in(found[0]);
+    const whole = found[0].startsWith("@") ? mentionIn(found[0], known) : linkIn(found[0]);
     if (whole === "") add({ kind: "text", text: found[0] });
     else if (whole.startsWith("@")) add({ kind: "mention", text: whole });
     else add({ kind: "link", text: whole, href: new URL(whole).href });
@@ -93,12 +95,12 @@ export function text_parts(text: string, people: ReadonlySet<string>): TextPart[
 }
 
 export const mentions = (text: string, name: string): boolean =>
-  text_parts(text, new Set([name])).some(({ kind }) => kind === "mention");
+  textParts(text, new Set([name])).some(({ kind }) => kind === "mention");
 
 /**
  * Names may end in what ends a sentence; the longest that somebody has is meant. Empty: nobody's.
  */
-function mention_in(found: string, known: ReadonlySet<string>): string {
+function mentionIn(found: string, known: ReadonlySet<string>): string {
   for (let whole = found; whole.length > 1; whole = whole.slice(0, -1)) {
     if (known.has(whole.slice(1).toLowerCase())) return whole;
     if (!/[._@-]$/.test(whole)) break;
@@ -107,7 +109,7 @@ function mention_in(found: string, known: ReadonlySet<string>): string {
 }
 
 /** Without what belongs to the sentence around it. Empty: it is no address. */
-function link_in(found: string): string {
+function linkIn(found: string): string {
   let whole = found;
   for (;;) {
     const last = whole[whole.length - 1] ?? "";
@@ -131,12 +133,12 @@ export interface ReadMarks {
 }
 
 /** Somebody else wrote there since. */
-export function is_unread(thread: Thread, { upto, threads }: ReadMarks, me: string): boolean {
+export function isUnread(thread: Thread, { upto, threads }: ReadMarks, me: string): boolean {
   const seen = Math.max(upto, threads[thread.first.id] ?? 0);
-  return comments_in(thread).some(({ id, user, deleted }) => id > seen && user !== me && !deleted);
+  return commentsIn(thread).some(({ id, user, deleted }) => id > seen && user !== me && !deleted);
 }
 
-export const with_thread_read = ({ upto, threads }: ReadMarks, thread: Thread): ReadMarks => ({
+export const withThreadRead = ({ upto, threads }: ReadMarks, thread: Thread): ReadMarks => ({
   upto,
   threads: { ...threads, [thread.first.id]: thread.newest },
 });

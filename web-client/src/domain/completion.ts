@@ -32,7 +32,7 @@ const kWords = new Set([
 const kMostSuggestions = 8;
 
 /** A layer's or column's slug as an expression names it. */
-export const name_in_text = (slug: string): string =>
+export const nameInText = (slug: string): string =>
   /^[a-z_]/.test(slug) && !kWords.has(slug) ? slug : `"${slug}"`;
 
 /**
@@ -43,8 +43,8 @@ export function complete(text: string, caret: number, all: readonly Suggestion[]
   const before = text.slice(0, caret);
   const word = /[a-z_"][\w."-]*$/i.exec(before)?.[0] ?? "";
   const from = caret - word.length;
-  const in_text = (before.slice(0, from).split("'").length - 1) % 2 === 1;
-  if (word === "" || in_text) return { from, suggestions: [] };
+  const inText = (before.slice(0, from).split("'").length - 1) % 2 === 1;
+  if (word === "" || inText) return { from, suggestions: [] };
   const wanted = word.toLowerCase();
   const begins = (suggestion: Suggestion): boolean => suggestion.text.startsWith(wanted);
   const within = ({ text }: Suggestion): boolean =>
@@ -58,7 +58,7 @@ export function complete(text: string, caret: number, all: readonly Suggestion[]
  * The text in three parts around the character (a Unicode code point) that is wrong; the middle one
  * is a space at its end.
  */
-export function marked_at(text: string, offset: number): [string, string, string] {
+export function markedAt(text: string, offset: number): [string, string, string] {
   const characters = [...text];
   return [
     characters.slice(0, offset).join(""),

@@ -1,7 +1,7 @@
 // Measured figures: what there is to choose of one, and what the server is asked for. What is shown
 // on the model is a view's matter, or the person's own.
 
-import { read_number, typed_number } from "../core/locale";
+import { readNumber, typedNumber } from "../core/locale";
 import type {
   FigureDirection,
   FigureFormat,
@@ -62,7 +62,7 @@ export interface Face {
 /** Camera, layers, looks and light, or a named view that has them. */
 export type FigureShown = ViewContent | { view: string };
 
-export const usual_figure = (): FigureChoices => ({
+export const usualFigure = (): FigureChoices => ({
   from: "camera",
   scale: null,
   paper: "a4",
@@ -72,9 +72,9 @@ export const usual_figure = (): FigureChoices => ({
   legend: true,
 });
 
-export const is_scale = (value: unknown): value is number =>
+export const isScale = (value: unknown): value is number =>
   typeof value === "number" && value >= kScaleRange.least && value <= kScaleRange.most;
-export const is_dpi = (value: unknown): value is number =>
+export const isDpi = (value: unknown): value is number =>
   Number.isInteger(value) &&
   (value as number) >= kDpiRange.least &&
   (value as number) <= kDpiRange.most;
@@ -83,24 +83,24 @@ export const is_dpi = (value: unknown): value is number =>
  * What a browser kept, which may be of another version of the page, or anybody's: what is no choice
  * is the usual one.
  */
-export function figure_choices(kept: unknown): FigureChoices {
-  const usual = usual_figure();
+export function figureChoices(kept: unknown): FigureChoices {
+  const usual = usualFigure();
   const known = (typeof kept === "object" && kept !== null ? kept : {}) as Record<string, unknown>;
-  const one_of = <T>(value: unknown, choices: readonly T[], otherwise: T): T =>
+  const oneOf = <T>(value: unknown, choices: readonly T[], otherwise: T): T =>
     choices.includes(value as T) ? (value as T) : otherwise;
   return {
-    from: one_of<FigureFrom>(known["from"], ["camera", ...kDirections, "face"], usual.from),
-    scale: is_scale(known["scale"]) ? known["scale"] : usual.scale,
-    paper: one_of(known["paper"], kPapers, usual.paper),
-    orientation: one_of(known["orientation"], [null, ...kOrientations], usual.orientation),
-    dpi: is_dpi(known["dpi"]) ? known["dpi"] : usual.dpi,
-    format: one_of(known["format"], kFormats, usual.format),
-    legend: one_of(known["legend"], [true, false], usual.legend),
+    from: oneOf<FigureFrom>(known["from"], ["camera", ...kDirections, "face"], usual.from),
+    scale: isScale(known["scale"]) ? known["scale"] : usual.scale,
+    paper: oneOf(known["paper"], kPapers, usual.paper),
+    orientation: oneOf(known["orientation"], [null, ...kOrientations], usual.orientation),
+    dpi: isDpi(known["dpi"]) ? known["dpi"] : usual.dpi,
+    format: oneOf(known["format"], kFormats, usual.format),
+    legend: oneOf(known["legend"], [true, false], usual.legend),
   };
 }
 
 /** What is asked for; null: a face is still to be picked. */
-export function figure_request(
+export function figureRequest(
   shown: FigureShown,
   { from, scale, orientation, ...choices }: FigureChoices,
   words: FigureWords,
@@ -124,23 +124,22 @@ export function figure_request(
 }
 
 /** The same sheet as a small picture. */
-export const preview_request = (request: FigureRequest): FigureRequest => ({
+export const previewRequest = (request: FigureRequest): FigureRequest => ({
   ...request,
   format: "png",
   dpi: kPreviewDpi[request.paper ?? "a4"],
 });
 
 /** A scale as people write it, "1 : 40", "2:1" or the 40 alone; NaN where it is none. */
-export function read_scale(typed: string): number {
-  const parts = typed.split(":").map(read_number);
-  const [on_paper, in_world] = parts.length === 1 ? [1, parts[0]!] : [parts[0]!, parts[1]!];
-  const scale =
-    parts.length > 2 || !(on_paper > 0 && in_world > 0) ? Number.NaN : in_world / on_paper;
-  return is_scale(scale) ? scale : Number.NaN;
+export function readScale(typed: string): number {
+  const parts = typed.split(":").map(readNumber);
+  const [onPaper, inWorld] = parts.length === 1 ? [1, parts[0]!] : [parts[0]!, parts[1]!];
+  const scale = parts.length > 2 || !(onPaper > 0 && inWorld > 0) ? Number.NaN : inWorld / onPaper;
+  return isScale(scale) ? scale : Number.NaN;
 }
 
 /** "1 : 40", "2 : 1". */
-export function scale_text(scale: number): string {
-  const number = (value: number): string => typed_number(Number(value.toPrecision(6)));
+export function scaleText(scale: number): string {
+  const number = (value: number): string => typedNumber(Number(value.toPrecision(6)));
   return scale < 1 ? `${number(1 / scale)} : 1` : `1 : ${number(scale)}`;
 }

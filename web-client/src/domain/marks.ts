@@ -1,27 +1,27 @@
 // Lines and points that records have on models, as cells of columns of these kinds hold them.
 
-import { format_place, typed_number } from "../core/locale";
-import { format_length, metres_per } from "./measure";
+import { formatPlace, typedNumber } from "../core/locale";
+import { formatLength, metresPer } from "./measure";
 import type { CellValue, Column, Mark, MarkPlace, Table } from "../core/protocol.gen";
 import type { Model } from "../core/types";
 import { dot, length, scale, subtract } from "../math/vector";
 
 export type MarkKind = "line" | "point";
 
-export const holds_marks = (column: Pick<Column, "kind">): boolean =>
+export const holdsMarks = (column: Pick<Column, "kind">): boolean =>
   column.kind === "line" || column.kind === "point";
-export const mark_columns = (table: Pick<Table, "columns">, kind: MarkKind): Column[] =>
+export const markColumns = (table: Pick<Table, "columns">, kind: MarkKind): Column[] =>
   table.columns.filter((column) => column.kind === kind);
 
-export const is_list_of_marks = (value: CellValue | undefined): value is Mark[] =>
+export const isListOfMarks = (value: CellValue | undefined): value is Mark[] =>
   Array.isArray(value) && typeof value[0] === "object";
 
 /** Those of a cell; none where it holds something else. */
-export const marks_of = (value: CellValue | undefined): Mark[] =>
-  is_list_of_marks(value) ? value : [];
+export const marksOf = (value: CellValue | undefined): Mark[] =>
+  isListOfMarks(value) ? value : [];
 
 /** From place to place, in the unit of the model that it lies on. */
-export function mark_length({ coordinates }: Pick<Mark, "coordinates">): number {
+export function markLength({ coordinates }: Pick<Mark, "coordinates">): number {
   return coordinates
     .slice(1)
     .reduce((sum, place, index) => sum + length(subtract(place, coordinates[index]!)), 0);
@@ -33,24 +33,24 @@ export interface MarkSummary {
   metres: number; // of lines on the model
 }
 
-export function summary_of(
+export function summaryOf(
   value: CellValue | undefined,
   model: Pick<Model, "id" | "unit">,
 ): MarkSummary {
-  const marks = marks_of(value);
+  const marks = marksOf(value);
   const here = marks.filter((mark) => mark.model === model.id);
-  const units = here.reduce((sum, mark) => sum + mark_length(mark), 0);
+  const units = here.reduce((sum, mark) => sum + markLength(mark), 0);
   return {
     here: here.length,
     elsewhere: marks.length - here.length,
-    metres: units * metres_per(model.unit),
+    metres: units * metresPer(model.unit),
   };
 }
 
 /** Of a line "1.24 m", of a point "12.1, 4.25, 30" in the model's unit. */
-export function describe_mark(mark: Mark, kind: MarkKind, model: Pick<Model, "unit">): string {
-  if (kind === "line") return format_length(mark_length(mark) * metres_per(model.unit));
-  return `${format_place(mark.coordinates[0]!.map((number) => typed_number(Number(number.toPrecision(5)))))} ${model.unit}`;
+export function describeMark(mark: Mark, kind: MarkKind, model: Pick<Model, "unit">): string {
+  if (kind === "line") return formatLength(markLength(mark) * metresPer(model.unit));
+  return `${formatPlace(mark.coordinates[0]!.map((number) => typedNumber(Number(number.toPrecision(5)))))} ${model.unit}`;
 }
 
 // times what it is where the surface is seen straight: between the places of two neighbouring
@@ -60,20 +60,20 @@ const kLongestStep = 40;
 /**
  * The parts of a line on a surface, of what was found at one step of it after the other. Where
  * nothing was hit, and where the next place lies far before or behind the last, as at the edge of a
- * handle, one part ends and another begins. `step_at`: how far two steps are from each other at a
+ * handle, one part ends and another begins. `stepAt`: how far two steps are from each other at a
  * place where the surface is seen straight, the length of a pixel there.
  */
-export function parts_of_line<T>(
+export function partsOfLine<T>(
   found: readonly (T | null)[],
-  place_of: (each: T) => MarkPlace,
-  step_at: (place: MarkPlace) => number,
+  placeOf: (each: T) => MarkPlace,
+  stepAt: (place: MarkPlace) => number,
 ): T[][] {
   const parts: T[][] = [];
   let last: MarkPlace | null = null;
   for (const each of found) {
-    const place = each === null ? null : place_of(each);
+    const place = each === null ? null : placeOf(each);
     if (each !== null && place) {
-      if (!last || length(subtract(place, last)) > kLongestStep * step_at(place)) parts.push([]);
+      if (!last || length(subtract(place, last)) > kLongestStep * stepAt(place)) parts.push([]);
       parts[parts.length - 1]!.push(each);
     }
     last = place;
@@ -85,9 +85,9 @@ export function parts_of_line<T>(
  * Leaves out places that are no farther than the tolerance there from the line that remains (Ramer
  * 1972, Douglas and Peucker 1973).
  */
-export function simplify_line(
+export function simplifyLine(
   places: readonly MarkPlace[],
-  tolerance_at: (place: MarkPlace) => number,
+  toleranceAt: (place: MarkPlace) => number,
 ): MarkPlace[] {
   const kept = new Set([0, places.length - 1]);
   const parts: [number, number][] = [[0, places.length - 1]];
@@ -96,7 +96,7 @@ export function simplify_line(
     let [farthest, most] = [-1, 1];
     for (let at = first + 1; at < last; ++at) {
       const share =
-        distance_to_segment(places[at]!, places[first]!, places[last]!) / tolerance_at(places[at]!);
+        distanceToSegment(places[at]!, places[first]!, places[last]!) / toleranceAt(places[at]!);
       if (share > most) [farthest, most] = [at, share];
     }
     if (farthest < 0) continue;
@@ -106,7 +106,7 @@ export function simplify_line(
   return places.filter((_, index) => kept.has(index));
 }
 
-function distance_to_segment(place: MarkPlace, from: MarkPlace, to: MarkPlace): number {
+function distanceToSegment(place: MarkPlace, from: MarkPlace, to: MarkPlace): number {
   const along = subtract(to, from);
   const out = subtract(place, from);
   const squared = dot(along, along);

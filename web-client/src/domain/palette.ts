@@ -10,22 +10,22 @@ export interface Rgba {
   a: number; // 0…255, as the others
 }
 
-export function parse_color(text: string): Rgba {
+export function parseColor(text: string): Rgba {
   const hex = text.replace("#", "");
   const byte = (at: number): number => parseInt(hex.slice(at, at + 2), 16);
   return { r: byte(0), g: byte(2), b: byte(4), a: hex.length >= 8 ? byte(6) : 255 };
 }
 
-export const css_color = (text: string): string => {
-  const { r, g, b, a } = parse_color(text);
+export const cssColor = (text: string): string => {
+  const { r, g, b, a } = parseColor(text);
   return `rgb(${r} ${g} ${b} / ${(a / 255).toFixed(3)})`;
 };
 
 /** #rrggbb for an <input type="color">, which knows no opacity. */
-export const opaque_color = (text: string): string => text.slice(0, 7);
+export const opaqueColor = (text: string): string => text.slice(0, 7);
 
 /** A CSS gradient of a linear or stepped palette from its lower to its upper limit. */
-export function css_gradient(palette: Palette, direction = "to right"): string {
+export function cssGradient(palette: Palette, direction = "to right"): string {
   const span = palette.max - palette.min || 1;
   const points = [...palette.points].sort((a, b) => a.at - b.at);
   if (points.length === 0) return "transparent";
@@ -33,20 +33,20 @@ export function css_gradient(palette: Palette, direction = "to right"): string {
     `${(Math.min(1, Math.max(0, (at - palette.min) / span)) * 100).toFixed(2)}%`;
   const stops: string[] = [];
   points.forEach((point, index) => {
-    stops.push(`${css_color(point.color)} ${share(point.at)}`);
+    stops.push(`${cssColor(point.color)} ${share(point.at)}`);
     const next = points[index + 1];
-    if (palette.mode === "step" && next) stops.push(`${css_color(point.color)} ${share(next.at)}`);
+    if (palette.mode === "step" && next) stops.push(`${cssColor(point.color)} ${share(next.at)}`);
   });
   if (stops.length === 1) stops.push(stops[0]!.replace(/ [\d.]+%$/, " 100%"));
   return `linear-gradient(${direction}, ${stops.join(", ")})`;
 }
 
-export function point_of(palette: Palette, value: number): PalettePoint | undefined {
+export function pointOf(palette: Palette, value: number): PalettePoint | undefined {
   return palette.points.find((point) => point.at === value);
 }
 
 /** The colour of a class that the palette does not list, the same as the server's. */
-export function generated_color(key: number): string {
+export function generatedColor(key: number): string {
   const hash = Math.imul(key, 2654435761) >>> 0;
   const hue = ((hash >>> 8) / 16777216) * 6;
   const saturation = 0.55 + (0.25 * (hash & 0xff)) / 255;
@@ -67,29 +67,29 @@ export const kNoValueColor = "#9a9a9a80";
  * The colour a value is drawn in; null for a palette without any, and where the record behind a key
  * has to be asked.
  */
-export function color_of(palette: Palette, value: number): string | null {
+export function colorOf(palette: Palette, value: number): string | null {
   if (palette.column) return null;
-  return color_of_number(palette, value);
+  return colorOfNumber(palette, value);
 }
 
 /** The colour of a record, by the column that colours or by its key. */
-export function record_color(
+export function recordColor(
   palette: Palette,
   record: { key: number; values: Record<string, CellValue> },
 ): string | null {
-  if (!palette.column) return color_of(palette, record.key);
+  if (!palette.column) return colorOf(palette, record.key);
   const value = record.values[palette.column] ?? null;
   if (value === null) return palette.others ?? kNoValueColor;
   const named = palette.points.find((point) => point.value === String(value));
   if (named) return named.color;
-  if (palette.mode === "categorical" && (typeof value !== "number" || !point_of(palette, value)))
+  if (palette.mode === "categorical" && (typeof value !== "number" || !pointOf(palette, value)))
     return palette.others ?? kNoValueColor;
-  return typeof value === "number" ? color_of_number(palette, value) : null;
+  return typeof value === "number" ? colorOfNumber(palette, value) : null;
 }
 
-function color_of_number(palette: Palette, value: number): string | null {
+function colorOfNumber(palette: Palette, value: number): string | null {
   if (palette.mode === "categorical")
-    return point_of(palette, value)?.color ?? palette.others ?? generated_color(value);
+    return pointOf(palette, value)?.color ?? palette.others ?? generatedColor(value);
   const points = [...palette.points].sort((a, b) => a.at - b.at);
   const first = points[0];
   const last = points[points.length - 1];
@@ -102,7 +102,7 @@ function color_of_number(palette: Palette, value: number): string | null {
   const high = points[above]!;
   if (palette.mode === "step") return low.color;
   const t = (at - low.at) / (high.at - low.at);
-  const [a, b] = [parse_color(low.color), parse_color(high.color)];
+  const [a, b] = [parseColor(low.color), parseColor(high.color)];
   const blend = (x: number, y: number): string =>
     Math.round(x + (y - x) * t)
       .toString(16)
@@ -113,7 +113,7 @@ function color_of_number(palette: Palette, value: number): string | null {
 export type LayerPurpose = "presence" | "classes" | "measurement" | "records";
 
 /** What a layer is for, in the words of the create-layer dialog. */
-export function purpose_of(layer: Pick<Layer, "kind" | "palette">): LayerPurpose {
+export function purposeOf(layer: Pick<Layer, "kind" | "palette">): LayerPurpose {
   if (layer.kind === "database") return "records";
   if (layer.palette.mode !== "categorical") return "measurement";
   return layer.palette.points.length === 1 ? "presence" : "classes";
@@ -132,7 +132,7 @@ export const kClassColors = [
   "#7f7f9fff",
 ];
 
-export const presence_palette = (label: string, color: string): Palette => ({
+export const presencePalette = (label: string, color: string): Palette => ({
   mode: "categorical",
   min: 1,
   max: 1,
@@ -140,7 +140,7 @@ export const presence_palette = (label: string, color: string): Palette => ({
 });
 
 /** Every key has the colour that is made from it. */
-export const record_palette = (): Palette => ({ mode: "categorical", min: 0, max: 1, points: [] });
+export const recordPalette = (): Palette => ({ mode: "categorical", min: 0, max: 1, points: [] });
 
 /** All that a point says; what is not said has its default. */
 const told = ({
@@ -150,11 +150,11 @@ const told = ({
   value = "",
   pattern = "solid",
   angle = 45,
-  spacing_mm = 0,
-}: PalettePoint): string => JSON.stringify([at, color, label, value, pattern, angle, spacing_mm]);
+  spacing_mm: spacingMm = 0,
+}: PalettePoint): string => JSON.stringify([at, color, label, value, pattern, angle, spacingMm]);
 
 /** Whether both show every value alike and call it the same. */
-export function same_palette(a: Palette, b: Palette): boolean {
+export function samePalette(a: Palette, b: Palette): boolean {
   return (
     [a.mode, a.min, a.max, a.column, a.others, a.points.length].join() ===
       [b.mode, b.min, b.max, b.column, b.others, b.points.length].join() &&
@@ -163,7 +163,7 @@ export function same_palette(a: Palette, b: Palette): boolean {
 }
 
 /** The same colours over another range. */
-export function with_range(palette: Palette, min: number, max: number): Palette {
+export function withRange(palette: Palette, min: number, max: number): Palette {
   const span = palette.max - palette.min || 1;
   const points = palette.points.map((point) => ({
     ...point,
@@ -173,24 +173,24 @@ export function with_range(palette: Palette, min: number, max: number): Palette 
 }
 
 /** The colour with a share of its opacity. */
-function with_share(color: string, share: number): string {
-  const { a } = parse_color(color);
-  return `${opaque_color(color)}${Math.round(a * share)
+function withShare(color: string, share: number): string {
+  const { a } = parseColor(color);
+  return `${opaqueColor(color)}${Math.round(a * share)
     .toString(16)
     .padStart(2, "0")}`;
 }
 
 /** A square of a legend: the colour as it is laid on. Measures as in shaders/shared/shade.h. */
-export function swatch_style({
+export function swatchStyle({
   color,
   pattern = "solid",
   angle = 45,
 }: Pick<PalettePoint, "color" | "pattern" | "angle">): Record<string, string> {
-  const shown = css_color(color);
+  const shown = cssColor(color);
   if (pattern === "outline")
     return { background: "transparent", border: `2px solid ${shown}`, "box-shadow": "none" };
   // CSS turns clockwise from the vertical, and across the lines.
-  const ground = css_color(with_share(color, 0.3));
+  const ground = cssColor(withShare(color, 0.3));
   const border = { "box-shadow": `inset 0 0 0 2px ${shown}` };
   if (pattern === "hatch")
     return {
@@ -206,7 +206,7 @@ export function swatch_style({
 }
 
 /** Points for values that a column holds, in the order of the colours. */
-export function category_palette(
+export function categoryPalette(
   column: string,
   classes: { value: string; label: string; color: string }[],
 ): Palette {
@@ -225,7 +225,7 @@ export function category_palette(
 }
 
 /** Classes of numbers from the lower limits on. */
-export function graduated_palette(
+export function graduatedPalette(
   column: string,
   classes: { from: number; to: number }[],
   colors: string[],
@@ -285,7 +285,7 @@ export const kRamps = {
 export type Ramp = keyof typeof kRamps;
 
 /** `count` colours spread over the ramp. */
-export function ramp_colors(ramp: Ramp, count: number): string[] {
+export function rampColors(ramp: Ramp, count: number): string[] {
   const stops = kRamps[ramp];
   const scale: Palette = {
     mode: "linear",
@@ -294,11 +294,11 @@ export function ramp_colors(ramp: Ramp, count: number): string[] {
     points: stops.map((color, index) => ({ at: index / (stops.length - 1), color: `${color}ff` })),
   };
   return Array.from({ length: count }, (_, index) =>
-    color_of_number(scale, count === 1 ? 0.5 : index / (count - 1))!,
+    colorOfNumber(scale, count === 1 ? 0.5 : index / (count - 1))!,
   );
 }
 
-export const class_palette = (classes: { label: string; color: string; at: number }[]): Palette => {
+export const classPalette = (classes: { label: string; color: string; at: number }[]): Palette => {
   const points = [...classes]
     .sort((a, b) => a.at - b.at)
     .map(({ at, color, label }) => ({ at, color, label }));
@@ -310,7 +310,7 @@ export const class_palette = (classes: { label: string; color: string; at: numbe
   };
 };
 
-export const measurement_palette = (
+export const measurementPalette = (
   min: number,
   max: number,
   mode: "linear" | "step" = "linear",

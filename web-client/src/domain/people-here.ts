@@ -18,16 +18,16 @@ export interface PersonHere {
 }
 
 /** Each person once: first who uses this window, then in the order in which they came. */
-export function people_here(viewers: readonly PresenceUser[], own_session: string): PersonHere[] {
-  const own = viewers.find(({ session }) => session === own_session)?.name;
-  const by_name = new Map<string, PresenceUser[]>();
+export function peopleHere(viewers: readonly PresenceUser[], ownSession: string): PersonHere[] {
+  const own = viewers.find(({ session }) => session === ownSession)?.name;
+  const byName = new Map<string, PresenceUser[]>();
   for (const viewer of viewers)
-    by_name.set(viewer.name, [...(by_name.get(viewer.name) ?? []), viewer]);
-  const people = [...by_name].map(([user, windows]): PersonHere => {
-    const others = windows.filter(({ session }) => session !== own_session);
+    byName.set(viewer.name, [...(byName.get(viewer.name) ?? []), viewer]);
+  const people = [...byName].map(([user, windows]): PersonHere => {
+    const others = windows.filter(({ session }) => session !== ownSession);
     return {
       user,
-      full_name: windows.find(({ full_name }) => full_name)?.full_name ?? "",
+      full_name: windows.find(({ full_name: fullName }) => fullName)?.full_name ?? "",
       color: windows[0]!.color,
       own: user === own,
       viewer:
@@ -43,18 +43,18 @@ export function people_here(viewers: readonly PresenceUser[], own_session: strin
 }
 
 /** People, without who they are themselves, that look with one of these sessions. */
-export const followers_of = (people: readonly PersonHere[], session: string): PersonHere[] =>
+export const followersOf = (people: readonly PersonHere[], session: string): PersonHere[] =>
   people.filter(({ following }) => following.includes(session));
 
 /** Whether following `session` would lead back to this window: then the server refuses it. */
-export function leads_back(
+export function leadsBack(
   viewers: readonly PresenceUser[],
   session: string,
-  own_session: string,
+  ownSession: string,
 ): boolean {
   let ahead: string | undefined = session;
   for (let steps = 0; ahead !== undefined && steps <= viewers.length; ++steps) {
-    if (ahead === own_session) return true;
+    if (ahead === ownSession) return true;
     const here: string = ahead;
     ahead = viewers.find((viewer) => viewer.session === here)?.following;
   }
@@ -65,7 +65,7 @@ const kDarkInk = "#20292a";
 const kLightInk = "#ffffff";
 
 /** What is read best on a colour (#rrggbb): the ink with the larger contrast ratio of WCAG 2. */
-export const ink_on = (color: string): string =>
+export const inkOn = (color: string): string =>
   contrast(color, kLightInk) >= contrast(color, kDarkInk) ? kLightInk : kDarkInk;
 
 export function contrast(a: string, b: string): number {

@@ -16,10 +16,10 @@ export interface Named {
 }
 
 /** One or two letters that stand for a person. */
-export function initials({ user, full_name = "" }: Named): string {
+export function initials({ user, full_name: fullName = "" }: Named): string {
   const words =
-    full_name.trim() !== ""
-      ? full_name.trim().split(/\s+/)
+    fullName.trim() !== ""
+      ? fullName.trim().split(/\s+/)
       : user.split(/[^\p{L}\p{N}]+/u).filter((word) => word !== "");
   const [first = "?", ...rest] = words;
   const last = rest[rest.length - 1] ?? "";
@@ -33,25 +33,26 @@ export function initials({ user, full_name = "" }: Named): string {
  * The name of a control, for readers of the screen and for speech: what is seen on it is part of it
  * (WCAG 2.5.3).
  */
-export function name_with(name: string, seen: string): string {
+export function nameWith(name: string, seen: string): string {
   const said = seen.trim();
   return name.toLocaleLowerCase().includes(said.toLocaleLowerCase()) ? name : `${name} (${said})`;
 }
 
 /** What a person is called where others read it. */
-export const called = ({ user, full_name = "" }: Named): string => full_name.trim() || user;
+export const called = ({ user, full_name: fullName = "" }: Named): string =>
+  fullName.trim() || user;
 
 /** Those that somebody may give away, the least first: nobody makes another owner. */
-export const roles_to_give = (own: Role): Role[] =>
+export const rolesToGive = (own: Role): Role[] =>
   kRoles.slice(0, Math.min(kRoles.indexOf(own), kRoles.indexOf("administrator")) + 1);
 /**
  * Those that a token of somebody may have, the least first. What a guest may do in projects the
  * server knows.
  */
-export const roles_of_tokens = (own: Role): Role[] =>
+export const rolesOfTokens = (own: Role): Role[] =>
   own === "guest" ? [...kProjectRoles] : kRoles.slice(1, kRoles.indexOf(own) + 1);
 /** The same of one that is good in a project alone, where they have this role. */
-export const roles_of_tokens_in = (own: Role): Role[] =>
+export const rolesOfTokensIn = (own: Role): Role[] =>
   kProjectRoles.filter((role) => kRoles.indexOf(role) <= kRoles.indexOf(own));
 
 export type PasswordMistake = {
@@ -60,7 +61,7 @@ export type PasswordMistake = {
 };
 
 /** What the server would refuse, and a slip of the hand. */
-export function password_mistake(
+export function passwordMistake(
   user: string,
   password: string,
   repeat: string,
@@ -95,7 +96,7 @@ const kSystems: [RegExp, string][] = [
  * Of what a browser calls itself: a name that people know, and the system that it runs on; each is
  * empty where nothing is known.
  */
-export function browser_of(agent: string): { browser: string; system: string } {
+export function browserOf(agent: string): { browser: string; system: string } {
   const named = (list: [RegExp, string][]): string =>
     list.find(([pattern]) => pattern.test(agent))?.[1] ?? "";
   // of what is no browser, such as curl
@@ -110,7 +111,7 @@ export function browser_of(agent: string): { browser: string; system: string } {
  * Nobody changes themselves there, nor whoever may do as much as they; the owner is changed by
  * nobody.
  */
-export const may_change = (
+export const mayChange = (
   me: Pick<Me, "user" | "role">,
   person: Pick<Person, "user" | "role">,
 ): boolean =>
@@ -122,7 +123,7 @@ export const may_change = (
  * The highest role that these groups give somebody in a project, and which of them do; null: none
  * of them is theirs.
  */
-export function role_by_groups(
+export function roleByGroups(
   given: readonly MemberGroup[],
   theirs: readonly string[],
 ): { role: ProjectRole; groups: string[] } | null {
@@ -136,20 +137,20 @@ export function role_by_groups(
 }
 
 /**
- * Those in whose names, or in what `also_of` says of them, every word of the text begins one, in
+ * Those in whose names, or in what `alsoOf` says of them, every word of the text begins one, in
  * any case.
  */
-export function find_people(
+export function findPeople(
   people: readonly Person[],
   text: string,
-  also_of: (person: Person) => string,
+  alsoOf: (person: Person) => string,
 ): Person[] {
   const wanted = text
     .toLowerCase()
     .split(/\s+/)
     .filter((word) => word !== "");
   return people.filter((person) => {
-    const words = `${person.user} ${person.full_name} ${also_of(person)}`
+    const words = `${person.user} ${person.full_name} ${alsoOf(person)}`
       .toLowerCase()
       .split(/[\s._@-]+/);
     const whole = person.user.toLowerCase();
@@ -160,5 +161,5 @@ export function find_people(
 }
 
 /** As the server takes it for a new account. */
-export const is_user_name = (name: string): boolean =>
+export const isUserName = (name: string): boolean =>
   /^[A-Za-z0-9][A-Za-z0-9._@-]{0,63}$/.test(name);

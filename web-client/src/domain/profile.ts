@@ -1,7 +1,7 @@
 // The surface along a line, as the server answers it, made ready to be told and drawn: how far each
 // place is along the surface, where the line leaves it, and what a layer holds there.
 
-import { parts_of_line, simplify_line } from "./marks";
+import { partsOfLine, simplifyLine } from "./marks";
 import type { ProfileSample } from "../core/protocol.gen";
 import { length, subtract, type Vec3 } from "../math/vector";
 
@@ -17,10 +17,10 @@ export interface ProfilePlace {
 /** Parts of a line that lie on the surface without a gap, each with at least one place. */
 export type ProfileParts = readonly (readonly ProfilePlace[])[];
 
-/** What lies between two parts (see `parts_of_line`) adds nothing to the distances. */
-export function profile_parts(
+/** What lies between two parts (see `partsOfLine`) adds nothing to the distances. */
+export function profileParts(
   samples: readonly ProfileSample[],
-  step_at: (place: Vec3) => number,
+  stepAt: (place: Vec3) => number,
   layer: string | null,
 ): ProfileParts {
   const found = samples.map(({ point: { hit, position, normal, values } }): ProfilePlace | null => {
@@ -33,7 +33,7 @@ export function profile_parts(
       value: value?.valid && value.value !== undefined ? value.value : null,
     };
   });
-  const parts = parts_of_line(found, ({ place }) => place as [number, number, number], step_at);
+  const parts = partsOfLine(found, ({ place }) => place as [number, number, number], stepAt);
   let along = 0;
   for (const part of parts) {
     part.forEach((each, index) => {
@@ -45,33 +45,33 @@ export function profile_parts(
 }
 
 /** Along the surface, without the gaps. */
-export const length_of = (parts: ProfileParts): number =>
+export const lengthOf = (parts: ProfileParts): number =>
   parts[parts.length - 1]?.at(-1)?.along ?? 0;
 
-/** Whether the line comes as near to each of the places as `reach_at` allows there. */
-export const passes_through = (
+/** Whether the line comes as near to each of the places as `reachAt` allows there. */
+export const passesThrough = (
   parts: ProfileParts,
   places: readonly Vec3[],
-  reach_at: (place: Vec3) => number,
+  reachAt: (place: Vec3) => number,
 ): boolean =>
   places.every((place) =>
     parts.some((part) =>
-      part.some((each) => length(subtract(each.place, place)) <= reach_at(place)),
+      part.some((each) => length(subtract(each.place, place)) <= reachAt(place)),
     ),
   );
 
 /**
  * Only what its course needs to be drawn: no place farther than the tolerance there is left out.
  */
-export function simplify_profile(
+export function simplifyProfile(
   parts: ProfileParts,
-  tolerance_at: (place: Vec3) => number,
+  toleranceAt: (place: Vec3) => number,
 ): ProfileParts {
   return parts.map((part) => {
     const kept = new Set<Vec3>(
-      simplify_line(
+      simplifyLine(
         part.map(({ place }) => place as [number, number, number]),
-        tolerance_at,
+        toleranceAt,
       ),
     );
     return part.filter(({ place }) => kept.has(place));

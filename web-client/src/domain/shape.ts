@@ -18,7 +18,7 @@ const luma = (data: Uint8ClampedArray, at: number): number =>
  * Which part a person most likely means: what is opaque; else a light shape on a dark ground, or a
  * dark one on a light.
  */
-export function likely_part({ width, height, data }: Pixels): ShapePart {
+export function likelyPart({ width, height, data }: Pixels): ShapePart {
   for (let at = 3; at < data.length; at += 4) if (data[at] !== 255) return "opaque";
   let sum = 0;
   let count = 0;
@@ -36,7 +36,7 @@ export function likely_part({ width, height, data }: Pixels): ShapePart {
  * In place: opaque black where the tool is, transparent elsewhere. Returns whether anything is the
  * tool.
  */
-export function to_shape({ data }: Pixels, part: ShapePart): boolean {
+export function toShape({ data }: Pixels, part: ShapePart): boolean {
   let any = false;
   for (let at = 0; at < data.length; at += 4) {
     const alpha = data[at + 3]! / 255;
@@ -52,7 +52,7 @@ export function to_shape({ data }: Pixels, part: ShapePart): boolean {
 }
 
 /** Where a picture lies in the square around it. */
-export function in_square(
+export function inSquare(
   width: number,
   height: number,
   side: number,

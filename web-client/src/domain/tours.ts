@@ -1,7 +1,7 @@
 // A tour while somebody writes it: what its fields hold, what is missing in them, and which field a
 // refusal of the server is about.
 
-import { read_number, typed_number } from "../core/locale";
+import { readNumber, typedNumber } from "../core/locale";
 import type {
   Tour,
   TourCreate,
@@ -46,7 +46,7 @@ export interface TourDraft {
 
 let made = 0;
 
-export const new_stop = (
+export const newStop = (
   view: { slug: string; name: string; text: string },
   language: string,
 ): StopDraft => ({
@@ -54,35 +54,35 @@ export const new_stop = (
   view: view.slug,
   title: { [language]: view.name },
   text: view.text ? { [language]: view.text } : {},
-  attract_s: typed_number(10),
+  attract_s: typedNumber(10),
   transition: "move",
-  transition_s: typed_number(2),
+  transition_s: typedNumber(2),
   layers: [],
   records: [],
 });
 
-const stop_of = (stop: TourStop): StopDraft => ({
+const stopOf = (stop: TourStop): StopDraft => ({
   ...stop,
   id: ++made,
   view: stop.view ?? "",
-  attract_s: typed_number(stop.attract_s),
-  transition_s: typed_number(stop.transition_s),
+  attract_s: typedNumber(stop.attract_s),
+  transition_s: typedNumber(stop.transition_s),
 });
 
-export const empty_tour = (language: string): TourDraft => ({
+export const emptyTour = (language: string): TourDraft => ({
   name: "",
   text: "",
   languages: [language],
-  idle_s: typed_number(60),
+  idle_s: typedNumber(60),
   stops: [],
 });
 
-export const draft_of = ({ name, text, languages, idle_s, stops }: Tour): TourDraft => ({
+export const draftOf = ({ name, text, languages, idle_s: idleS, stops }: Tour): TourDraft => ({
   name,
   text,
   languages,
-  idle_s: typed_number(idle_s),
-  stops: stops.map(stop_of),
+  idle_s: typedNumber(idleS),
+  stops: stops.map(stopOf),
 });
 
 /** With what stands at `from` out and set where `to` is then. */
@@ -102,7 +102,7 @@ const without = (words: Words, language: string): Words =>
  * What was written in the language is gone with it: the server takes no words in others than the
  * tour's.
  */
-export function without_language(draft: TourDraft, language: string): TourDraft {
+export function withoutLanguage(draft: TourDraft, language: string): TourDraft {
   return {
     ...draft,
     languages: draft.languages.filter((each) => each !== language),
@@ -124,7 +124,7 @@ export function without_language(draft: TourDraft, language: string): TourDraft 
 const says = (words: Words, language: string): boolean => (words[language] ?? "").trim() !== "";
 
 /** Whether something is written in the language anywhere. */
-export const writes_in = ({ stops }: TourDraft, language: string): boolean =>
+export const writesIn = ({ stops }: TourDraft, language: string): boolean =>
   stops.some(
     ({ title, text, records }) =>
       says(title, language) ||
@@ -162,7 +162,7 @@ export interface DraftProblem {
  * The first thing without which the server would refuse it; what only the server knows is left to
  * it.
  */
-export function problem_of(draft: TourDraft): DraftProblem | null {
+export function problemOf(draft: TourDraft): DraftProblem | null {
   const [first] = draft.languages;
   const seconds = (
     field: string,
@@ -170,7 +170,7 @@ export function problem_of(draft: TourDraft): DraftProblem | null {
     range: readonly [number, number],
     whole = false,
   ): DraftProblem | null => {
-    const value = read_number(typed);
+    const value = readNumber(typed);
     const fits = value >= range[0] && value <= range[1] && (!whole || Number.isInteger(value));
     return fits ? null : { field, wrong: "seconds", range };
   };
@@ -202,19 +202,19 @@ const written = (words: Words): Record<string, string> =>
       .sort(([a], [b]) => (a < b ? -1 : 1)),
   );
 
-function body_of_stop(stop: StopDraft): TourStopCreate {
+function bodyOfStop(stop: StopDraft): TourStopCreate {
   // of a cut it is not looked at, and may be anything
-  const held_s = read_number(stop.transition_s);
+  const heldS = readNumber(stop.transition_s);
   return {
     view: stop.view,
     title: written(stop.title),
     text: written(stop.text),
-    attract_s: read_number(stop.attract_s),
+    attract_s: readNumber(stop.attract_s),
     transition: stop.transition,
-    ...(Number.isNaN(held_s)
+    ...(Number.isNaN(heldS)
       ? {}
       : {
-          transition_s: Math.min(kSeconds.transition[1], Math.max(kSeconds.transition[0], held_s)),
+          transition_s: Math.min(kSeconds.transition[1], Math.max(kSeconds.transition[0], heldS)),
         }),
     layers: [...stop.layers],
     records: stop.records.map(({ table, keys, columns }) => ({
@@ -228,40 +228,40 @@ function body_of_stop(stop: StopDraft): TourStopCreate {
   };
 }
 
-/** Of a draft of which problem_of() says nothing. */
-export const body_of = ({
+/** Of a draft of which problemOf() says nothing. */
+export const bodyOf = ({
   name,
   text,
   languages,
-  idle_s,
+  idle_s: idleS,
   stops,
 }: TourDraft): Required<TourCreate> => ({
   name: name.trim(),
   text: text.trim(),
   languages: [...languages],
-  idle_s: read_number(idle_s),
-  stops: stops.map(body_of_stop),
+  idle_s: readNumber(idleS),
+  stops: stops.map(bodyOfStop),
 });
 
 /** Whether a draft says something else than another. */
 export const differs = (a: TourDraft, b: TourDraft): boolean =>
-  JSON.stringify(body_of(a)) !== JSON.stringify(body_of(b));
+  JSON.stringify(bodyOf(a)) !== JSON.stringify(bodyOf(b));
 
 /**
  * Where a field of the server stands: of which stop, and what within it. Null: of the tour itself.
  */
-export function place_of(field: string): { stop: number | null; within: string } {
+export function placeOf(field: string): { stop: number | null; within: string } {
   const found = /^stops\[(\d+)\]\.?(.*)$/.exec(field);
   return found ? { stop: Number(found[1]), within: found[2]! } : { stop: null, within: field };
 }
 
 /** Whether a refusal of `within` is about `field`: it itself, or a part of it. */
-export const is_about = (within: string, field: string): boolean =>
+export const isAbout = (within: string, field: string): boolean =>
   within === field || within.startsWith(`${field}.`) || within.startsWith(`${field}[`);
 
 /**
  * The language that a field is in: that of `title.fr`, `text.fr` and
  * `records[0].columns[1].labels.fr`.
  */
-export const language_of_field = (within: string): string | null =>
+export const languageOfField = (within: string): string | null =>
   /^(?:title|text|.*\.labels)\.([A-Za-z0-9-]+)$/.exec(within)?.[1] ?? null;

@@ -8,7 +8,7 @@ const kPage = 1000; // the most that the server gives at once
 const kMostCounted = 20_000; // beyond it a person would wait
 
 export interface ValueCounts {
-  of_value: Map<FilterValue, number>;
+  ofValue: Map<FilterValue, number>;
   /** Records without a value. */
   empty: number;
   /** Of numbers and texts, as they are ordered. */
@@ -20,19 +20,19 @@ export interface ValueCounts {
 }
 
 /** Each record that a cell names is a value of its own. */
-const values_in_cell = (value: CellValue | undefined): FilterValue[] =>
+const valuesInCell = (value: CellValue | undefined): FilterValue[] =>
   value === null || value === undefined
     ? []
     : Array.isArray(value)
       ? value.filter((each): each is number => typeof each === "number")
       : [value];
 
-export async function count_values(
+export async function countValues(
   ask: (query: RecordQuery) => Promise<RecordList>,
   slug: string,
 ): Promise<ValueCounts> {
   const counts: ValueCounts = {
-    of_value: new Map(),
+    ofValue: new Map(),
     empty: 0,
     least: null,
     greatest: null,
@@ -45,10 +45,10 @@ export async function count_values(
     if (records.length === 0) break;
     counts.counted += records.length;
     for (const { values } of records) {
-      const held = values_in_cell(values[slug]);
+      const held = valuesInCell(values[slug]);
       if (held.length === 0) counts.empty += 1;
       for (const value of new Set(held)) {
-        counts.of_value.set(value, (counts.of_value.get(value) ?? 0) + 1);
+        counts.ofValue.set(value, (counts.ofValue.get(value) ?? 0) + 1);
         if (counts.least === null || value < counts.least) counts.least = value;
         if (counts.greatest === null || value > counts.greatest) counts.greatest = value;
       }

@@ -2,7 +2,7 @@
 // comes to see it so. Layers and looks are meant by id. What nobody says of a view, its name and
 // text, is not of this file.
 
-import { same_palette } from "./palette";
+import { samePalette } from "./palette";
 import type {
   Highlight,
   LayerOverride,
@@ -11,7 +11,7 @@ import type {
   PersonalView,
   View,
 } from "../core/protocol.gen";
-import { complete_palette, type Layer, type Palette } from "../core/types";
+import { completePalette, type Layer, type Palette } from "../core/types";
 
 /**
  * Where from, and what is shown how: enough to show the same again, whatever the defaults are then.
@@ -37,7 +37,7 @@ export interface LookSettings {
  * What a view keeps of the layers: visibility and opacity of each, as the defaults may be others
  * later; palettes, places in the order and highlights where they are this person's own.
  */
-export const layers_to_keep = (
+export const layersToKeep = (
   layers: readonly Layer[],
   shown: (layer: Layer) => LayerShown,
 ): LayerOverride[] =>
@@ -49,7 +49,7 @@ export const layers_to_keep = (
       order,
       highlight,
     } = shown(layer);
-    const recolored = palette && !same_palette(palette, layer.palette);
+    const recolored = palette && !samePalette(palette, layer.palette);
     const moved = order !== undefined && order !== layer.order;
     return {
       layer: layer.id,
@@ -65,21 +65,21 @@ export const layers_to_keep = (
  * Of how a layer is shown, what differs from what everybody sees at first; null: nothing.
  * Highlights are of views.
  */
-export function own_part(
+export function ownPart(
   layer: Layer,
   { visible, opacity, palette, order }: LayerShown,
 ): LayerShown | null {
   const own: LayerShown = {
     ...(visible !== undefined && visible !== layer.visible ? { visible } : {}),
     ...(opacity !== undefined && Math.abs(opacity - layer.opacity) > 1e-6 ? { opacity } : {}),
-    ...(palette && !same_palette(palette, layer.palette) ? { palette } : {}),
+    ...(palette && !samePalette(palette, layer.palette) ? { palette } : {}),
     ...(order !== undefined && order !== layer.order ? { order } : {}),
   };
   return Object.keys(own).length > 0 ? own : null;
 }
 
 /** How the layers that there are shown in a view, by id. */
-export function layers_of_view(
+export function layersOfView(
   { layers }: Pick<View, "layers"> | PersonalView,
   known: readonly Layer[],
 ): Map<number, LayerShown> {
@@ -89,7 +89,7 @@ export function layers_of_view(
       .filter(({ layer }) => ids.has(Number(layer)))
       .map(({ layer, palette, ...rest }) => [
         Number(layer),
-        { ...rest, ...(palette ? { palette: complete_palette(palette) } : {}) },
+        { ...rest, ...(palette ? { palette: completePalette(palette) } : {}) },
       ]),
   );
 }
@@ -98,7 +98,7 @@ export function layers_of_view(
  * How the looks that there are shown in a view, by id, and those that it shows from bottom to top.
  * Without `looks` it shows the defaults.
  */
-export function looks_of_view(
+export function looksOfView(
   { looks }: { looks?: LookShown[] },
   known: readonly Look[],
 ): { settings: Map<number, LookSettings>; stack: number[] } {

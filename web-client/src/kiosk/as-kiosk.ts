@@ -3,15 +3,15 @@
 
 import type { Fetch } from "../net/api";
 
-const kPatience_ms = 30_000; // a server that does not answer at all is away
+const kPatienceMs = 30_000; // a server that does not answer at all is away
 
-export const as_kiosk = (address: string): string =>
+export const asKiosk = (address: string): string =>
   `${address}${address.includes("?") ? "&" : "?"}as=kiosk`;
 
-export const patient_fetch: Fetch = (address, init) =>
-  fetch(address, { ...init, signal: AbortSignal.timeout(kPatience_ms) });
-export const kiosk_fetch: Fetch = (address, init) => patient_fetch(as_kiosk(address), init);
+export const patientFetch: Fetch = (address, init) =>
+  fetch(address, { ...init, signal: AbortSignal.timeout(kPatienceMs) });
+export const kioskFetch: Fetch = (address, init) => patientFetch(asKiosk(address), init);
 
 /** Of a still picture of what a view shows. */
-export const picture_of_view = (model: string, view: string): string =>
-  as_kiosk(`/api/v1/models/${encodeURIComponent(model)}/views/${encodeURIComponent(view)}/picture`);
+export const pictureOfView = (model: string, view: string): string =>
+  asKiosk(`/api/v1/models/${encodeURIComponent(model)}/views/${encodeURIComponent(view)}/picture`);

@@ -6,41 +6,41 @@ export interface AttractHost {
   next(): void;
 }
 
-const kLeast_s = 1;
+const kLeastS = 1;
 
 export class AttractLoop {
-  private timer_: ReturnType<typeof setTimeout> | null = null;
-  private playing_ = false;
+  private _timer: ReturnType<typeof setTimeout> | null = null;
+  private _playing = false;
 
-  constructor(private readonly host_: AttractHost) {}
+  constructor(private readonly _host: AttractHost) {}
 
   get playing(): boolean {
-    return this.playing_;
+    return this._playing;
   }
 
   start(): void {
     this.stop();
-    this.playing_ = true;
+    this._playing = true;
     this.wait();
   }
 
   stop(): void {
-    this.playing_ = false;
-    if (this.timer_) clearTimeout(this.timer_);
-    this.timer_ = null;
+    this._playing = false;
+    if (this._timer) clearTimeout(this._timer);
+    this._timer = null;
   }
 
   private wait(): void {
-    const times = this.host_.times();
-    this.timer_ = setTimeout(
-      () => this.on_time(),
-      Math.max(kLeast_s, times ? times.transition_s + times.attract_s : 0) * 1000,
+    const times = this._host.times();
+    this._timer = setTimeout(
+      () => this.onTime(),
+      Math.max(kLeastS, times ? times.transition_s + times.attract_s : 0) * 1000,
     );
   }
 
-  private on_time(): void {
-    this.timer_ = null;
-    this.host_.next();
-    if (this.playing_) this.wait();
+  private onTime(): void {
+    this._timer = null;
+    this._host.next();
+    if (this._playing) this.wait();
   }
 }

@@ -3,15 +3,15 @@
 
 import { ApiError, type Api } from "../net/api";
 import {
-  cell_text,
-  holds_files,
-  label_of,
-  label_of_record,
-  named_keys,
-  names_records,
+  cellText,
+  holdsFiles,
+  labelOf,
+  labelOfRecord,
+  namedKeys,
+  namesRecords,
 } from "../domain/cells";
-import { format_list, with_decimal_sign } from "../core/locale";
-import { holds_marks } from "../domain/marks";
+import { formatList, withDecimalSign } from "../core/locale";
+import { holdsMarks } from "../domain/marks";
 import type {
   Attachment,
   CellValue,
@@ -21,9 +21,9 @@ import type {
   TourColumn,
   TourStop,
 } from "../core/protocol.gen";
-import { as_kiosk } from "./as-kiosk";
-import { words_in } from "./languages";
-import { texts_in } from "./texts";
+import { asKiosk } from "./as-kiosk";
+import { wordsIn } from "./languages";
+import { textsIn } from "./texts";
 
 export interface CardPicture {
   name: string;
@@ -51,43 +51,43 @@ const kMostLines = 8; // of a table of which the tour chose no columns
 const kMostPictures = 12;
 
 /** Null: there is no such record, or not for visitors. Other failures are ApiErrors. */
-export async function card_of(api: Api, asked: CardAsked): Promise<Card | null> {
+export async function cardOf(api: Api, asked: CardAsked): Promise<Card | null> {
   try {
-    return await read_card(api, asked);
+    return await readCard(api, asked);
   } catch (error) {
     if (error instanceof ApiError && error.status === 404) return null;
     throw error;
   }
 }
 
-async function read_card(api: Api, asked: CardAsked): Promise<Card> {
+async function readCard(api: Api, asked: CardAsked): Promise<Card> {
   const table = await api.table(asked.table);
   const [record, files] = await Promise.all([
     api.record({ table: table.id }, asked.key),
     api.attachments(table.id, asked.key),
   ]);
   const title =
-    label_of_record(table, record, [asked.language]) ||
-    texts_in(asked.language, asked.languages).record(asked.key);
-  const shown = columns_shown(
+    labelOfRecord(table, record, [asked.language]) ||
+    textsIn(asked.language, asked.languages).record(asked.key);
+  const shown = columnsShown(
     table,
     asked.stop.records.find((records) => records.table === table.slug)?.columns,
   );
   const lines: Card["lines"] = [];
   for (const { column, chosen } of shown) {
-    if (holds_files(column)) continue;
-    const text = await text_of(api, asked, column, record.values[column.slug] ?? null);
+    if (holdsFiles(column)) continue;
+    const text = await textOf(api, asked, column, record.values[column.slug] ?? null);
     // What is the card's heading is not said again, unless the tour wants it so.
     if (text === "" || (!chosen && text === title) || (!chosen && lines.length >= kMostLines))
       continue;
-    lines.push({ label: label_on_card(column, chosen, asked), text });
+    lines.push({ label: labelOnCard(column, chosen, asked), text });
   }
   return {
     table: table.slug,
     key: asked.key,
     title,
     lines,
-    pictures: pictures_of(
+    pictures: picturesOf(
       shown.map(({ column }) => column),
       record,
       files,
@@ -99,14 +99,14 @@ async function read_card(api: Api, asked: CardAsked): Promise<Card> {
  * As the tour or the table call it in the visitor's language; else as the tour calls it in its
  * first one, or by its name, whatever language that is.
  */
-function label_on_card(
+function labelOnCard(
   column: Column,
   chosen: TourColumn | null,
   { language, languages }: CardAsked,
 ): string {
-  const in_language =
-    chosen?.labels?.[language] || label_of({ name: "", labels: column.labels }, [language]);
-  return in_language || words_in(chosen?.labels, language, languages.slice(0, 1)) || column.name;
+  const inLanguage =
+    chosen?.labels?.[language] || labelOf({ name: "", labels: column.labels }, [language]);
+  return inLanguage || wordsIn(chosen?.labels, language, languages.slice(0, 1)) || column.name;
 }
 
 interface ShownColumn {
@@ -114,13 +114,13 @@ interface ShownColumn {
   chosen: TourColumn | null;
 }
 
-function columns_shown(
+function columnsShown(
   { columns }: Table,
   chosen: readonly TourColumn[] | undefined,
 ): ShownColumn[] {
   if (!chosen || chosen.length === 0)
     return columns
-      .filter((column) => !holds_marks(column))
+      .filter((column) => !holdsMarks(column))
       .map((column) => ({ column, chosen: null }));
   return chosen.flatMap((each) => {
     const column = columns.find(({ slug }) => slug === each.column);
@@ -128,23 +128,23 @@ function columns_shown(
   });
 }
 
-async function text_of(
+async function textOf(
   api: Api,
   asked: CardAsked,
   column: Column,
   value: CellValue,
 ): Promise<string> {
   if (value === null) return "";
-  const words = texts_in(asked.language, asked.languages);
-  if (names_records(column))
-    return format_list(await names_of(api, asked, column.target ?? 0, named_keys(value)));
+  const words = textsIn(asked.language, asked.languages);
+  if (namesRecords(column))
+    return formatList(await namesOf(api, asked, column.target ?? 0, namedKeys(value)));
   if (column.kind === "boolean") return value ? words.yes : words.no;
-  const text = typeof value === "number" ? with_decimal_sign(String(value)) : cell_text(value);
+  const text = typeof value === "number" ? withDecimalSign(String(value)) : cellText(value);
   return column.unit ? `${text} ${column.unit}` : text;
 }
 
 /** Those that visitors may know. */
-async function names_of(
+async function namesOf(
   api: Api,
   { language }: CardAsked,
   table: number,
@@ -155,7 +155,7 @@ async function names_of(
     const target = await api.table(table);
     const records = await Promise.all(keys.map((key) => api.record({ table }, key)));
     return records
-      .map((record) => label_of_record(target, record, [language]))
+      .map((record) => labelOfRecord(target, record, [language]))
       .filter((name) => name !== "");
   } catch (error) {
     if (error instanceof ApiError && (error.status === 403 || error.status === 404)) return [];
@@ -167,14 +167,14 @@ async function names_of(
  * Of the columns that are shown, in their order; browsers show no others than these two kinds that
  * the server makes small ones of.
  */
-function pictures_of(
+function picturesOf(
   columns: readonly Column[],
   record: Pick<TableRecord, "values">,
   files: readonly Attachment[],
 ): CardPicture[] {
   const ids = columns
     .filter(({ kind }) => kind === "picture")
-    .flatMap(({ slug }) => named_keys(record.values[slug]));
+    .flatMap(({ slug }) => namedKeys(record.values[slug]));
   return ids
     .flatMap(
       (id) =>
@@ -184,4 +184,4 @@ function pictures_of(
     .map(({ id, name }) => ({ name, small: thumbnail(id, 256), large: thumbnail(id, 1024) }));
 }
 const thumbnail = (id: number, side: number): string =>
-  as_kiosk(`/api/v1/attachments/${id}?thumbnail=${side}`);
+  asKiosk(`/api/v1/attachments/${id}?thumbnail=${side}`);

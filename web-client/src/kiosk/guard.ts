@@ -4,7 +4,7 @@
 
 const refuse = (event: Event): void => event.preventDefault();
 
-export function keep_on_page(): void {
+export function keepOnPage(): void {
   for (const name of ["contextmenu", "selectstart", "dragstart", "gesturestart", "gesturechange"])
     document.addEventListener(name, refuse);
   document.addEventListener("wheel", (event) => event.ctrlKey && event.preventDefault(), {
@@ -30,16 +30,16 @@ export function keep_on_page(): void {
  * The whole screen, where the browser's own kiosk mode has not given it: browsers grant that to a
  * touch only, and visitors' browsers not at all or for as long as they want.
  */
-export function fill_screen(): void {
-  const has_it =
+export function fillScreen(): void {
+  const hasIt =
     document.fullscreenElement !== null ||
     (innerWidth >= screen.width && innerHeight >= screen.height);
-  if (document.fullscreenEnabled && !has_it)
+  if (document.fullscreenEnabled && !hasIt)
     document.documentElement.requestFullscreen({ navigationUI: "hide" }).catch(() => {});
 }
 
 /** The screen stays on, where the browser grants that. */
-export async function stay_awake(): Promise<void> {
+export async function stayAwake(): Promise<void> {
   try {
     if (document.visibilityState === "visible") await navigator.wakeLock?.request("screen");
   } catch {

@@ -3,14 +3,14 @@
 // until the next touch. One timer at most, whatever is touched how often.
 
 /**
- * alone: nobody is there. visited: somebody is. asked: they have not touched for long, and `left_s`
+ * alone: nobody is there. visited: somebody is. asked: they have not touched for long, and `leftS`
  * seconds to say that they are there.
  */
-export type Presence = { is: "alone" } | { is: "visited" } | { is: "asked"; left_s: number };
+export type Presence = { is: "alone" } | { is: "visited" } | { is: "asked"; leftS: number };
 
 export interface IdleHost {
   /** Seconds without a touch before somebody is asked. */
-  idle_s(): number;
+  idleS(): number;
   /** Somebody came. */
   came(): void;
   /** Nobody is there any more. */
@@ -18,54 +18,54 @@ export interface IdleHost {
   changed(): void;
 }
 
-export const kAsked_s = 10;
-const kLeast_s = 30; // whatever the tour says: who reads touches nothing
+export const kAskedS = 10;
+const kLeastS = 30; // whatever the tour says: who reads touches nothing
 
 export class IdleWatch {
   presence: Presence = { is: "alone" };
-  private touched_ms_ = 0;
-  private timer_: ReturnType<typeof setTimeout> | null = null;
+  private _touchedMs = 0;
+  private _timer: ReturnType<typeof setTimeout> | null = null;
 
-  constructor(private readonly host_: IdleHost) {}
+  constructor(private readonly _host: IdleHost) {}
 
   /** Anything that a person does. */
   touched(): void {
-    this.touched_ms_ = performance.now();
+    this._touchedMs = performance.now();
     const { is } = this.presence;
     if (is === "visited") return; // the timer sees when it fires that it is too early
-    this.enter({ is: "visited" }, this.host_.idle_s());
-    if (is === "alone") this.host_.came();
+    this.enter({ is: "visited" }, this._host.idleS());
+    if (is === "alone") this._host.came();
   }
 
   stop(): void {
-    if (this.timer_) clearTimeout(this.timer_);
-    this.timer_ = null;
+    if (this._timer) clearTimeout(this._timer);
+    this._timer = null;
   }
 
-  private enter(presence: Presence, for_s: number): void {
+  private enter(presence: Presence, forS: number): void {
     this.presence = presence;
     this.stop();
     if (presence.is !== "alone")
-      this.timer_ = setTimeout(
-        () => this.on_time(),
-        Math.max(presence.is === "asked" ? 0 : kLeast_s, for_s) * 1000,
+      this._timer = setTimeout(
+        () => this.onTime(),
+        Math.max(presence.is === "asked" ? 0 : kLeastS, forS) * 1000,
       );
-    this.host_.changed();
+    this._host.changed();
   }
 
-  private on_time(): void {
-    this.timer_ = null;
+  private onTime(): void {
+    this._timer = null;
     const { presence } = this;
     if (presence.is === "visited") {
-      const left_s =
-        Math.max(kLeast_s, this.host_.idle_s()) - (performance.now() - this.touched_ms_) / 1000;
-      if (left_s > 0.05) this.timer_ = setTimeout(() => this.on_time(), left_s * 1000);
-      else this.enter({ is: "asked", left_s: kAsked_s }, 1);
-    } else if (presence.is === "asked" && presence.left_s > 1) {
-      this.enter({ is: "asked", left_s: presence.left_s - 1 }, 1);
+      const leftS =
+        Math.max(kLeastS, this._host.idleS()) - (performance.now() - this._touchedMs) / 1000;
+      if (leftS > 0.05) this._timer = setTimeout(() => this.onTime(), leftS * 1000);
+      else this.enter({ is: "asked", leftS: kAskedS }, 1);
+    } else if (presence.is === "asked" && presence.leftS > 1) {
+      this.enter({ is: "asked", leftS: presence.leftS - 1 }, 1);
     } else if (presence.is === "asked") {
       this.enter({ is: "alone" }, 0);
-      this.host_.left();
+      this._host.left();
     }
   }
 }

@@ -5,49 +5,49 @@ import { html, LitElement, nothing, svg, type PropertyValues, type TemplateResul
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { styled } from "../ui/styled";
-import { name_of_language } from "../core/languages";
-import { fill_screen } from "./guard";
-import { direction_of_language } from "./languages";
-import { kiosk_styles } from "./kiosk-styles";
+import { nameOfLanguage } from "../core/languages";
+import { fillScreen } from "./guard";
+import { directionOfLanguage } from "./languages";
+import { kioskStyles } from "./kiosk-styles";
 import type { KioskSession } from "./kiosk-session";
 import "./stage";
-import { name_of_layer } from "./place";
-import { follow_swipes } from "./swipe";
-import { texts_in } from "./texts";
+import { nameOfLayer } from "./place";
+import { followSwipes } from "./swipe";
+import { textsIn } from "./texts";
 
 const kMostDots = 12;
 const kMostInvitations = 3; // languages in which one is asked to begin
 
 /** Many languages write their own name small within a sentence. */
-function name_on_button(tag: string): string {
-  const name = name_of_language(tag) || tag;
+function nameOnButton(tag: string): string {
+  const name = nameOfLanguage(tag) || tag;
   return name.charAt(0).toLocaleUpperCase(tag) + name.slice(1);
 }
 
-const arrow_back = svg`<svg class="turns" viewBox="0 0 24 24" aria-hidden="true"><path d="M15 5l-7 7 7 7" /></svg>`;
-const arrow_on = svg`<svg class="turns" viewBox="0 0 24 24" aria-hidden="true"><path d="m9 5 7 7-7 7" /></svg>`;
+const arrowBack = svg`<svg class="turns" viewBox="0 0 24 24" aria-hidden="true"><path d="M15 5l-7 7 7 7" /></svg>`;
+const arrowOn = svg`<svg class="turns" viewBox="0 0 24 24" aria-hidden="true"><path d="m9 5 7 7-7 7" /></svg>`;
 
 @customElement("strata-kiosk")
 export class StrataKiosk extends LitElement {
   @property({ attribute: false }) session!: KioskSession;
-  @state() private changes_ = 0;
-  @query(".panel") private panel_!: HTMLElement | null;
-  private stop_following_: (() => void) | null = null;
-  private stop_swipes_: (() => void) | null = null;
-  private swiped_panel_: HTMLElement | null = null;
+  @state() private _changes = 0;
+  @query(".panel") private _panel!: HTMLElement | null;
+  private _stopFollowing: (() => void) | null = null;
+  private _stopSwipes: (() => void) | null = null;
+  private _swipedPanel: HTMLElement | null = null;
 
-  static override styles = kiosk_styles;
+  static override styles = kioskStyles;
 
   override connectedCallback(): void {
     super.connectedCallback();
-    this.stop_following_ = this.session.subscribe(() => (this.changes_ += 1));
+    this._stopFollowing = this.session.subscribe(() => (this._changes += 1));
     for (const name of ["pointerdown", "pointermove", "pointerup", "keydown", "wheel"])
       addEventListener(name, this.touched, { capture: true, passive: true });
   }
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.stop_following_?.();
-    this.stop_swipes_?.();
+    this._stopFollowing?.();
+    this._stopSwipes?.();
     for (const name of ["pointerdown", "pointermove", "pointerup", "keydown", "wheel"])
       removeEventListener(name, this.touched, { capture: true });
   }
@@ -58,33 +58,33 @@ export class StrataKiosk extends LitElement {
    */
   private readonly touched = (event: Event): void => {
     // on a table that shakes
-    const rests_a_mouse = event.type === "pointermove" && (event as PointerEvent).buttons === 0;
-    if (!rests_a_mouse && this.session.idle.presence.is === "visited") this.session.touched();
+    const restsAMouse = event.type === "pointermove" && (event as PointerEvent).buttons === 0;
+    if (!restsAMouse && this.session.idle.presence.is === "visited") this.session.touched();
   };
 
   protected override updated(changed: PropertyValues): void {
     super.updated(changed);
-    const { session, panel_: panel } = this;
+    const { session, _panel: panel } = this;
     const root = document.documentElement;
     root.lang = session.language;
-    root.dir = direction_of_language(session.language);
+    root.dir = directionOfLanguage(session.language);
     const title = session.tour?.name ?? "Strata";
     if (document.title !== title) document.title = title;
-    if (panel !== this.swiped_panel_) {
-      this.stop_swipes_?.();
-      this.swiped_panel_ = panel;
-      this.stop_swipes_ = panel
-        ? follow_swipes(panel, (by) => session.swipe(root.dir === "rtl" ? (-by as 1 | -1) : by))
+    if (panel !== this._swipedPanel) {
+      this._stopSwipes?.();
+      this._swipedPanel = panel;
+      this._stopSwipes = panel
+        ? followSwipes(panel, (by) => session.swipe(root.dir === "rtl" ? (-by as 1 | -1) : by))
         : null;
     }
     this.renderRoot
       .querySelector('.layers [aria-pressed="true"]')
       ?.scrollIntoView({ inline: "center", block: "nearest" });
-    this.hold_focus();
+    this.holdFocus();
   }
 
   /** Each thing that opens over the others has the focus, once. */
-  private hold_focus(): void {
+  private holdFocus(): void {
     const { session } = this;
     const open =
       session.idle.presence.is === "asked"
@@ -96,11 +96,11 @@ export class StrataKiosk extends LitElement {
             : session.card
               ? ".card h2"
               : "";
-    if (open === this.focused_) return;
-    this.focused_ = open;
+    if (open === this._focused) return;
+    this._focused = open;
     this.renderRoot.querySelector<HTMLElement>(open || ".panel h1")?.focus({ preventScroll: true });
   }
-  private focused_ = "";
+  private _focused = "";
 
   override render(): TemplateResult {
     const { session } = this;
@@ -115,7 +115,7 @@ export class StrataKiosk extends LitElement {
         [show],
         (each) => each,
         () =>
-          html`<strata-kiosk-stage class=${session.resting ? "resting" : ""} .session=${session} .show=${show} .changes=${this.changes_} ?inert=${covered}></strata-kiosk-stage>`,
+          html`<strata-kiosk-stage class=${session.resting ? "resting" : ""} .session=${session} .show=${show} .changes=${this._changes} ?inert=${covered}></strata-kiosk-stage>`,
       )}
       ${show.away ? html`<p class="sign away" role="status">${words.stored}</p>` : nothing}
       ${!session.resting && session.index === 0 && show.untouched && show.drawn ? html`<p class="sign">${words.hint}</p>` : nothing}
@@ -170,7 +170,7 @@ export class StrataKiosk extends LitElement {
       session.named.length > 0
         ? html`<div class="row scrolls" role="group" aria-label=${words.records} ?inert=${behind}>
             <span class="label" aria-hidden="true">${words.records}</span>
-            ${session.named.map(({ table, key, name }) => html`<button class="record" @click=${() => void session.open_card(table, key)}>${name}</button>`)}
+            ${session.named.map(({ table, key, name }) => html`<button class="record" @click=${() => void session.openCard(table, key)}>${name}</button>`)}
           </div>`
         : nothing
     }
@@ -179,7 +179,7 @@ export class StrataKiosk extends LitElement {
           ? html`<div class="row scrolls layers" role="group" aria-label=${words.layers} ?inert=${behind}>
             ${session.choices.map(
               (choice) =>
-                html`<button aria-pressed=${String(choice === session.choice)} @click=${() => session.choose_layer(choice)}>${choice ? name_of_layer(choice, session.language) : words.as_kept}</button>`,
+                html`<button aria-pressed=${String(choice === session.choice)} @click=${() => session.chooseLayer(choice)}>${choice ? nameOfLayer(choice, session.language) : words.as_kept}</button>`,
             )}
           </div>`
           : nothing
@@ -189,17 +189,17 @@ export class StrataKiosk extends LitElement {
           ? html`<div class="row scrolls languages" role="group" aria-label=${words.languages} ?inert=${behind}>
             ${session.languages.map(
               (tag) =>
-                html`<button lang=${tag} aria-pressed=${String(tag === session.language)} @click=${() => session.choose_language(tag)}>
-                  ${name_on_button(tag)}
+                html`<button lang=${tag} aria-pressed=${String(tag === session.language)} @click=${() => session.chooseLanguage(tag)}>
+                  ${nameOnButton(tag)}
                 </button>`,
             )}
           </div>`
           : nothing
       }
       <div class="row steps" ?inert=${behind}>
-        <button class="previous" ?disabled=${index === 0} @click=${() => session.step(-1)}>${arrow_back}${words.previous}</button>
+        <button class="previous" ?disabled=${index === 0} @click=${() => session.step(-1)}>${arrowBack}${words.previous}</button>
         <span class="dots" aria-hidden="true">${stops.length > 1 && stops.length <= kMostDots ? stops.map((_, at) => html`<i class=${at === index ? "here" : ""}></i>`) : nothing}</span>
-        <button class="next main" ?disabled=${index === stops.length - 1} @click=${() => session.step(1)}>${words.next}${arrow_on}</button>
+        <button class="next main" ?disabled=${index === stops.length - 1} @click=${() => session.step(1)}>${words.next}${arrowOn}</button>
       </div>`;
   }
 
@@ -228,7 +228,7 @@ export class StrataKiosk extends LitElement {
           </div>`
           : nothing
       }
-      <div class="row ends"><button class="main close" @click=${() => session.close_card()}>${words.close}</button></div>
+      <div class="row ends"><button class="main close" @click=${() => session.closeCard()}>${words.close}</button></div>
     </section>`;
   }
 
@@ -246,10 +246,10 @@ export class StrataKiosk extends LitElement {
     const { session } = this;
     const { languages } = session;
     const [first, ...others] = [
-      ...new Set(languages.map((tag) => texts_in(tag, languages).begin)),
+      ...new Set(languages.map((tag) => textsIn(tag, languages).begin)),
     ].slice(0, kMostInvitations);
     const begin = (): void => {
-      fill_screen();
+      fillScreen();
       session.touched();
     };
     return html`<button class="begin" @click=${begin}>
@@ -262,12 +262,12 @@ export class StrataKiosk extends LitElement {
     const { session } = this;
     const { words } = session;
     const { presence } = session.idle;
-    const left_s = presence.is === "asked" ? presence.left_s : 0;
+    const leftS = presence.is === "asked" ? presence.leftS : 0;
     return html`<div class="over asking" @click=${() => session.touched()}>
       <section role="alertdialog" aria-modal="true" aria-labelledby="asked" aria-describedby="anew">
         <h2 id="asked">${words.still_there}</h2>
-        <span class="count" aria-hidden="true">${left_s}</span>
-        <p id="anew">${words.begins_anew(left_s)}</p>
+        <span class="count" aria-hidden="true">${leftS}</span>
+        <p id="anew">${words.begins_anew(leftS)}</p>
         <button class="main">${words.here}</button>
       </section>
     </div>`;

@@ -6,24 +6,24 @@ import { type Api, ApiError } from "../net/api";
 import type { SocketLike } from "../net/connection";
 import type { KioskSelf, Picked, Tour, View } from "../core/protocol.gen";
 import { AttractLoop } from "./attract";
-import { card_of, type Card } from "./cards";
+import { cardOf, type Card } from "./cards";
 import { IdleWatch } from "./idle";
-import { words_in } from "./languages";
+import { wordsIn } from "./languages";
 import { KioskLink } from "./link";
-import { layer_there, words_of_place, type TappedPlace } from "./place";
+import { layerThere, wordsOfPlace, type TappedPlace } from "./place";
 import { KioskShow } from "./show";
 import {
-  choices_of,
-  first_choice,
-  layers_shown,
-  seen_layers,
-  step_from,
-  stops_of,
+  choicesOf,
+  firstChoice,
+  layersShown,
+  seenLayers,
+  stepFrom,
+  stopsOf,
   type LayerChoice,
   type Stop,
 } from "./stops";
 import type { KioskStore } from "./store";
-import { texts_in, type KioskTexts } from "./texts";
+import { textsIn, type KioskTexts } from "./texts";
 
 export interface NamedRecord {
   table: string;
@@ -34,9 +34,9 @@ export interface NamedRecord {
 export interface SessionOptions {
   api: Api;
   secret: string;
-  store: Pick<KioskStore, "last_told" | "keep" | "forget">;
+  store: Pick<KioskStore, "lastTold" | "keep" | "forget">;
   reload: () => void;
-  make_socket?: (url: string, protocol: string) => SocketLike;
+  makeSocket?: (url: string, protocol: string) => SocketLike;
 }
 
 export class KioskSession {
@@ -55,57 +55,57 @@ export class KioskSession {
   card: Card | null = null;
   enlarged: Card["pictures"][number] | null = null;
   /** Where somebody tapped, while it is where they tapped. */
-  private place_: TappedPlace | null = null;
+  private _place: TappedPlace | null = null;
   show: KioskShow | null = null;
 
   readonly idle: IdleWatch;
-  private readonly attract_: AttractLoop;
-  private readonly link_: KioskLink;
-  private readonly listeners_ = new Set<() => void>();
-  private views_ = new Map<string, View>(); // by slug
-  private reading_ = 0; // the newest reading of views or records wins
-  private naming_ = 0;
-  private asked_card_ = 0;
+  private readonly _attract: AttractLoop;
+  private readonly _link: KioskLink;
+  private readonly _listeners = new Set<() => void>();
+  private _views = new Map<string, View>(); // by slug
+  private _reading = 0; // the newest reading of views or records wins
+  private _naming = 0;
+  private _askedCard = 0;
 
-  constructor(private readonly options_: SessionOptions) {
+  constructor(private readonly _options: SessionOptions) {
     const changed = (): void => this.changed();
     this.idle = new IdleWatch({
-      idle_s: () => this.self?.tour.idle_s ?? 60,
+      idleS: () => this.self?.tour.idle_s ?? 60,
       came: () => this.begin(),
       left: () => this.rest(),
       changed,
     });
-    this.attract_ = new AttractLoop({
+    this._attract = new AttractLoop({
       times: () => this.stop?.stop ?? null,
-      next: () => this.go_to(step_from(this.index, 1, Math.max(1, this.stops.length))),
+      next: () => this.goTo(stepFrom(this.index, 1, Math.max(1, this.stops.length))),
     });
-    this.link_ = new KioskLink(options_.api, options_.secret, {
-      told: (self) => void this.on_told(self),
-      missed: () => void this.on_missed(),
-      worthless: () => void this.on_worthless(),
-      reload: options_.reload,
+    this._link = new KioskLink(_options.api, _options.secret, {
+      told: (self) => void this.onTold(self),
+      missed: () => void this.onMissed(),
+      worthless: () => void this.onWorthless(),
+      reload: _options.reload,
     });
   }
 
   subscribe(listener: () => void): () => void {
-    this.listeners_.add(listener);
-    return () => this.listeners_.delete(listener);
+    this._listeners.add(listener);
+    return () => this._listeners.delete(listener);
   }
 
   open(): void {
-    this.link_.ask();
+    this._link.ask();
   }
   close(): void {
-    this.link_.stop();
+    this._link.stop();
     this.idle.stop();
-    this.attract_.stop();
+    this._attract.stop();
     this.show?.close();
-    this.listeners_.clear();
+    this._listeners.clear();
   }
   /** The network or the page is back. */
-  look_again(): void {
-    this.link_.ask();
-    this.show?.check_connection();
+  lookAgain(): void {
+    this._link.ask();
+    this.show?.checkConnection();
   }
 
   // ── what is seen
@@ -121,23 +121,23 @@ export class KioskSession {
     return this.tour?.languages ?? [];
   }
   get words(): KioskTexts {
-    return texts_in(this.language, this.languages);
+    return textsIn(this.language, this.languages);
   }
   get title(): string {
-    return words_in(this.stop?.stop.title, this.language, this.languages);
+    return wordsIn(this.stop?.stop.title, this.language, this.languages);
   }
   get text(): string {
-    return words_in(this.stop?.stop.text, this.language, this.languages);
+    return wordsIn(this.stop?.stop.text, this.language, this.languages);
   }
   /**
    * What the place that was tapped is called, and where it is on the stage; null: there is nothing
    * to tell of any.
    */
   get place(): { title: string; about: string; x: number; y: number } | null {
-    const { place_: place, show } = this;
+    const { _place: place, show } = this;
     const layer = place && show?.layers.find(({ id }) => id === place.layer);
     return layer
-      ? { ...words_of_place(layer, place.value, this.language), x: place.x, y: place.y }
+      ? { ...wordsOfPlace(layer, place.value, this.language), x: place.x, y: place.y }
       : null;
   }
   /** Nobody is there; the tour plays by itself. */
@@ -153,41 +153,41 @@ export class KioskSession {
   }
   step(by: 1 | -1): void {
     const to = this.index + by;
-    if (this.stops[to]) this.go_to(to);
+    if (this.stops[to]) this.goTo(to);
   }
-  choose_language(language: string): void {
+  chooseLanguage(language: string): void {
     if (!this.languages.includes(language) || language === this.language) return;
     this.language = language;
-    void this.name_records();
-    if (this.card) void this.open_card(this.card.table, this.card.key);
+    void this.nameRecords();
+    if (this.card) void this.openCard(this.card.table, this.card.key);
     this.changed();
   }
-  choose_layer(choice: LayerChoice): void {
+  chooseLayer(choice: LayerChoice): void {
     if (!this.stop || !this.choices.includes(choice)) return;
     this.choice = choice;
-    this.close_card();
-    this.show?.show_layers(this.overrides());
+    this.closeCard();
+    this.show?.showLayers(this.overrides());
     this.changed();
   }
   /** To the next of the layers; after the last one comes none. Not beneath a card. */
   swipe(by: 1 | -1): void {
     if (this.card) return;
     const next = this.choices[this.choices.indexOf(this.choice) + by];
-    if (next !== undefined && this.show && !this.show.away) this.choose_layer(next);
+    if (next !== undefined && this.show && !this.show.away) this.chooseLayer(next);
   }
-  async open_card(table: string, key: number): Promise<void> {
+  async openCard(table: string, key: number): Promise<void> {
     const { stop } = this;
-    const asked = ++this.asked_card_;
+    const asked = ++this._askedCard;
     if (!stop) return;
     try {
-      const card = await card_of(this.options_.api, {
+      const card = await cardOf(this._options.api, {
         table,
         key,
         stop: stop.stop,
         language: this.language,
         languages: this.languages,
       });
-      if (asked !== this.asked_card_ || this.resting) return;
+      if (asked !== this._askedCard || this.resting) return;
       this.card = card;
       this.changed();
     } catch (error) {
@@ -195,15 +195,15 @@ export class KioskSession {
       if (!(error instanceof ApiError)) throw error;
     }
   }
-  close_card(): void {
-    this.asked_card_ += 1;
+  closeCard(): void {
+    this._askedCard += 1;
     this.card = this.enlarged = null;
-    this.place_ = null;
+    this._place = null;
     this.changed();
   }
-  private forget_place(): void {
-    if (!this.place_) return;
-    this.place_ = null;
+  private forgetPlace(): void {
+    if (!this._place) return;
+    this._place = null;
     this.changed();
   }
   enlarge(picture: Card["pictures"][number] | null): void {
@@ -215,38 +215,38 @@ export class KioskSession {
   // ──────────────────────────────────────────────────────────────────────────────────────────────────────
 
   private begin(): void {
-    this.attract_.stop();
-    this.go_to(0);
+    this._attract.stop();
+    this.goTo(0);
   }
 
   /** As a visitor finds it: the first stop in the first language; then it plays by itself. */
   private rest(): void {
     this.language = this.languages[0] ?? "en";
-    this.go_to(0);
-    this.attract_.start();
+    this.goTo(0);
+    this._attract.start();
   }
 
-  private go_to(index: number): void {
+  private goTo(index: number): void {
     this.index = index;
-    this.close_card();
+    this.closeCard();
     const { stop, show } = this;
     if (!stop) return;
-    this.choices = choices_of(stop, show?.layers ?? []);
-    this.choice = first_choice(stop, this.choices);
-    const flight_s = stop.stop.transition === "cut" ? 0 : stop.stop.transition_s;
-    show?.go_to(stop.view, this.overrides(), flight_s);
-    void this.name_records();
+    this.choices = choicesOf(stop, show?.layers ?? []);
+    this.choice = firstChoice(stop, this.choices);
+    const flightS = stop.stop.transition === "cut" ? 0 : stop.stop.transition_s;
+    show?.goTo(stop.view, this.overrides(), flightS);
+    void this.nameRecords();
     this.changed();
   }
 
-  private overrides(): ReturnType<typeof layers_shown> {
+  private overrides(): ReturnType<typeof layersShown> {
     const { stop, show } = this;
-    return stop && show ? layers_shown(stop, show.layers, this.choices, this.choice) : [];
+    return stop && show ? layersShown(stop, show.layers, this.choices, this.choice) : [];
   }
 
   /** Of the stop, by what they are called; those that there are no more are left out. */
-  private async name_records(): Promise<void> {
-    const naming = ++this.naming_;
+  private async nameRecords(): Promise<void> {
+    const naming = ++this._naming;
     const { stop, language, languages } = this;
     const wanted =
       stop?.stop.records.flatMap(({ table, keys }) => keys.map((key) => ({ table, key }))) ?? [];
@@ -254,12 +254,12 @@ export class KioskSession {
     if (!stop || wanted.length === 0 || this.resting) return;
     const cards = await Promise.all(
       wanted.map((each) =>
-        card_of(this.options_.api, { ...each, stop: stop.stop, language, languages }).catch(
+        cardOf(this._options.api, { ...each, stop: stop.stop, language, languages }).catch(
           () => null,
         ),
       ),
     );
-    if (naming !== this.naming_) return;
+    if (naming !== this._naming) return;
     this.named = cards.flatMap((card) =>
       card ? [{ table: card.table, key: card.key, name: card.title }] : [],
     );
@@ -267,15 +267,15 @@ export class KioskSession {
   }
 
   /** Of a record its card, of a class or a number what it is, beside the place. */
-  private on_tapped(picked: Picked, { x, y }: { x: number; y: number }): void {
+  private onTapped(picked: Picked, { x, y }: { x: number; y: number }): void {
     const { show } = this;
     if (!show || this.resting) return;
-    const found = layer_there(seen_layers(show.layers, this.overrides()), picked);
-    this.close_card();
+    const found = layerThere(seenLayers(show.layers, this.overrides()), picked);
+    this.closeCard();
     if (found?.layer.table !== undefined)
-      void this.open_card(String(found.layer.table), found.value);
+      void this.openCard(String(found.layer.table), found.value);
     else if (found) {
-      this.place_ = { x, y, layer: found.layer.id, value: found.value };
+      this._place = { x, y, layer: found.layer.id, value: found.value };
       this.changed();
     }
   }
@@ -283,104 +283,104 @@ export class KioskSession {
   // ── the server
   // ────────────────────────────────────────────────────────────────────────────────────────────────────
 
-  private async on_told(self: KioskSelf): Promise<void> {
+  private async onTold(self: KioskSelf): Promise<void> {
     const before = this.self;
     this.self = self;
     if (!before || before.tour.version !== self.tour.version || before.tour.id !== self.tour.id)
-      await this.take_tour();
+      await this.takeTour();
     else if (this.show?.drawn) this.keep(); // what is seen comes first
-    if (!this.ready) await this.read_views();
+    if (!this.ready) await this.readViews();
     this.changed();
   }
 
   /** Away at the start: goes on with what was told last. */
-  private async on_missed(): Promise<void> {
-    if (this.self && !this.ready) await this.read_views();
+  private async onMissed(): Promise<void> {
+    if (this.self && !this.ready) await this.readViews();
     if (this.self) return;
-    const self = await this.options_.store.last_told();
+    const self = await this._options.store.lastTold();
     if (!self || this.self || this.worthless) return;
     this.self = self;
-    await this.take_tour();
+    await this.takeTour();
   }
 
-  private async on_worthless(): Promise<void> {
+  private async onWorthless(): Promise<void> {
     if (this.worthless) return;
     this.worthless = true;
     this.idle.stop();
-    this.attract_.stop();
+    this._attract.stop();
     this.show?.close();
     this.show = null;
     this.changed();
-    await this.options_.store.forget();
+    await this._options.store.forget();
   }
 
-  private async take_tour(): Promise<void> {
+  private async takeTour(): Promise<void> {
     const { self } = this;
     if (!self) return;
     if (!this.languages.includes(this.language) || this.resting)
       this.language = this.languages[0] ?? "en";
-    if (this.show?.model_ref !== self.model) {
+    if (this.show?.modelRef !== self.model) {
       this.show?.close();
-      this.show = this.make_show(self.model);
+      this.show = this.makeShow(self.model);
       this.show.open();
     }
-    await this.read_views();
+    await this.readViews();
   }
 
-  private make_show(model: string): KioskShow {
+  private makeShow(model: string): KioskShow {
     return new KioskShow(
       model,
       {
-        learned: (what) => (what === "views" ? void this.read_views() : this.show_again()),
-        tapped: (picked, at) => this.on_tapped(picked, at),
-        moved: () => this.forget_place(),
+        learned: (what) => (what === "views" ? void this.readViews() : this.showAgain()),
+        tapped: (picked, at) => this.onTapped(picked, at),
+        moved: () => this.forgetPlace(),
         changed: () => this.changed(),
-        lost: () => this.link_.ask(), // which knows why
+        lost: () => this._link.ask(), // which knows why
       },
-      this.options_.make_socket,
+      this._options.makeSocket,
     );
   }
 
-  private async read_views(): Promise<void> {
+  private async readViews(): Promise<void> {
     const { self } = this;
     if (!self) return;
-    const reading = ++this.reading_;
+    const reading = ++this._reading;
     const slugs = [...new Set(self.tour.stops.flatMap(({ view }) => view ?? []))];
-    const views = await Promise.all(slugs.map((slug) => this.read_view(self.model, slug)));
-    if (reading !== this.reading_ || this.worthless) return;
+    const views = await Promise.all(slugs.map((slug) => this.readView(self.model, slug)));
+    if (reading !== this._reading || this.worthless) return;
     if (!this.ready && views.includes(undefined)) return; // asked again when the server is
-    this.views_ = new Map(
+    this._views = new Map(
       slugs.flatMap((slug, place): [string, View][] =>
         [views[place] ?? []].flat().map((view) => [slug, view]),
       ),
     );
-    const was_ready = this.ready;
-    this.stops = stops_of(self.tour, this.views_);
+    const wasReady = this.ready;
+    this.stops = stopsOf(self.tour, this._views);
     this.ready = true;
     this.index = Math.min(this.index, Math.max(0, this.stops.length - 1));
-    if (!was_ready) this.rest();
-    else this.show_again();
+    if (!wasReady) this.rest();
+    else this.showAgain();
   }
 
   /** Null: it is gone. Where the server is away, as it was known, or undefined. */
-  private async read_view(model: string, slug: string): Promise<View | null | undefined> {
+  private async readView(model: string, slug: string): Promise<View | null | undefined> {
     try {
-      return await this.options_.api.view(model, slug);
+      return await this._options.api.view(model, slug);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      return error.status === 404 ? null : this.views_.get(slug);
+      return error.status === 404 ? null : this._views.get(slug);
     }
   }
 
   /** The same stop, with what is known of the model or the tour now. */
-  private show_again(): void {
+  private showAgain(): void {
     const { stop, show, choice } = this;
     if (!stop || !show) return void this.changed();
-    this.choices = choices_of(stop, show.layers);
+    this.choices = choicesOf(stop, show.layers);
     this.choice =
-      this.choices.find((each) => each?.id === choice?.id) ?? first_choice(stop, this.choices);
-    show.go_on(stop.view, this.overrides());
-    void this.name_records();
+      this.choices.find((each) => each?.id === choice?.id) ?? firstChoice(stop, this.choices);
+    show.goOn(stop.view, this.overrides());
+    void this.nameRecords();
     this.changed();
   }
 
@@ -391,12 +391,12 @@ export class KioskSession {
       self.id,
       self.tour.id,
       self.tour.version,
-      [...this.views_.values()].map(({ id, version }) => [id, version]),
+      [...this._views.values()].map(({ id, version }) => [id, version]),
     ]);
-    void this.options_.store.keep(self, state);
+    void this._options.store.keep(self, state);
   }
 
   private changed(): void {
-    for (const listener of this.listeners_) listener();
+    for (const listener of this._listeners) listener();
   }
 }

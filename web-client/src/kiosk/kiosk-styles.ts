@@ -4,7 +4,7 @@
 
 import { css } from "lit";
 
-export const kiosk_styles = css`
+export const kioskStyles = css`
   :host {
     --target: 60px;
     --gap: clamp(10px, 1.3vmin, 20px);

@@ -3,7 +3,7 @@
 import type { TourWords } from "../core/protocol.gen";
 
 /** In that language, or else in the first of the tour that has it. */
-export function words_in(
+export function wordsIn(
   words: TourWords | undefined,
   language: string,
   languages: readonly string[],
@@ -17,5 +17,5 @@ export function words_in(
 
 const kRightToLeft = ["ar", "dv", "fa", "he", "ku", "ps", "sd", "ug", "ur", "yi"];
 
-export const direction_of_language = (tag: string): "ltr" | "rtl" =>
+export const directionOfLanguage = (tag: string): "ltr" | "rtl" =>
   kRightToLeft.includes(tag.toLowerCase().split("-")[0]!) ? "rtl" : "ltr";

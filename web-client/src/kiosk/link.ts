@@ -6,13 +6,13 @@
 import { ApiError } from "../net/api";
 import type { KioskSelf } from "../core/protocol.gen";
 
-const kHeartbeat_s = 30;
-const kFirstRetry_s = 1;
-const kWorthless_s = 300;
+const kHeartbeatS = 30;
+const kFirstRetryS = 1;
+const kWorthlessS = 300;
 
 export interface LinkServer {
-  sign_in_kiosk(link: string): Promise<KioskSelf>;
-  kiosk_self(): Promise<KioskSelf>;
+  signInKiosk(link: string): Promise<KioskSelf>;
+  kioskSelf(): Promise<KioskSelf>;
 }
 
 export interface LinkHost {
@@ -28,64 +28,64 @@ export interface LinkHost {
 }
 
 export class KioskLink {
-  private signed_in_ = false;
-  private ended_ = false;
-  private worthless_ = false;
-  private asking_ = false;
-  private failures_ = 0;
-  private timer_: ReturnType<typeof setTimeout> | null = null;
+  private _signedIn = false;
+  private _ended = false;
+  private _worthless = false;
+  private _asking = false;
+  private _failures = 0;
+  private _timer: ReturnType<typeof setTimeout> | null = null;
 
   constructor(
-    private readonly server_: LinkServer,
-    private readonly secret_: string,
-    private readonly host_: LinkHost,
+    private readonly _server: LinkServer,
+    private readonly _secret: string,
+    private readonly _host: LinkHost,
   ) {}
 
   /** Now, whenever the next time would have been. */
   ask(): void {
-    if (this.ended_ || this.asking_) return;
-    if (this.timer_) clearTimeout(this.timer_);
-    this.timer_ = null;
+    if (this._ended || this._asking) return;
+    if (this._timer) clearTimeout(this._timer);
+    this._timer = null;
     void this.turn();
   }
 
   stop(): void {
-    this.ended_ = true;
-    if (this.timer_) clearTimeout(this.timer_);
-    this.timer_ = null;
+    this._ended = true;
+    if (this._timer) clearTimeout(this._timer);
+    this._timer = null;
   }
 
   private async turn(): Promise<void> {
-    this.asking_ = true;
+    this._asking = true;
     try {
-      await this.ask_once();
-      this.failures_ = 0;
+      await this.askOnce();
+      this._failures = 0;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.failures_ += 1;
-      if (!this.ended_) this.host_.missed();
+      this._failures += 1;
+      if (!this._ended) this._host.missed();
     } finally {
-      this.asking_ = false;
+      this._asking = false;
     }
-    if (this.ended_) return;
-    const wait_s = this.worthless_
-      ? kWorthless_s
-      : this.failures_ === 0
-        ? kHeartbeat_s
-        : Math.min(kHeartbeat_s, kFirstRetry_s * 2 ** (this.failures_ - 1));
-    this.timer_ = setTimeout(() => void this.turn(), wait_s * 1000);
+    if (this._ended) return;
+    const waitS = this._worthless
+      ? kWorthlessS
+      : this._failures === 0
+        ? kHeartbeatS
+        : Math.min(kHeartbeatS, kFirstRetryS * 2 ** (this._failures - 1));
+    this._timer = setTimeout(() => void this.turn(), waitS * 1000);
   }
 
-  private async ask_once(): Promise<void> {
-    const self = this.signed_in_ ? await this.unless_forgotten(this.server_.kiosk_self()) : null;
+  private async askOnce(): Promise<void> {
+    const self = this._signedIn ? await this.unlessForgotten(this._server.kioskSelf()) : null;
     if (self?.wants_reload) {
       this.stop();
-      this.host_.reload();
-    } else this.take(self ?? (await this.sign_in()));
+      this._host.reload();
+    } else this.take(self ?? (await this.signIn()));
   }
 
   /** Null: the server no longer knows this browser, which may only have lost its cookie. */
-  private async unless_forgotten(asked: Promise<KioskSelf>): Promise<KioskSelf | null> {
+  private async unlessForgotten(asked: Promise<KioskSelf>): Promise<KioskSelf | null> {
     try {
       return await asked;
     } catch (error) {
@@ -94,11 +94,11 @@ export class KioskLink {
     }
   }
 
-  private async sign_in(): Promise<KioskSelf | null> {
-    this.signed_in_ = false;
+  private async signIn(): Promise<KioskSelf | null> {
+    this._signedIn = false;
     try {
-      const self = await this.server_.sign_in_kiosk(this.secret_);
-      this.signed_in_ = true;
+      const self = await this._server.signInKiosk(this._secret);
+      this._signedIn = true;
       return self;
     } catch (error) {
       // 404: its tour is gone. 422: no such secret could have been given.
@@ -108,13 +108,13 @@ export class KioskLink {
   }
 
   private take(self: KioskSelf | null): void {
-    if (this.ended_) return;
+    if (this._ended) return;
     if (!self) {
-      this.worthless_ = true;
-      this.host_.worthless();
-    } else if (this.worthless_) {
+      this._worthless = true;
+      this._host.worthless();
+    } else if (this._worthless) {
       this.stop();
-      this.host_.reload();
-    } else this.host_.told(self);
+      this._host.reload();
+    } else this._host.told(self);
   }
 }

@@ -1,20 +1,20 @@
 // The page at /kiosk/{secret}. Started by the page's own main.ts, of which it loads nothing else.
 
 import { Api } from "../net/api";
-import { say_own_problems_in } from "../core/problems";
-import { kiosk_fetch } from "./as-kiosk";
-import { keep_on_page, stay_awake } from "./guard";
+import { sayOwnProblemsIn } from "../core/problems";
+import { kioskFetch } from "./as-kiosk";
+import { keepOnPage, stayAwake } from "./guard";
 import "./kiosk-page";
 import { KioskSession } from "./kiosk-session";
-import { KioskStore, open_browser_shelf, start_worker } from "./store";
+import { KioskStore, openBrowserShelf, startWorker } from "./store";
 
 /** Behind /kiosk/; null: there is none. */
-export const secret_of = (path: string): string | null =>
+export const secretOf = (path: string): string | null =>
   /^\/kiosk\/([^/]{1,200})\/?$/.exec(path)?.[1] ?? null;
 
-export function start_kiosk(): void {
+export function startKiosk(): void {
   // Visitors are told of no call that failed.
-  say_own_problems_in({
+  sayOwnProblemsIn({
     unreachable: ["The server is away", ""],
     statuses: {},
     other_status: (status) => `Status ${status}`,
@@ -22,23 +22,23 @@ export function start_kiosk(): void {
     unreadable: "Not readable",
     unreadable_detail: (what) => what,
   });
-  const secret = secret_of(location.pathname) ?? "";
+  const secret = secretOf(location.pathname) ?? "";
   const session = new KioskSession({
-    api: new Api(kiosk_fetch),
+    api: new Api(kioskFetch),
     secret,
-    store: new KioskStore({ open_shelf: open_browser_shelf, secret }),
+    store: new KioskStore({ openShelf: openBrowserShelf, secret }),
     reload: () => location.reload(),
   });
   const page = document.createElement("strata-kiosk");
   page.session = session;
   document.querySelector("strata-app")?.replaceWith(page);
-  keep_on_page();
-  void stay_awake();
-  void start_worker();
+  keepOnPage();
+  void stayAwake();
+  void startWorker();
   document.addEventListener("visibilitychange", () => {
-    void stay_awake();
-    if (document.visibilityState === "visible") session.look_again();
+    void stayAwake();
+    if (document.visibilityState === "visible") session.lookAgain();
   });
-  addEventListener("online", () => session.look_again());
+  addEventListener("online", () => session.lookAgain());
   session.open();
 }

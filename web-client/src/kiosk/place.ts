@@ -1,8 +1,8 @@
 // What lies where a visitor tapped: of a record its card tells more; of everything else the class,
 // or what was measured, is named beside the place.
 
-import { label_of } from "../domain/cells";
-import { format_number } from "../domain/measure";
+import { labelOf } from "../domain/cells";
+import { formatNumber } from "../domain/measure";
 import type { Picked } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
 
@@ -18,7 +18,7 @@ export interface TappedPlace {
  * The topmost of the layers that holds a record there, or else the topmost that holds anything.
  * Null: none is painted there.
  */
-export function layer_there(
+export function layerThere(
   seen: readonly Layer[],
   { values }: Pick<Picked, "values">,
 ): { layer: Layer; value: number } | null {
@@ -30,19 +30,19 @@ export function layer_there(
 }
 
 /** What a layer is called in the visitor's language, or as its makers call it. */
-export const name_of_layer = (layer: Pick<Layer, "name" | "labels">, language: string): string =>
-  label_of(layer, [language]);
+export const nameOfLayer = (layer: Pick<Layer, "name" | "labels">, language: string): string =>
+  labelOf(layer, [language]);
 
 /** What the place is, in words: the class, or a number with its unit; and what that is about. */
-export function words_of_place(
+export function wordsOfPlace(
   layer: Layer,
   value: number,
   language: string,
 ): { title: string; about: string } {
-  const about = name_of_layer(layer, language);
+  const about = nameOfLayer(layer, language);
   const { mode, points } = layer.palette;
   if (mode !== "categorical")
-    return { title: `${format_number(value, 3)}${layer.unit ? ` ${layer.unit}` : ""}`, about };
+    return { title: `${formatNumber(value, 3)}${layer.unit ? ` ${layer.unit}` : ""}`, about };
   const title = points.find(({ at }) => at === value)?.label ?? "";
   return title === "" || title === about ? { title: title || about, about: "" } : { title, about };
 }

@@ -8,7 +8,7 @@ import { FrameCanvas } from "../net/frame-canvas";
 import type { FrameMessage } from "../net/frame-header";
 import { StageInput } from "../ui/input";
 import type { View } from "../core/protocol.gen";
-import { picture_of_view } from "./as-kiosk";
+import { pictureOfView } from "./as-kiosk";
 import type { KioskSession } from "./kiosk-session";
 import type { KioskShow } from "./show";
 
@@ -23,12 +23,12 @@ export class StrataKioskStage extends LitElement {
   @property({ attribute: false }) show!: KioskShow;
   // counted up by who holds it: the session draws by being told
   @property({ type: Number }) changes = 0;
-  @query("canvas") private canvas_!: HTMLCanvasElement;
-  @query(".surface") private surface_!: HTMLElement;
+  @query("canvas") private _canvas!: HTMLCanvasElement;
+  @query(".surface") private _surface!: HTMLElement;
 
-  private input_: StageInput | null = null;
-  private frames_: FrameCanvas | null = null;
-  private observer_: ResizeObserver | null = null;
+  private _input: StageInput | null = null;
+  private _frames: FrameCanvas | null = null;
+  private _observer: ResizeObserver | null = null;
 
   static override styles = css`
     :host {
@@ -91,30 +91,30 @@ export class StrataKioskStage extends LitElement {
 
   override firstUpdated(): void {
     const { show } = this;
-    this.frames_ = new FrameCanvas(this.canvas_, {
-      drawn: (part) => this.on_drawn(part),
+    this._frames = new FrameCanvas(this._canvas, {
+      drawn: (part) => this.onDrawn(part),
       failed: (reason) => console.info("a picture could not be drawn:", reason),
     });
-    show.on_frame = (part) => this.frames_?.push(part);
-    show.on_reset_frames = () => this.frames_?.reset();
-    this.input_ = new StageInput(this.surface_, show.gestures, () => show.view.scale);
-    this.observer_ = new ResizeObserver(() => this.measure());
-    this.observer_.observe(this);
+    show.onFrame = (part) => this._frames?.push(part);
+    show.onResetFrames = () => this._frames?.reset();
+    this._input = new StageInput(this._surface, show.gestures, () => show.view.scale);
+    this._observer = new ResizeObserver(() => this.measure());
+    this._observer.observe(this);
     this.measure();
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.observer_?.disconnect();
-    this.input_?.detach();
-    this.show.on_frame = this.show.on_reset_frames = () => {};
+    this._observer?.disconnect();
+    this._input?.detach();
+    this.show.onFrame = this.show.onResetFrames = () => {};
   }
 
   /** What the canvas shows is told in its data attributes, for tests and tools. */
-  private on_drawn(part: FrameMessage): void {
-    this.show.frame_drawn(part);
-    const { dataset } = this.canvas_;
-    dataset["frames"] = String(this.show.view.frames_drawn);
+  private onDrawn(part: FrameMessage): void {
+    this.show.frameDrawn(part);
+    const { dataset } = this._canvas;
+    dataset["frames"] = String(this.show.view.framesDrawn);
     dataset["still"] = String(part.header.still);
   }
 
@@ -122,10 +122,10 @@ export class StrataKioskStage extends LitElement {
     const { clientWidth: width, clientHeight: height } = this;
     if (width < 2 || height < 2) return;
     const most = Math.sqrt(kMostWindowPixels / (width * height));
-    this.show.set_viewport(width, height, Math.min(window.devicePixelRatio || 1, kMostScale, most));
+    this.show.setViewport(width, height, Math.min(window.devicePixelRatio || 1, kMostScale, most));
   }
 
-  private readonly on_key = (event: KeyboardEvent): void => {
+  private readonly onKey = (event: KeyboardEvent): void => {
     const { orbit, zoom } = this.show.gestures;
     const { width, height } = this.show.view.camera;
     const moves: Record<string, () => void> = {
@@ -148,15 +148,15 @@ export class StrataKioskStage extends LitElement {
     const live = show.drawn && !show.away;
     // Behind the live picture it would only take memory; the browser has it at hand when it is
     // wanted.
-    return html`${view && !live ? this.stored_picture(view) : nothing}
-      <div class="surface" tabindex="0" role="application" aria-label=${session.words.stage} @keydown=${this.on_key}>
+    return html`${view && !live ? this.storedPicture(view) : nothing}
+      <div class="surface" tabindex="0" role="application" aria-label=${session.words.stage} @keydown=${this.onKey}>
         <canvas class=${live ? "live" : ""} width="2" height="2"></canvas>
       </div>`;
   }
 
-  private stored_picture({ slug, camera }: View): TemplateResult {
+  private storedPicture({ slug, camera }: View): TemplateResult {
     const shape = camera.width / camera.height;
     const size = { "aspect-ratio": shape, width: `min(100cqw, calc(100cqh * ${shape}))` };
-    return html`<img src=${picture_of_view(this.show.model_ref, slug)} alt="" ${styled(size)} />`;
+    return html`<img src=${pictureOfView(this.show.modelRef, slug)} alt="" ${styled(size)} />`;
   }
 }

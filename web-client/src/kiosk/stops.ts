@@ -3,7 +3,7 @@
 
 import type { LayerOverride, Tour, TourStop, View } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
-import { layers_of_view } from "../domain/views";
+import { layersOfView } from "../domain/views";
 
 /** A stop with its view. */
 export interface Stop {
@@ -12,13 +12,13 @@ export interface Stop {
 }
 
 /** Those whose views there are: the others are passed over. `views` by slug. */
-export const stops_of = (tour: Pick<Tour, "stops">, views: ReadonlyMap<string, View>): Stop[] =>
+export const stopsOf = (tour: Pick<Tour, "stops">, views: ReadonlyMap<string, View>): Stop[] =>
   tour.stops.flatMap((stop) => {
     const view = stop.view === undefined ? undefined : views.get(stop.view);
     return view ? [{ stop, view }] : [];
   });
 
-export const step_from = (index: number, by: number, count: number): number =>
+export const stepFrom = (index: number, by: number, count: number): number =>
   (((index + by) % count) + count) % count;
 
 /** One of the ways in which a stop shows its layers; null: as its view was kept. */
@@ -28,34 +28,34 @@ export type LayerChoice = Layer | null;
  * The layers of the stop that there are, and before them the view as it was kept, unless that shows
  * just one of them, too.
  */
-export function choices_of({ stop, view }: Stop, layers: readonly Layer[]): LayerChoice[] {
+export function choicesOf({ stop, view }: Stop, layers: readonly Layer[]): LayerChoice[] {
   const offered = stop.layers.flatMap((slug) => layers.find((layer) => layer.slug === slug) ?? []);
   if (offered.length === 0) return [];
-  return shown_at_first({ stop, view }, offered).length === 1 ? offered : [null, ...offered];
+  return shownAtFirst({ stop, view }, offered).length === 1 ? offered : [null, ...offered];
 }
 
 /** Which of the choices is seen on arrival. */
-export const first_choice = (stop: Stop, choices: readonly LayerChoice[]): LayerChoice =>
+export const firstChoice = (stop: Stop, choices: readonly LayerChoice[]): LayerChoice =>
   choices.includes(null)
     ? null
-    : (shown_at_first(
+    : (shownAtFirst(
         stop,
         choices.filter((choice) => choice !== null),
       )[0] ?? null);
 
-function shown_at_first({ view }: Stop, offered: readonly Layer[]): Layer[] {
-  const shown = layers_of_view(view, offered);
+function shownAtFirst({ view }: Stop, offered: readonly Layer[]): Layer[] {
+  const shown = layersOfView(view, offered);
   return offered.filter((layer) => shown.get(layer.id)?.visible ?? layer.visible);
 }
 
 /** As the view has the layers, but of those that are chosen among only the chosen one. */
-export function layers_shown(
+export function layersShown(
   stop: Stop,
   layers: readonly Layer[],
   choices: readonly LayerChoice[],
   chosen: LayerChoice,
 ): LayerOverride[] {
-  const shown = layers_of_view(stop.view, layers);
+  const shown = layersOfView(stop.view, layers);
   if (chosen)
     for (const layer of choices)
       if (layer) shown.set(layer.id, { ...shown.get(layer.id), visible: layer.id === chosen.id });
@@ -63,10 +63,7 @@ export function layers_shown(
 }
 
 /** The layers that are seen then, the topmost first. */
-export function seen_layers(
-  layers: readonly Layer[],
-  overrides: readonly LayerOverride[],
-): Layer[] {
+export function seenLayers(layers: readonly Layer[], overrides: readonly LayerOverride[]): Layer[] {
   const visible = new Map(overrides.map((each) => [each.layer, each.visible]));
   return [...layers]
     .sort((a, b) => b.order - a.order || b.id - a.id)

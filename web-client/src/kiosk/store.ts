@@ -4,8 +4,8 @@
 
 import { Api, ApiError, type Fetch } from "../net/api";
 import type { KioskSelf } from "../core/protocol.gen";
-import { as_kiosk, patient_fetch, picture_of_view } from "./as-kiosk";
-import { card_of } from "./cards";
+import { asKiosk, patientFetch, pictureOfView } from "./as-kiosk";
+import { cardOf } from "./cards";
 
 /** As the browser has it: of CacheStorage and Cache what is used here. */
 export interface StoreShelf {
@@ -17,7 +17,7 @@ export interface StoreShelf {
 }
 
 export interface StoreOptions {
-  open_shelf: () => Promise<StoreShelf | null>;
+  openShelf: () => Promise<StoreShelf | null>;
   secret: string;
   fetch?: Fetch;
   /** Of the page and what it has loaded. */
@@ -27,21 +27,21 @@ export interface StoreOptions {
 const kCache = "strata-kiosk";
 /** Under which the page is stored, whatever its secret; what the worker has a say over. */
 const kPageKey = "/kiosk/";
-const kAgain_ms = 6 * 3600_000; // records may have changed without a new version of the tour
+const kAgainMs = 6 * 3600_000; // records may have changed without a new version of the tour
 
 export class KioskStore {
-  private kept_ = ""; // what the last complete keeping was of
-  private kept_ms_ = 0;
-  private keeping_ = false;
+  private _kept = ""; // what the last complete keeping was of
+  private _keptMs = 0;
+  private _keeping = false;
 
-  constructor(private readonly options_: StoreOptions) {}
+  constructor(private readonly _options: StoreOptions) {}
 
   /**
    * What the server told of this link last; null where that is not known, or the link is over by
    * now.
    */
-  async last_told(now: Date = new Date()): Promise<KioskSelf | null> {
-    const found = await (await this.options_.open_shelf())?.match(await this.self_key());
+  async lastTold(now: Date = new Date()): Promise<KioskSelf | null> {
+    const found = await (await this._options.openShelf())?.match(await this.selfKey());
     if (!found) return null;
     const self = (await found.json()) as KioskSelf;
     return self.expires && new Date(self.expires) <= now ? null : self;
@@ -49,8 +49,8 @@ export class KioskStore {
 
   /** The link is worthless: nothing of it stays. */
   async forget(): Promise<void> {
-    this.kept_ = "";
-    const shelf = await this.options_.open_shelf();
+    this._kept = "";
+    const shelf = await this._options.openShelf();
     for (const key of (await shelf?.keys()) ?? []) await shelf?.delete(key);
   }
 
@@ -60,21 +60,21 @@ export class KioskStore {
    * with the next call.
    */
   async keep(self: KioskSelf, state: string): Promise<void> {
-    const now_ms = performance.now();
-    if (this.keeping_ || (state === this.kept_ && now_ms - this.kept_ms_ < kAgain_ms)) return;
-    this.keeping_ = true;
+    const nowMs = performance.now();
+    if (this._keeping || (state === this._kept && nowMs - this._keptMs < kAgainMs)) return;
+    this._keeping = true;
     try {
-      const shelf = await this.options_.open_shelf();
-      if (shelf && (await this.keep_on(shelf, self))) {
-        this.kept_ = state;
-        this.kept_ms_ = now_ms;
+      const shelf = await this._options.openShelf();
+      if (shelf && (await this.keepOn(shelf, self))) {
+        this._kept = state;
+        this._keptMs = nowMs;
       }
     } finally {
-      this.keeping_ = false;
+      this._keeping = false;
     }
   }
 
-  private async keep_on(shelf: StoreShelf, self: KioskSelf): Promise<boolean> {
+  private async keepOn(shelf: StoreShelf, self: KioskSelf): Promise<boolean> {
     const kept = new Set<string>();
     let complete = true;
     const put = async (key: string, ask: () => Promise<Response>): Promise<void> => {
@@ -90,12 +90,12 @@ export class KioskStore {
         complete = false;
       }
     };
-    const get = this.options_.fetch ?? patient_fetch;
-    await put(await this.self_key(), async () => new Response(JSON.stringify(self)));
+    const get = this._options.fetch ?? patientFetch;
+    await put(await this.selfKey(), async () => new Response(JSON.stringify(self)));
     await put(kPageKey, () => get(kPageKey));
-    for (const file of (this.options_.files ?? files_of_page)()) await put(file, () => get(file));
+    for (const file of (this._options.files ?? filesOfPage)()) await put(file, () => get(file));
     try {
-      await keep_tour(self, get, put);
+      await keepTour(self, get, put);
     } catch {
       complete = false;
     }
@@ -104,10 +104,10 @@ export class KioskStore {
   }
 
   /** Not the secret itself: it is nobody's who reads the store. */
-  private async self_key(): Promise<string> {
+  private async selfKey(): Promise<string> {
     const digest = await crypto.subtle.digest(
       "SHA-256",
-      new TextEncoder().encode(this.options_.secret),
+      new TextEncoder().encode(this._options.secret),
     );
     return `/kiosk/told/${[...new Uint8Array(digest)].map((byte) => byte.toString(16).padStart(2, "0")).join("")}`;
   }
@@ -116,22 +116,22 @@ export class KioskStore {
 type Put = (key: string, ask: () => Promise<Response>) => Promise<void>;
 
 /** Asks for all that visitors may come to see at the stops, and puts each answer away. */
-async function keep_tour({ model, tour }: KioskSelf, get: Fetch, put: Put): Promise<void> {
+async function keepTour({ model, tour }: KioskSelf, get: Fetch, put: Put): Promise<void> {
   const api = new Api(async (address, init) => {
-    const response = await get(as_kiosk(address), init);
+    const response = await get(asKiosk(address), init);
     const copy = response.clone();
-    await put(as_kiosk(address), async () => copy);
+    await put(asKiosk(address), async () => copy);
     return response;
   });
   const picture = (address: string): Promise<void> => put(address, () => get(address));
   for (const view of new Set(tour.stops.flatMap((stop) => stop.view ?? []))) {
-    await unless_gone(api.view(model, view));
-    await picture(picture_of_view(model, view));
+    await unlessGone(api.view(model, view));
+    await picture(pictureOfView(model, view));
   }
   for (const stop of tour.stops)
     for (const { table, keys } of stop.records)
       for (const key of keys) {
-        const card = await card_of(api, {
+        const card = await cardOf(api, {
           table,
           key,
           stop,
@@ -145,7 +145,7 @@ async function keep_tour({ model, tour }: KioskSelf, get: Fetch, put: Put): Prom
       }
 }
 
-async function unless_gone(asked: Promise<unknown>): Promise<void> {
+async function unlessGone(asked: Promise<unknown>): Promise<void> {
   try {
     await asked;
   } catch (error) {
@@ -154,7 +154,7 @@ async function unless_gone(asked: Promise<unknown>): Promise<void> {
 }
 
 /** What the page has loaded under names that never change, and its icon. */
-function files_of_page(): string[] {
+function filesOfPage(): string[] {
   const loaded = performance.getEntriesByType("resource").map(({ name }) => new URL(name));
   const own = loaded.filter(
     ({ origin, pathname }) => origin === location.origin && pathname.startsWith("/assets/"),
@@ -162,7 +162,7 @@ function files_of_page(): string[] {
   return [...new Set([...own.map(({ pathname }) => pathname), "/favicon.svg"])];
 }
 
-export async function open_browser_shelf(): Promise<StoreShelf | null> {
+export async function openBrowserShelf(): Promise<StoreShelf | null> {
   if (!("caches" in globalThis) || !("subtle" in crypto)) return null;
   const cache = await caches.open(kCache);
   return {
@@ -180,7 +180,7 @@ export async function open_browser_shelf(): Promise<StoreShelf | null> {
  * The worker that answers from the store. Without one the page goes on all the same, as long as
  * nobody loads it anew.
  */
-export async function start_worker(): Promise<void> {
+export async function startWorker(): Promise<void> {
   try {
     await navigator.serviceWorker?.register("/kiosk-worker.js", { scope: kPageKey });
   } catch (error) {

@@ -6,11 +6,11 @@ const kReach = 48; // CSS pixels
  * Tells +1 for what lies to the right, which is drawn in by going left; −1 for the other side.
  * Returns how to stop.
  */
-export function follow_swipes(element: HTMLElement, swiped: (by: 1 | -1) => void): () => void {
+export function followSwipes(element: HTMLElement, swiped: (by: 1 | -1) => void): () => void {
   let start: { pointer: number; x: number; y: number } | null = null;
-  let just_swiped = false;
+  let justSwiped = false;
   const down = (event: PointerEvent): void => {
-    just_swiped = false;
+    justSwiped = false;
     start = event.isPrimary
       ? { pointer: event.pointerId, x: event.clientX, y: event.clientY }
       : null;
@@ -20,14 +20,14 @@ export function follow_swipes(element: HTMLElement, swiped: (by: 1 | -1) => void
     const [dx, dy] = [event.clientX - start.x, event.clientY - start.y];
     start = null;
     if (Math.abs(dx) < kReach || Math.abs(dx) < 1.5 * Math.abs(dy)) return;
-    just_swiped = true;
+    justSwiped = true;
     swiped(dx < 0 ? 1 : -1);
   };
   const cancel = (): void => void (start = null);
   /** It was no tap on the button beneath. */
   const click = (event: Event): void => {
-    if (just_swiped) event.stopPropagation();
-    just_swiped = false;
+    if (justSwiped) event.stopPropagation();
+    justSwiped = false;
   };
   element.addEventListener("pointerdown", down);
   addEventListener("pointerup", up);

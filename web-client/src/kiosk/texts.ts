@@ -1,7 +1,7 @@
 // The words of the kiosk's own buttons and signs. What the stops say comes with the tour, in
 // languages of which this page may have no words of its own.
 
-import { page_language, type PageLanguage } from "../core/locale";
+import { pageLanguage, type PageLanguage } from "../core/locale";
 
 const en = {
   begin: "Touch to begin",
@@ -103,5 +103,5 @@ const all: Record<PageLanguage, KioskTexts> = { en, de, es };
  * In the language of the tour that was chosen, or else in the first of the tour's that this page is
  * written in, or English.
  */
-export const texts_in = (language: string, languages: readonly string[]): KioskTexts =>
-  all[page_language(language, languages)];
+export const textsIn = (language: string, languages: readonly string[]): KioskTexts =>
+  all[pageLanguage(language, languages)];

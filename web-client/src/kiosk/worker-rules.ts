@@ -18,13 +18,13 @@ export function answered(
   if (mode === "navigate") return url.startsWith(own) ? "page" : "not";
   if (pathname.startsWith("/assets/") || pathname === "/favicon.svg") return "file";
   // Whether the link is still good only the server knows.
-  const is_data =
+  const isData =
     pathname.startsWith("/api/v1/") &&
     pathname !== "/api/v1/kiosk" &&
     searchParams.get("as") === "kiosk";
-  return is_data ? "data" : "not";
+  return isData ? "data" : "not";
 }
 
 /** The answer is none of the server's, but of what stands before it. */
-export const says_away = (status: number): boolean =>
+export const saysAway = (status: number): boolean =>
   status === 502 || status === 503 || status === 504;

@@ -1,7 +1,7 @@
 // The service worker of the kiosks' page: while the server is away it answers with what the page
 // has stored. It has no say over any other page.
 
-import { answered, says_away } from "./worker-rules";
+import { answered, saysAway } from "./worker-rules";
 
 interface WorkerEvent extends Event {
   waitUntil(done: Promise<unknown>): void;
@@ -19,7 +19,7 @@ interface WorkerScope {
 }
 const scope = globalThis as unknown as WorkerScope;
 
-const kPatience_ms = 10_000; // a picture takes a moment; a server that is away takes for ever
+const kPatienceMs = 10_000; // a picture takes a moment; a server that is away takes for ever
 
 scope.addEventListener("install", (event) => event.waitUntil(scope.skipWaiting()));
 scope.addEventListener("activate", (event) => event.waitUntil(scope.clients.claim()));
@@ -46,11 +46,11 @@ async function newest(request: Request, key: string): Promise<Response> {
   asked.catch(() => {}); // it may fail after the moment, when nobody waits for it any more
   let timer: ReturnType<typeof setTimeout> | undefined;
   const late = new Promise<null>(
-    (resolve) => (timer = setTimeout(() => resolve(null), kPatience_ms)),
+    (resolve) => (timer = setTimeout(() => resolve(null), kPatienceMs)),
   );
   try {
     const answer = await Promise.race([asked, late]);
-    if (answer && !says_away(answer.status)) return answer;
+    if (answer && !saysAway(answer.status)) return answer;
     return (await stored(key)) ?? answer ?? (await asked);
   } catch (error) {
     const found = await stored(key);

@@ -48,13 +48,13 @@ export const kFrames: Record<UpAxis, Frame> = {
 export const kUpAxes: readonly UpAxis[] = ["x", "y", "z", "-x", "-y", "-z"];
 
 /** "z", "−y". */
-export const axis_name = (up: UpAxis): string => up.replace("-", "−");
+export const axisName = (up: UpAxis): string => up.replace("-", "−");
 /** "+Z", "−Y". */
-export const up_name = (up: UpAxis): string =>
+export const upName = (up: UpAxis): string =>
   (up.startsWith("-") ? `−${up.slice(1)}` : `+${up}`).toUpperCase();
 
 export const centre = (bounds: Bounds): Vec3 => scale(add(bounds.min, bounds.max), 0.5);
-export const bounding_radius = (bounds: Bounds): number =>
+export const boundingRadius = (bounds: Bounds): number =>
   Math.max(length(subtract(bounds.max, bounds.min)) / 2, 1e-9);
 
 export class OrbitCamera {
@@ -67,25 +67,25 @@ export class OrbitCamera {
    * Tangent of half the vertical field of view; another than the usual one while this camera sees
    * what somebody else sees, or what was kept in another window.
    */
-  half_field = kHalfFieldTangent;
+  halfField = kHalfFieldTangent;
   width = 1; // window pixels
   height = 1;
   /** What the planes cut away is not there for this camera. */
   section: Plane[] = [];
 
-  private bounds_: Bounds = { min: [-1, -1, -1], max: [1, 1, 1] };
-  private up_: UpAxis = "z";
+  private _bounds: Bounds = { min: [-1, -1, -1], max: [1, 1, 1] };
+  private _up: UpAxis = "z";
 
   get up(): UpAxis {
-    return this.up_;
+    return this._up;
   }
   get bounds(): Bounds {
-    return this.bounds_;
+    return this._bounds;
   }
 
-  set_model(bounds: Bounds, up: UpAxis): void {
-    this.bounds_ = bounds;
-    this.up_ = up;
+  setModel(bounds: Bounds, up: UpAxis): void {
+    this._bounds = bounds;
+    this._up = up;
   }
 
   resize(width: number, height: number): void {
@@ -95,10 +95,10 @@ export class OrbitCamera {
 
   /** Whole model in the picture, seen from where the camera stands. */
   fit(): void {
-    const { min, max } = this.bounds_;
+    const { min, max } = this._bounds;
     const { right, up, back } = this.axes();
-    const half_width = (this.half_field * this.width) / this.height;
-    this.target = centre(this.bounds_);
+    const halfWidth = (this.halfField * this.width) / this.height;
+    this.target = centre(this._bounds);
     let distance = 0;
     for (let corner = 0; corner < 8; ++corner) {
       const at: Vec3 = [
@@ -108,35 +108,34 @@ export class OrbitCamera {
       ];
       const offset = subtract(at, this.target);
       const towards = this.perspective ? dot(offset, back) : 0;
-      const across = Math.abs(dot(offset, right)) / half_width;
-      const along = Math.abs(dot(offset, up)) / this.half_field;
+      const across = Math.abs(dot(offset, right)) / halfWidth;
+      const along = Math.abs(dot(offset, up)) / this.halfField;
       distance = Math.max(distance, towards + Math.max(across, along));
     }
-    this.distance = Math.max(distance * kFitMargin, bounding_radius(this.bounds_) * kMinZoom);
+    this.distance = Math.max(distance * kFitMargin, boundingRadius(this._bounds) * kMinZoom);
   }
 
   /**
    * A box that is a part of the model, seen from where its surface faces; where that is not said,
    * from its own side of the model, of which the model's middle has none.
    */
-  look_at(box: Bounds, normal?: Vec3): void {
+  lookAt(box: Bounds, normal?: Vec3): void {
     const middle = centre(box);
-    const outwards = normal ?? subtract(middle, centre(this.bounds_));
+    const outwards = normal ?? subtract(middle, centre(this._bounds));
     const { back } = this.axes();
-    const has_side =
-      normal !== undefined || length(outwards) > 0.15 * bounding_radius(this.bounds_);
+    const hasSide = normal !== undefined || length(outwards) > 0.15 * boundingRadius(this._bounds);
     // What faces away is turned to; what is seen already is left as it is.
-    if (has_side && dot(outwards, back) < 0.3 * length(outwards)) this.face(outwards);
+    if (hasSide && dot(outwards, back) < 0.3 * length(outwards)) this.face(outwards);
     this.target = middle;
-    const least = bounding_radius(this.bounds_) * 0.08; // some of what is around a small thing
-    const radius = Math.max(bounding_radius(box), least);
-    const half_width = (this.half_field * this.width) / this.height;
-    this.distance = (radius * 1.25) / Math.sin(Math.atan(Math.min(this.half_field, half_width)));
+    const least = boundingRadius(this._bounds) * 0.08; // some of what is around a small thing
+    const radius = Math.max(boundingRadius(box), least);
+    const halfWidth = (this.halfField * this.width) / this.height;
+    this.distance = (radius * 1.25) / Math.sin(Math.atan(Math.min(this.halfField, halfWidth)));
   }
 
   /** Turns so that `outwards` points to the viewer. */
   private face(outwards: Vec3): void {
-    const frame = kFrames[this.up_];
+    const frame = kFrames[this._up];
     const [x, y, z] = [
       dot(outwards, frame.right),
       dot(outwards, frame.into),
@@ -148,13 +147,13 @@ export class OrbitCamera {
   }
 
   /** A little from the right and above: shows that the thing is solid. */
-  first_view(): void {
+  firstView(): void {
     this.azimuth = 0.4;
     this.elevation = 0.18;
     this.fit();
   }
 
-  standard_view(view: StandardView): void {
+  standardView(view: StandardView): void {
     const quarter = Math.PI / 2;
     const angles: Record<StandardView, [number, number]> = {
       front: [0, 0],
@@ -170,7 +169,7 @@ export class OrbitCamera {
 
   /** Unit vectors of the window in the world: right, up, and backwards to the viewer. */
   axes(): { right: Vec3; up: Vec3; back: Vec3 } {
-    const frame = kFrames[this.up_];
+    const frame = kFrames[this._up];
     const [sa, ca] = [Math.sin(this.azimuth), Math.cos(this.azimuth)];
     const [se, ce] = [Math.sin(this.elevation), Math.cos(this.elevation)];
     const right = add(scale(frame.right, ca), scale(frame.into, sa));
@@ -184,78 +183,75 @@ export class OrbitCamera {
   }
 
   /** World lengths of one window pixel at a depth before the eye. */
-  unit_per_pixel(depth = this.distance): number {
-    return (2 * this.half_field * (this.perspective ? depth : this.distance)) / this.height;
+  unitPerPixel(depth = this.distance): number {
+    return (2 * this.halfField * (this.perspective ? depth : this.distance)) / this.height;
   }
 
   /** World length of a window pixel at a place, for the camera as it is now. */
-  pixel_size(): (place: Vec3) => number {
-    const [eye, { back }, unit] = [this.eye(), this.axes(), this.unit_per_pixel(1)];
+  pixelSize(): (place: Vec3) => number {
+    const [eye, { back }, unit] = [this.eye(), this.axes(), this.unitPerPixel(1)];
     const { perspective } = this;
     return (place) => (perspective ? unit * dot(subtract(eye, place), back) : unit);
   }
 
   /** The usual field again; what is as far away as the target stays as large. */
-  reset_field(): void {
-    this.distance *= this.half_field / kHalfFieldTangent;
-    this.half_field = kHalfFieldTangent;
+  resetField(): void {
+    this.distance *= this.halfField / kHalfFieldTangent;
+    this.halfField = kHalfFieldTangent;
   }
 
   /**
    * From now on it turns around what is in the middle of the window at a depth. The picture stays.
    */
-  turn_around(depth: number): void {
+  turnAround(depth: number): void {
     this.target = subtract(this.eye(), scale(this.axes().back, depth));
     if (this.perspective) this.distance = depth;
   }
 
-  depth_of(point: Vec3): number {
+  depthOf(point: Vec3): number {
     return dot(subtract(this.eye(), point), this.axes().back);
   }
 
-  orbit(azimuth_delta: number, elevation_delta: number): void {
-    this.azimuth = wrap(this.azimuth + azimuth_delta);
-    this.elevation = Math.min(
-      Math.PI / 2,
-      Math.max(-Math.PI / 2, this.elevation + elevation_delta),
-    );
+  orbit(azimuthDelta: number, elevationDelta: number): void {
+    this.azimuth = wrap(this.azimuth + azimuthDelta);
+    this.elevation = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, this.elevation + elevationDelta));
   }
 
   /** Drag of one pixel turns the model by the same share of the window in both directions. */
-  orbit_pixels(dx: number, dy: number): void {
+  orbitPixels(dx: number, dy: number): void {
     const turn = Math.PI / Math.min(this.width, this.height);
     this.orbit(-dx * turn, dy * turn);
   }
 
-  pan_pixels(dx: number, dy: number): void {
+  panPixels(dx: number, dy: number): void {
     const { right, up } = this.axes();
-    const unit = this.unit_per_pixel();
+    const unit = this.unitPerPixel();
     this.target = add(this.target, add(scale(right, -dx * unit), scale(up, dy * unit)));
   }
 
   /** factor < 1 comes nearer. What is under the window pixel (x, y) stays there. */
-  zoom_at(factor: number, x: number, y: number): void {
-    const radius = bounding_radius(this.bounds_);
+  zoomAt(factor: number, x: number, y: number): void {
+    const radius = boundingRadius(this._bounds);
     const distance = Math.min(
       kMaxZoom * radius,
       Math.max(kMinZoom * radius, this.distance * factor),
     );
     const kept = distance / this.distance;
-    const anchor = this.point_on_focus_plane(x, y);
+    const anchor = this.pointOnFocusPlane(x, y);
     this.target = add(anchor, scale(subtract(this.target, anchor), kept));
     this.distance = distance;
   }
 
-  point_on_focus_plane(x: number, y: number): Vec3 {
+  pointOnFocusPlane(x: number, y: number): Vec3 {
     const { right, up } = this.axes();
-    const unit = this.unit_per_pixel();
+    const unit = this.unitPerPixel();
     return add(
       this.target,
       add(scale(right, (x - this.width / 2) * unit), scale(up, (this.height / 2 - y) * unit)),
     );
   }
 
-  view_matrix(): number[] {
+  viewMatrix(): number[] {
     const { right, up, back } = this.axes();
     const eye = this.eye();
     return [
@@ -278,11 +274,11 @@ export class OrbitCamera {
     ];
   }
 
-  projection_matrix(): number[] {
-    const { near, far } = this.depth_range();
+  projectionMatrix(): number[] {
+    const { near, far } = this.depthRange();
     const aspect = this.width / this.height;
     if (this.perspective) {
-      const f = 1 / this.half_field;
+      const f = 1 / this.halfField;
       return [
         f / aspect,
         0,
@@ -302,14 +298,14 @@ export class OrbitCamera {
         0,
       ];
     }
-    const half_height = this.half_field * this.distance;
+    const halfHeight = this.halfField * this.distance;
     return [
-      1 / (half_height * aspect),
+      1 / (halfHeight * aspect),
       0,
       0,
       0,
       0,
-      1 / half_height,
+      1 / halfHeight,
       0,
       0,
       0,
@@ -325,8 +321,8 @@ export class OrbitCamera {
 
   message(): CameraMessage {
     return {
-      view: this.view_matrix(),
-      projection: this.projection_matrix(),
+      view: this.viewMatrix(),
+      projection: this.projectionMatrix(),
       width: this.width,
       height: this.height,
       ...(this.section.length > 0 ? { section: this.section } : {}),
@@ -335,8 +331,8 @@ export class OrbitCamera {
 
   /** Window position of a world point, or null behind the eye. */
   project(point: Vec3): { x: number; y: number; depth: number } | null {
-    const seen = transform(this.view_matrix(), [point[0], point[1], point[2], 1]);
-    const clip = transform(this.projection_matrix(), seen);
+    const seen = transform(this.viewMatrix(), [point[0], point[1], point[2], 1]);
+    const clip = transform(this.projectionMatrix(), seen);
     if (clip[3] <= 0) return null;
     return {
       x: (clip[0] / clip[3] / 2 + 0.5) * this.width,
@@ -346,19 +342,19 @@ export class OrbitCamera {
   }
 
   /** The same, or null outside the window, too. */
-  project_inside(point: Vec3): { x: number; y: number; depth: number } | null {
+  projectInside(point: Vec3): { x: number; y: number; depth: number } | null {
     const at = this.project(point);
     return at && at.x >= 0 && at.y >= 0 && at.x <= this.width && at.y <= this.height ? at : null;
   }
 
   /** Whether the section's planes cut the world point away. */
-  cuts_away(point: Vec3): boolean {
+  cutsAway(point: Vec3): boolean {
     return this.section.some(([a, b, c, d]) => dot([a, b, c], point) + d < 0);
   }
 
-  private depth_range(): { near: number; far: number } {
-    const radius = bounding_radius(this.bounds_) * 1.02;
-    const middle = this.depth_of(centre(this.bounds_));
+  private depthRange(): { near: number; far: number } {
+    const radius = boundingRadius(this._bounds) * 1.02;
+    const middle = this.depthOf(centre(this._bounds));
     const far = Math.max(middle + radius, radius * 1e-3);
     if (!this.perspective)
       return { near: middle - radius, far: Math.max(far, middle - radius + 1e-9) };
@@ -369,11 +365,11 @@ export class OrbitCamera {
 /** Where a camera stands; `between` two of them, at a share of the way. */
 export type Place = Pick<
   OrbitCamera,
-  "target" | "distance" | "azimuth" | "elevation" | "perspective" | "half_field"
+  "target" | "distance" | "azimuth" | "elevation" | "perspective" | "halfField"
 >;
-export const place_of = (camera: OrbitCamera): Place => {
-  const { target, distance, azimuth, elevation, perspective, half_field } = camera;
-  return { target, distance, azimuth, elevation, perspective, half_field };
+export const placeOf = (camera: OrbitCamera): Place => {
+  const { target, distance, azimuth, elevation, perspective, halfField } = camera;
+  return { target, distance, azimuth, elevation, perspective, halfField };
 };
 export function between(from: Place, to: Place, share: number): Place {
   const mix = (a: number, b: number): number => a + (b - a) * share;
@@ -383,7 +379,7 @@ export function between(from: Place, to: Place, share: number): Place {
     azimuth: wrap(from.azimuth + wrap(to.azimuth - from.azimuth) * share),
     elevation: mix(from.elevation, to.elevation),
     perspective: to.perspective,
-    half_field: mix(from.half_field, to.half_field),
+    halfField: mix(from.halfField, to.halfField),
   };
 }
 

@@ -1,11 +1,11 @@
 // Looking with somebody else: where a camera must stand to see what another one sees.
 
 import {
-  bounding_radius,
+  boundingRadius,
   centre,
   kFrames,
   kHalfFieldTangent,
-  place_of,
+  placeOf,
   type CameraMessage,
   type OrbitCamera,
   type Place,
@@ -22,7 +22,7 @@ const kArrived = 5e-4;
  * window, whatever shape the own one has. A tilted horizon and a window beside the axis, which this
  * page's cameras never have, are not taken over.
  */
-export function place_like(
+export function placeLike(
   theirs: Pick<CameraMessage, "view" | "projection">,
   own: OrbitCamera,
 ): Place {
@@ -39,10 +39,8 @@ export function place_like(
   const perspective = projection[11] !== 0;
   const [across, along] = [1 / Math.abs(projection[0]!), 1 / Math.abs(projection[5]!)];
   const half = Math.max(along, (across * own.height) / own.width);
-  const to_middle = dot(subtract(eye, centre(own.bounds)), back);
-  const depth = perspective
-    ? Math.max(to_middle, bounding_radius(own.bounds) * kNearest)
-    : to_middle;
+  const toMiddle = dot(subtract(eye, centre(own.bounds)), back);
+  const depth = perspective ? Math.max(toMiddle, boundingRadius(own.bounds) * kNearest) : toMiddle;
   const frame = kFrames[own.up];
   return {
     target: subtract(eye, scale(back, depth)),
@@ -50,19 +48,19 @@ export function place_like(
     azimuth: Math.atan2(dot(right, frame.into), dot(right, frame.right)),
     elevation: Math.asin(Math.min(1, Math.max(-1, dot(back, frame.up)))),
     perspective,
-    half_field: perspective ? half : kHalfFieldTangent,
+    halfField: perspective ? half : kHalfFieldTangent,
   };
 }
 
 /** No difference that could be seen is left of the way to `place`. */
-export function has_arrived(camera: OrbitCamera, place: Place): boolean {
-  const here = place_of(camera);
+export function hasArrived(camera: OrbitCamera, place: Place): boolean {
+  const here = placeOf(camera);
   const close = (a: number, b: number): boolean => Math.abs(a - b) <= kArrived;
   return (
     here.perspective === place.perspective &&
     length(subtract(here.target, place.target)) <= kArrived * place.distance &&
     close(here.distance / place.distance, 1) &&
-    close(here.half_field / place.half_field, 1) &&
+    close(here.halfField / place.halfField, 1) &&
     close(Math.cos(here.azimuth - place.azimuth), 1) &&
     close(Math.sin(here.azimuth - place.azimuth), 0) &&
     close(here.elevation, place.elevation)

@@ -5,14 +5,14 @@ import { kFrames, type UpAxis } from "./camera";
 import { add, cross, dot, length, scale, subtract, type Vec3 } from "./vector";
 
 /** From place to place, straight: one length a leg. */
-export const legs_of = (places: readonly Vec3[]): number[] =>
+export const legsOf = (places: readonly Vec3[]): number[] =>
   places.slice(1).map((place, index) => length(subtract(place, places[index]!)));
 
 export const sum = (numbers: readonly number[]): number =>
   numbers.reduce((total, each) => total + each, 0);
 
 /** The place's coordinate along the model's up axis. */
-export const height_of = (place: Vec3, up: UpAxis): number => dot(place, kFrames[up].up);
+export const heightOf = (place: Vec3, up: UpAxis): number => dot(place, kFrames[up].up);
 
 export interface FlatPolygon {
   area: number;
@@ -27,19 +27,19 @@ export interface FlatPolygon {
  * polygon that crosses itself counts what it goes round the other way as negative. Null: fewer than
  * three.
  */
-export function flat_polygon(places: readonly Vec3[]): FlatPolygon | null {
+export function flatPolygon(places: readonly Vec3[]): FlatPolygon | null {
   const [first, ...others] = places;
   if (!first || others.length < 2) return null;
   // coordinates of a site may be large, and its polygons small
-  const from_first = others.map((place) => subtract(place, first));
-  const twice = from_first
+  const fromFirst = others.map((place) => subtract(place, first));
+  const twice = fromFirst
     .slice(1)
-    .reduce<Vec3>((total, each, index) => add(total, cross(from_first[index]!, each)), [0, 0, 0]);
+    .reduce<Vec3>((total, each, index) => add(total, cross(fromFirst[index]!, each)), [0, 0, 0]);
   const area = length(twice) / 2;
-  const perimeter = sum(legs_of([...places, first]));
+  const perimeter = sum(legsOf([...places, first]));
   if (area === 0) return { area, perimeter, off_plane: 0 };
   const normal = scale(twice, 1 / (2 * area));
-  const offsets = [0, ...from_first.map((each) => dot(each, normal))];
+  const offsets = [0, ...fromFirst.map((each) => dot(each, normal))];
   const middle = sum(offsets) / offsets.length;
   return {
     area,

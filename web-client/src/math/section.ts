@@ -21,7 +21,7 @@ export const kAxes: readonly Axis[] = ["x", "y", "z"];
 export const kThinnestBox = 0.01;
 const kRounded = 1e-9; // a share that went through the world
 
-export const no_section = (): SectionChoice => ({
+export const noSection = (): SectionChoice => ({
   mode: "off",
   position: 0.5,
   flipped: false,
@@ -30,15 +30,15 @@ export const no_section = (): SectionChoice => ({
 });
 
 /** A position in the world on an axis. */
-export function world_position(bounds: Bounds, axis: number, share: number): number {
+export function worldPosition(bounds: Bounds, axis: number, share: number): number {
   return bounds.min[axis]! + (bounds.max[axis]! - bounds.min[axis]!) * share;
 }
 
 /** [a, b, c, d] keeps what has a x + b y + c z + d ≥ 0. */
-export function section_planes(choice: SectionChoice, bounds: Bounds): Plane[] {
-  const plane = (axis: number, share: number, keeps_above: boolean): Plane => {
-    const sign = keeps_above ? 1 : -1;
-    const result: Plane = [0, 0, 0, -sign * world_position(bounds, axis, share)];
+export function sectionPlanes(choice: SectionChoice, bounds: Bounds): Plane[] {
+  const plane = (axis: number, share: number, keepsAbove: boolean): Plane => {
+    const sign = keepsAbove ? 1 : -1;
+    const result: Plane = [0, 0, 0, -sign * worldPosition(bounds, axis, share)];
     result[axis] = sign;
     return result;
   };
@@ -58,46 +58,46 @@ export function section_planes(choice: SectionChoice, bounds: Bounds): Plane[] {
  * The choice that makes these planes: a cut or a box where they are one within the bounds, else the
  * planes themselves.
  */
-export function section_choice(planes: readonly Plane[], bounds: Bounds): SectionChoice {
-  if (planes.length === 0) return no_section();
-  const kept: SectionChoice = { ...no_section(), mode: "planes", planes: [...planes] };
-  const sides = planes.map((plane) => side_of(plane, bounds));
+export function sectionChoice(planes: readonly Plane[], bounds: Bounds): SectionChoice {
+  if (planes.length === 0) return noSection();
+  const kept: SectionChoice = { ...noSection(), mode: "planes", planes: [...planes] };
+  const sides = planes.map((plane) => sideOf(plane, bounds));
   const [first] = sides;
   if (sides.length === 1 && first)
     return {
-      ...no_section(),
+      ...noSection(),
       mode: kAxes[first.axis]!,
       position: first.share,
-      flipped: first.keeps_above,
+      flipped: first.keepsAbove,
     };
-  const { box } = no_section();
+  const { box } = noSection();
   const taken = new Set<string>();
   for (const side of sides) {
-    const key = `${side?.axis} ${side?.keeps_above}`;
+    const key = `${side?.axis} ${side?.keepsAbove}`;
     if (!side || taken.has(key)) return kept;
     taken.add(key);
-    box[side.keeps_above ? "min" : "max"][side.axis] = side.share;
+    box[side.keepsAbove ? "min" : "max"][side.axis] = side.share;
   }
-  const is_inside_out = [0, 1, 2].some((axis) => box.min[axis]! >= box.max[axis]!);
-  return is_inside_out ? kept : { ...no_section(), mode: "box", box };
+  const isInsideOut = [0, 1, 2].some((axis) => box.min[axis]! >= box.max[axis]!);
+  return isInsideOut ? kept : { ...noSection(), mode: "box", box };
 }
 
 /** Of a plane across an axis that goes through the bounds; null: it is another. */
-function side_of(
+function sideOf(
   [a, b, c, d]: Plane,
   { min, max }: Bounds,
-): { axis: number; share: number; keeps_above: boolean } | null {
+): { axis: number; share: number; keepsAbove: boolean } | null {
   const normal = [a, b, c];
   const axis = normal.findIndex((part) => part !== 0);
   if (axis < 0 || normal.filter((part) => part !== 0).length > 1) return null;
   const share = (-d / normal[axis]! - min[axis]!) / (max[axis]! - min[axis]!);
   // nor of a flat model, where it is no number
   if (!(share >= -kRounded && share <= 1 + kRounded)) return null;
-  return { axis, share: Math.min(1, Math.max(0, share)), keeps_above: normal[axis]! > 0 };
+  return { axis, share: Math.min(1, Math.max(0, share)), keepsAbove: normal[axis]! > 0 };
 }
 
 /** A side of the box moved to a share, never past the opposite side. */
-export function with_box_side(
+export function withBoxSide(
   choice: SectionChoice,
   side: "min" | "max",
   axis: number,

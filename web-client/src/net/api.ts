@@ -2,11 +2,11 @@
 // that carries a problem a person can read.
 
 import type { CameraMessage } from "../math/camera";
-import { page_locale, person_languages } from "../core/locale";
-import { own_problems } from "../core/problems";
+import { pageLocale, personLanguages } from "../core/locale";
+import { ownProblems } from "../core/problems";
 import type * as wire from "../core/protocol.gen";
 import {
-  complete_layer,
+  completeLayer,
   type Job,
   type Layer,
   type LayerCreate,
@@ -100,8 +100,8 @@ const kBase = "/api/v1";
 
 export class Api {
   constructor(
-    private readonly fetch_: Fetch = (input, init) => fetch(input, init),
-    private readonly make_request_: () => XMLHttpRequest = () => new XMLHttpRequest(),
+    private readonly _fetch: Fetch = (input, init) => fetch(input, init),
+    private readonly _makeRequest: () => XMLHttpRequest = () => new XMLHttpRequest(),
   ) {}
 
   async me(): Promise<Me> {
@@ -113,14 +113,14 @@ export class Api {
   async logout(): Promise<void> {
     await this.request("POST", "/logout");
   }
-  async change_me(change: wire.MePatch): Promise<Me> {
+  async changeMe(change: wire.MePatch): Promise<Me> {
     return this.json("PATCH", "/me", change);
   }
   /** How this person shows the layers of a model, for them alone. Goes on when the page is left. */
-  async keep_personal_view(model: Id, view: wire.PersonalView): Promise<void> {
+  async keepPersonalView(model: Id, view: wire.PersonalView): Promise<void> {
     const body = JSON.stringify(view);
     const path = `/me/models/${encodeURIComponent(model)}/view`;
-    await this.request_raw(
+    await this.requestRaw(
       "PUT",
       path,
       body,
@@ -130,35 +130,35 @@ export class Api {
     );
   }
   /** Ends all other sessions. */
-  async change_password(change: wire.PasswordChange): Promise<void> {
+  async changePassword(change: wire.PasswordChange): Promise<void> {
     await this.request("POST", "/me/password", change);
   }
   /** Where this person is signed in, the newest first. */
-  async sign_in_sessions(): Promise<wire.SignInSession[]> {
+  async signInSessions(): Promise<wire.SignInSession[]> {
     return this.all("/me/sessions", "sessions");
   }
-  async end_session(id: number): Promise<void> {
+  async endSession(id: number): Promise<void> {
     await this.request("DELETE", `/me/sessions/${id}`);
   }
-  async end_other_sessions(): Promise<void> {
+  async endOtherSessions(): Promise<void> {
     await this.request("DELETE", "/me/sessions");
   }
-  async script_tokens(): Promise<wire.ScriptToken[]> {
+  async scriptTokens(): Promise<wire.ScriptToken[]> {
     return this.all("/me/tokens", "tokens");
   }
-  async create_token(token: wire.ScriptTokenCreate): Promise<wire.ScriptTokenMade> {
+  async createToken(token: wire.ScriptTokenCreate): Promise<wire.ScriptTokenMade> {
     return this.json("POST", "/me/tokens", token);
   }
-  async revoke_token(id: number): Promise<void> {
+  async revokeToken(id: number): Promise<void> {
     await this.request("DELETE", `/me/tokens/${id}`);
   }
 
   /** Whose invitation it is. */
-  async show_invitation(invitation: string): Promise<wire.Person> {
+  async showInvitation(invitation: string): Promise<wire.Person> {
     return this.json("POST", "/invitations/show", { invitation });
   }
   /** Opens a session. */
-  async accept_invitation(accept: wire.InvitationAccept): Promise<Me> {
+  async acceptInvitation(accept: wire.InvitationAccept): Promise<Me> {
     return this.json("POST", "/invitations/accept", accept);
   }
 
@@ -170,24 +170,24 @@ export class Api {
     return this.json("POST", "/users", person);
   }
   /** Earlier links become worthless. */
-  async invite_again(user: string): Promise<wire.Invitation> {
-    return this.json("POST", `${person_path(user)}/invite`);
+  async inviteAgain(user: string): Promise<wire.Invitation> {
+    return this.json("POST", `${personPath(user)}/invite`);
   }
-  async change_person(user: string, change: wire.PersonPatch): Promise<wire.Person> {
-    return this.json("PATCH", person_path(user), change);
+  async changePerson(user: string, change: wire.PersonPatch): Promise<wire.Person> {
+    return this.json("PATCH", personPath(user), change);
   }
-  async delete_person(user: string): Promise<void> {
-    await this.request("DELETE", person_path(user));
+  async deletePerson(user: string): Promise<void> {
+    await this.request("DELETE", personPath(user));
   }
 
   async projects(): Promise<wire.Project[]> {
     return this.all("/projects", "projects");
   }
   async project(project: Id): Promise<Versioned<wire.Project>> {
-    return this.versioned("GET", project_path(project));
+    return this.versioned("GET", projectPath(project));
   }
   /** `key`: the same for each attempt at one project. */
-  async create_project(
+  async createProject(
     project: { name: string; description: string },
     key: string,
   ): Promise<wire.Project> {
@@ -195,37 +195,33 @@ export class Api {
       await this.request("POST", "/projects", project, { "Idempotency-Key": key }),
     );
   }
-  async change_project(
-    project: Id,
-    change: wire.ProjectPatch,
-    etag: string,
-  ): Promise<wire.Project> {
-    return (await this.versioned<wire.Project>("PATCH", project_path(project), change, etag)).value;
+  async changeProject(project: Id, change: wire.ProjectPatch, etag: string): Promise<wire.Project> {
+    return (await this.versioned<wire.Project>("PATCH", projectPath(project), change, etag)).value;
   }
   /** Refused while it has models or tables. */
-  async delete_project(project: Id): Promise<void> {
+  async deleteProject(project: Id): Promise<void> {
     const { etag } = await this.project(project);
-    await this.request("DELETE", project_path(project), undefined, { "If-Match": etag });
+    await this.request("DELETE", projectPath(project), undefined, { "If-Match": etag });
   }
   /** People with roles of their own there, and groups. */
   async members(project: string): Promise<wire.MemberList> {
     return this.json("GET", `/projects/${encodeURIComponent(project)}/members?limit=1000`);
   }
-  async put_member(project: string, user: string, role: wire.ProjectRole): Promise<wire.Member> {
-    return this.json("PUT", member_path(project, user), { role });
+  async putMember(project: string, user: string, role: wire.ProjectRole): Promise<wire.Member> {
+    return this.json("PUT", memberPath(project, user), { role });
   }
-  async remove_member(project: string, user: string): Promise<void> {
-    await this.request("DELETE", member_path(project, user));
+  async removeMember(project: string, user: string): Promise<void> {
+    await this.request("DELETE", memberPath(project, user));
   }
-  async put_project_group(
+  async putProjectGroup(
     project: string,
     group: number,
     role: wire.ProjectRole,
   ): Promise<wire.MemberGroup> {
-    return this.json("PUT", project_group_path(project, group), { role });
+    return this.json("PUT", projectGroupPath(project, group), { role });
   }
-  async remove_project_group(project: string, group: number): Promise<void> {
-    await this.request("DELETE", project_group_path(project, group));
+  async removeProjectGroup(project: string, group: number): Promise<void> {
+    await this.request("DELETE", projectGroupPath(project, group));
   }
 
   /** By name; there are 200 at most. */
@@ -235,14 +231,14 @@ export class Api {
   async group(id: number): Promise<wire.GroupDetail> {
     return this.json("GET", `/groups/${id}`);
   }
-  async create_group(group: wire.GroupCreate): Promise<wire.GroupDetail> {
+  async createGroup(group: wire.GroupCreate): Promise<wire.GroupDetail> {
     return this.json("POST", "/groups", group);
   }
-  async change_group(id: number, change: wire.GroupPatch): Promise<wire.GroupDetail> {
+  async changeGroup(id: number, change: wire.GroupPatch): Promise<wire.GroupDetail> {
     return this.json("PATCH", `/groups/${id}`, change);
   }
   /** With the roles that it has. */
-  async delete_group(id: number): Promise<void> {
+  async deleteGroup(id: number): Promise<void> {
     await this.request("DELETE", `/groups/${id}`);
   }
 
@@ -252,10 +248,10 @@ export class Api {
   async model(id: Id): Promise<Versioned<Model>> {
     return this.versioned("GET", `/models/${encodeURIComponent(id)}`);
   }
-  async change_model(id: Id, change: ModelPatch, etag: string): Promise<Versioned<Model>> {
+  async changeModel(id: Id, change: ModelPatch, etag: string): Promise<Versioned<Model>> {
     return this.versioned("PATCH", `/models/${encodeURIComponent(id)}`, change, etag);
   }
-  async delete_model(id: Id): Promise<void> {
+  async deleteModel(id: Id): Promise<void> {
     const { etag } = await this.model(id);
     await this.request("DELETE", `/models/${encodeURIComponent(id)}`, undefined, {
       "If-Match": etag,
@@ -270,7 +266,7 @@ export class Api {
    * What the file does not say of its unit and up direction is taken as the server proposes it,
    * until somebody confirms it.
    */
-  upload_model(
+  uploadModel(
     files: readonly UploadFile[],
     name: string,
     project: string,
@@ -290,63 +286,63 @@ export class Api {
   async job(id: Id): Promise<Job> {
     return this.json("GET", `/jobs/${encodeURIComponent(id)}`);
   }
-  async cancel_job(id: Id): Promise<void> {
+  async cancelJob(id: Id): Promise<void> {
     await this.request("DELETE", `/jobs/${encodeURIComponent(id)}`);
   }
 
   async layers(model: Id): Promise<Layer[]> {
     return (
       await this.all<wire.Layer>(`/models/${encodeURIComponent(model)}/layers`, "layers")
-    ).map(complete_layer);
+    ).map(completeLayer);
   }
-  async create_layer(model: Id, layer: LayerCreate): Promise<Layer> {
-    return complete_layer(
+  async createLayer(model: Id, layer: LayerCreate): Promise<Layer> {
+    return completeLayer(
       await this.json<wire.Layer>("POST", `/models/${encodeURIComponent(model)}/layers`, layer),
     );
   }
   /** With `compute`: the layer is there once the job is done. */
-  async compute_layer(model: Id, layer: LayerCreate): Promise<Job> {
+  async computeLayer(model: Id, layer: LayerCreate): Promise<Job> {
     return this.json("POST", `/models/${encodeURIComponent(model)}/layers`, layer);
   }
   /**
    * With `expression`: the layer, or a job where the surface's shape has to be worked out first.
    */
-  async create_computed(model: Id, layer: LayerCreate): Promise<{ layer: Layer } | { job: Job }> {
+  async createComputed(model: Id, layer: LayerCreate): Promise<{ layer: Layer } | { job: Job }> {
     const answer = await this.json<wire.Layer | Job>(
       "POST",
       `/models/${encodeURIComponent(model)}/layers`,
       layer,
     );
-    return "slug" in answer ? { layer: complete_layer(answer) } : { job: answer };
+    return "slug" in answer ? { layer: completeLayer(answer) } : { job: answer };
   }
   async transfer(model: Id, wish: Transfer): Promise<Job> {
     return this.json("POST", `/models/${encodeURIComponent(model)}/transfer`, wish);
   }
-  async vertex_properties(model: Id): Promise<VertexPropertyName[]> {
+  async vertexProperties(model: Id): Promise<VertexPropertyName[]> {
     const path = `/models/${encodeURIComponent(model)}/vertex-properties`;
     return (await this.json<wire.VertexPropertyList>("GET", path)).properties;
   }
   async layer(model: Id, layer: Id): Promise<Versioned<Layer>> {
-    const { value, etag } = await this.versioned<wire.Layer>("GET", layer_path(model, layer));
-    return { value: complete_layer(value), etag };
+    const { value, etag } = await this.versioned<wire.Layer>("GET", layerPath(model, layer));
+    return { value: completeLayer(value), etag };
   }
   /**
    * With the version that the change was thought out for: another's change in between is an
    * ApiError of status 412. Without, the change stands on its own, and goes onto whatever the layer
    * is now.
    */
-  async change_layer(model: Id, layer: Id, change: LayerPatch, etag?: string): Promise<Layer> {
+  async changeLayer(model: Id, layer: Id, change: LayerPatch, etag?: string): Promise<Layer> {
     const version = etag ?? (await this.layer(model, layer)).etag;
-    return complete_layer(
-      (await this.versioned<wire.Layer>("PATCH", layer_path(model, layer), change, version)).value,
+    return completeLayer(
+      (await this.versioned<wire.Layer>("PATCH", layerPath(model, layer), change, version)).value,
     );
   }
   /** The layer of an expression, from what it reads as it is now. */
-  async recompute_layer(model: Id, layer: Id, overwrite = false): Promise<Layer> {
-    return complete_layer(
+  async recomputeLayer(model: Id, layer: Id, overwrite = false): Promise<Layer> {
+    return completeLayer(
       await this.json<wire.Layer>(
         "POST",
-        `${layer_path(model, layer)}/compute${overwrite ? "?overwrite=true" : ""}`,
+        `${layerPath(model, layer)}/compute${overwrite ? "?overwrite=true" : ""}`,
       ),
     );
   }
@@ -354,17 +350,17 @@ export class Api {
   async select(model: Id, where: string): Promise<wire.SelectResponse> {
     return this.json("POST", `/models/${encodeURIComponent(model)}/select`, { where });
   }
-  async delete_layer(model: Id, layer: Id): Promise<void> {
+  async deleteLayer(model: Id, layer: Id): Promise<void> {
     const { etag } = await this.layer(model, layer);
-    await this.request("DELETE", layer_path(model, layer), undefined, { "If-Match": etag });
+    await this.request("DELETE", layerPath(model, layer), undefined, { "If-Match": etag });
   }
   async looks(model: Id): Promise<wire.Look[]> {
     return this.all(`/models/${encodeURIComponent(model)}/looks`, "looks");
   }
   /** A picture on the model's texture coordinates, named as its file. */
-  async create_look(model: Id, file: File): Promise<wire.Look> {
-    const query = new URLSearchParams({ name: name_of_file(file.name) });
-    const response = await this.request_raw(
+  async createLook(model: Id, file: File): Promise<wire.Look> {
+    const query = new URLSearchParams({ name: nameOfFile(file.name) });
+    const response = await this.requestRaw(
       "POST",
       `/models/${encodeURIComponent(model)}/looks?${query}`,
       file,
@@ -374,13 +370,13 @@ export class Api {
     );
     return this.parsed<wire.Look>(response);
   }
-  async change_look(model: Id, look: Id, change: wire.LookPatch): Promise<wire.Look> {
-    const path = look_path(model, look);
+  async changeLook(model: Id, look: Id, change: wire.LookPatch): Promise<wire.Look> {
+    const path = lookPath(model, look);
     const { etag } = await this.versioned<wire.Look>("GET", path);
     return (await this.versioned<wire.Look>("PATCH", path, change, etag)).value;
   }
-  async delete_look(model: Id, look: Id): Promise<void> {
-    await this.delete_as_is(look_path(model, look));
+  async deleteLook(model: Id, look: Id): Promise<void> {
+    await this.deleteAsIs(lookPath(model, look));
   }
   /** What was done in a project, newest first; `before`: `next` of the page before. */
   async activity(
@@ -390,150 +386,150 @@ export class Api {
     const query = new URLSearchParams({ limit: `${limit}` });
     if (model !== undefined) query.set("model", `${model}`);
     if (before !== undefined) query.set("before", before);
-    return this.json("GET", `${project_path(project)}/activity?${query}`);
+    return this.json("GET", `${projectPath(project)}/activity?${query}`);
   }
   /** What was deleted in a project and can be restored, newest first. */
   async bin(
     project: Id,
     { limit, offset }: { limit: number; offset: number },
   ): Promise<wire.BinList> {
-    return this.json("GET", `${project_path(project)}/bin?limit=${limit}&offset=${offset}`);
+    return this.json("GET", `${projectPath(project)}/bin?limit=${limit}&offset=${offset}`);
   }
-  async restore_from_bin(project: Id, entry: string): Promise<wire.BinRestored> {
-    return this.json("POST", `${project_path(project)}/bin/${encodeURIComponent(entry)}/restore`);
+  async restoreFromBin(project: Id, entry: string): Promise<wire.BinRestored> {
+    return this.json("POST", `${projectPath(project)}/bin/${encodeURIComponent(entry)}/restore`);
   }
-  async erase_from_bin(project: Id, entry: string): Promise<void> {
-    await this.request("DELETE", `${project_path(project)}/bin/${encodeURIComponent(entry)}`);
+  async eraseFromBin(project: Id, entry: string): Promise<void> {
+    await this.request("DELETE", `${projectPath(project)}/bin/${encodeURIComponent(entry)}`);
   }
   /** Who sees the project, by name. */
-  async project_people(project: Id): Promise<wire.ProjectPerson[]> {
-    return this.all(`${project_path(project)}/people`, "people");
+  async projectPeople(project: Id): Promise<wire.ProjectPerson[]> {
+    return this.all(`${projectPath(project)}/people`, "people");
   }
   /** Of a model, with replies, by id. */
   async comments(model: Id): Promise<wire.Comment[]> {
     return this.all(`/models/${encodeURIComponent(model)}/comments`, "comments");
   }
   async comment(id: number): Promise<wire.Comment> {
-    return this.json("GET", comment_path(id));
+    return this.json("GET", commentPath(id));
   }
   /** Sent again with the same key it is not written twice. */
-  async create_comment(model: Id, comment: wire.CommentCreate, key: string): Promise<wire.Comment> {
+  async createComment(model: Id, comment: wire.CommentCreate, key: string): Promise<wire.Comment> {
     return this.parsed(
       await this.request("POST", `/models/${encodeURIComponent(model)}/comments`, comment, {
         "Idempotency-Key": key,
       }),
     );
   }
-  async create_reply(thread: number, text: string, key: string): Promise<wire.Comment> {
+  async createReply(thread: number, text: string, key: string): Promise<wire.Comment> {
     return this.parsed(
       await this.request(
         "POST",
-        `${comment_path(thread)}/replies`,
+        `${commentPath(thread)}/replies`,
         { text },
         { "Idempotency-Key": key },
       ),
     );
   }
   /** With the version that was read: another's change in between is an ApiError of status 412. */
-  async change_comment(
+  async changeComment(
     id: number,
     change: wire.CommentPatch,
     version: number,
   ): Promise<wire.Comment> {
-    return (await this.versioned<wire.Comment>("PATCH", comment_path(id), change, etag_of(version)))
+    return (await this.versioned<wire.Comment>("PATCH", commentPath(id), change, etagOf(version)))
       .value;
   }
-  async delete_comment(id: number, version: number): Promise<void> {
-    await this.request("DELETE", comment_path(id), undefined, { "If-Match": etag_of(version) });
+  async deleteComment(id: number, version: number): Promise<void> {
+    await this.request("DELETE", commentPath(id), undefined, { "If-Match": etagOf(version) });
   }
 
   /** All named views of a model. */
   /** What of the layer waits for review, of one person or (null) of all, the oldest first. */
-  async review_queue(
+  async reviewQueue(
     model: Id,
     layer: Id,
     limit: number,
     user: string | null,
   ): Promise<wire.ReviewQueue> {
     const of = user === null ? "" : `&user=${encodeURIComponent(user)}`;
-    return this.json("GET", `${layer_path(model, layer)}/review?limit=${limit}${of}`);
+    return this.json("GET", `${layerPath(model, layer)}/review?limit=${limit}${of}`);
   }
   async review(model: Id, layer: Id, decision: wire.Review): Promise<wire.EditResult> {
-    return this.json("POST", `${layer_path(model, layer)}/review`, decision);
+    return this.json("POST", `${layerPath(model, layer)}/review`, decision);
   }
   async views(model: Id): Promise<wire.View[]> {
-    return this.all(views_path(model), "views");
+    return this.all(viewsPath(model), "views");
   }
   async view(model: Id, view: Id): Promise<wire.View> {
-    return this.json("GET", view_path(model, view));
+    return this.json("GET", viewPath(model, view));
   }
   /** What it shows now; no side of the picture is longer than `side` pixels. */
-  async view_picture(model: Id, view: Id, side: number, signal: AbortSignal): Promise<Blob> {
+  async viewPicture(model: Id, view: Id, side: number, signal: AbortSignal): Promise<Blob> {
     return this.blob(
       "GET",
-      `${view_path(model, view)}/picture?thumbnail=${side}`,
+      `${viewPath(model, view)}/picture?thumbnail=${side}`,
       undefined,
       signal,
     );
   }
   /** `key`: the same for each attempt at one view. */
-  async create_view(model: Id, view: wire.ViewCreate, key: string): Promise<wire.View> {
+  async createView(model: Id, view: wire.ViewCreate, key: string): Promise<wire.View> {
     return this.parsed(
-      await this.request("POST", views_path(model), view, { "Idempotency-Key": key }),
+      await this.request("POST", viewsPath(model), view, { "Idempotency-Key": key }),
     );
   }
   /** Where nobody changed it since `version`. */
-  async change_view(
+  async changeView(
     model: Id,
     view: Id,
     change: wire.ViewPatch,
     version: number,
   ): Promise<wire.View> {
     return (
-      await this.versioned<wire.View>("PATCH", view_path(model, view), change, etag_of(version))
+      await this.versioned<wire.View>("PATCH", viewPath(model, view), change, etagOf(version))
     ).value;
   }
-  async delete_view(model: Id, view: Id, version: number): Promise<void> {
-    await this.request("DELETE", view_path(model, view), undefined, {
-      "If-Match": etag_of(version),
+  async deleteView(model: Id, view: Id, version: number): Promise<void> {
+    await this.request("DELETE", viewPath(model, view), undefined, {
+      "If-Match": etagOf(version),
     });
   }
   /** Of a screen that shows a tour; sets its cookie. */
-  async sign_in_kiosk(link: string): Promise<wire.KioskSelf> {
+  async signInKiosk(link: string): Promise<wire.KioskSelf> {
     return this.json("POST", "/auth/kiosk", { link });
   }
-  async kiosk_self(): Promise<wire.KioskSelf> {
+  async kioskSelf(): Promise<wire.KioskSelf> {
     return this.json("GET", "/kiosk");
   }
 
   /** All tours of a model. */
   async tours(model: Id): Promise<wire.TourEntry[]> {
-    return this.all(tours_path(model), "tours");
+    return this.all(toursPath(model), "tours");
   }
   async tour(model: Id, tour: Id): Promise<wire.Tour> {
-    return this.json("GET", tour_path(model, tour));
+    return this.json("GET", tourPath(model, tour));
   }
   /** `key`: the same for each attempt at one tour. */
-  async create_tour(model: Id, tour: wire.TourCreate, key: string): Promise<wire.Tour> {
+  async createTour(model: Id, tour: wire.TourCreate, key: string): Promise<wire.Tour> {
     return this.parsed(
-      await this.request("POST", tours_path(model), tour, { "Idempotency-Key": key }),
+      await this.request("POST", toursPath(model), tour, { "Idempotency-Key": key }),
     );
   }
   /** Where nobody changed it since `version`. */
-  async change_tour(
+  async changeTour(
     model: Id,
     tour: Id,
     change: wire.TourPatch,
     version: number,
   ): Promise<wire.Tour> {
     return (
-      await this.versioned<wire.Tour>("PATCH", tour_path(model, tour), change, etag_of(version))
+      await this.versioned<wire.Tour>("PATCH", tourPath(model, tour), change, etagOf(version))
     ).value;
   }
   /** With its links for kiosks. */
-  async delete_tour(model: Id, tour: Id, version: number): Promise<void> {
-    await this.request("DELETE", tour_path(model, tour), undefined, {
-      "If-Match": etag_of(version),
+  async deleteTour(model: Id, tour: Id, version: number): Promise<void> {
+    await this.request("DELETE", tourPath(model, tour), undefined, {
+      "If-Match": etagOf(version),
     });
   }
   /** Those that this person may see to: administrators all, curators those of their projects. */
@@ -541,71 +537,67 @@ export class Api {
     return this.all("/kiosks", "kiosks");
   }
   /** The link is told this once. */
-  async create_kiosk(model: Id, tour: Id, kiosk: wire.KioskCreate): Promise<wire.KioskMade> {
-    return this.json("POST", `${tour_path(model, tour)}/kiosks`, kiosk);
+  async createKiosk(model: Id, tour: Id, kiosk: wire.KioskCreate): Promise<wire.KioskMade> {
+    return this.json("POST", `${tourPath(model, tour)}/kiosks`, kiosk);
   }
-  async revoke_kiosk(kiosk: number): Promise<void> {
-    await this.request("DELETE", kiosk_path(kiosk));
+  async revokeKiosk(kiosk: number): Promise<void> {
+    await this.request("DELETE", kioskPath(kiosk));
   }
   /** Asks it to load its page anew, at its next heartbeat. */
-  async reload_kiosk(kiosk: number): Promise<wire.Kiosk> {
-    return this.json("POST", `${kiosk_path(kiosk)}/reload`);
+  async reloadKiosk(kiosk: number): Promise<wire.Kiosk> {
+    return this.json("POST", `${kioskPath(kiosk)}/reload`);
   }
   async tables(project: Id): Promise<wire.Table[]> {
-    return this.all(`${project_path(project)}/tables`, "tables");
+    return this.all(`${projectPath(project)}/tables`, "tables");
   }
   async table(table: Id): Promise<wire.Table> {
-    return this.json("GET", table_path(table));
+    return this.json("GET", tablePath(table));
   }
   /**
    * With its records and their history. Refused while a layer, or a column of another table, names
    * it.
    */
-  async delete_table(table: Id): Promise<void> {
-    const { etag } = await this.versioned<wire.Table>("GET", table_path(table));
-    await this.request("DELETE", table_path(table), undefined, { "If-Match": etag });
+  async deleteTable(table: Id): Promise<void> {
+    const { etag } = await this.versioned<wire.Table>("GET", tablePath(table));
+    await this.request("DELETE", tablePath(table), undefined, { "If-Match": etag });
   }
   /** The column that says what a record is called, by its id; null: the best one by rule. */
-  async set_title_column(table: Id, column: number | null): Promise<wire.Table> {
-    return this.change_as_is(table_path(table), {
+  async setTitleColumn(table: Id, column: number | null): Promise<wire.Table> {
+    return this.changeAsIs(tablePath(table), {
       title_column: column === null ? "" : `${column}`,
     });
   }
-  async create_column(table: Id, column: wire.ColumnCreate): Promise<wire.ColumnChanged> {
-    return this.json("POST", `${table_path(table)}/columns`, column);
+  async createColumn(table: Id, column: wire.ColumnCreate): Promise<wire.ColumnChanged> {
+    return this.json("POST", `${tablePath(table)}/columns`, column);
   }
-  async change_column(
-    table: Id,
-    column: Id,
-    change: wire.ColumnPatch,
-  ): Promise<wire.ColumnChanged> {
-    return this.change_as_is(column_path(table, column), change);
+  async changeColumn(table: Id, column: Id, change: wire.ColumnPatch): Promise<wire.ColumnChanged> {
+    return this.changeAsIs(columnPath(table, column), change);
   }
-  async drop_column(table: Id, column: Id): Promise<void> {
-    await this.delete_as_is(column_path(table, column));
+  async dropColumn(table: Id, column: Id): Promise<void> {
+    await this.deleteAsIs(columnPath(table, column));
   }
   /** Of the caller's changes of columns and records, the newest. */
-  async undo_table(table: Id): Promise<wire.TableChanged> {
-    return this.json("POST", `${table_path(table)}/undo`);
+  async undoTable(table: Id): Promise<wire.TableChanged> {
+    return this.json("POST", `${tablePath(table)}/undo`);
   }
-  async redo_table(table: Id): Promise<wire.TableChanged> {
-    return this.json("POST", `${table_path(table)}/redo`);
+  async redoTable(table: Id): Promise<wire.TableChanged> {
+    return this.json("POST", `${tablePath(table)}/redo`);
   }
   /** Newest first. */
-  async table_edits(table: Id, limit: number): Promise<wire.TableEdit[]> {
+  async tableEdits(table: Id, limit: number): Promise<wire.TableEdit[]> {
     return (
       await this.json<wire.TableEditList>(
         "GET",
-        `${table_path(table)}/edits?${new URLSearchParams({ limit: `${limit}` })}`,
+        `${tablePath(table)}/edits?${new URLSearchParams({ limit: `${limit}` })}`,
       )
     ).edits;
   }
   /** Of one record, newest first. */
-  async record_edits(table: Id, key: number, limit: number): Promise<wire.TableEdit[]> {
+  async recordEdits(table: Id, key: number, limit: number): Promise<wire.TableEdit[]> {
     return (
       await this.json<wire.TableEditList>(
         "GET",
-        `${table_path(table)}/edits?${new URLSearchParams({ key: `${key}`, limit: `${limit}` })}`,
+        `${tablePath(table)}/edits?${new URLSearchParams({ key: `${key}`, limit: `${limit}` })}`,
       )
     ).edits;
   }
@@ -618,64 +610,64 @@ export class Api {
     if (sortby !== "") query.set("sortby", sortby);
     // in whose alphabet
     if (sortby !== "" && sortby !== "key" && sortby !== "-key")
-      query.set("lang", person_languages()[0]!);
+      query.set("lang", personLanguages()[0]!);
     if (filter !== "") query.set("filter", filter);
-    return this.json("GET", `${records_path(place)}?${query}`);
+    return this.json("GET", `${recordsPath(place)}?${query}`);
   }
   async record(place: RecordPlace, key: number): Promise<wire.TableRecord> {
-    return this.json("GET", `${records_path(place)}/${key}`);
+    return this.json("GET", `${recordsPath(place)}/${key}`);
   }
   /** Without a key it gets the next one. */
-  async create_record(table: Id, record: wire.RecordInput = {}): Promise<wire.TableRecord> {
-    return this.json("POST", records_path({ table }), { values: {}, ...record });
+  async createRecord(table: Id, record: wire.RecordInput = {}): Promise<wire.TableRecord> {
+    return this.json("POST", recordsPath({ table }), { values: {}, ...record });
   }
   /** With the version that was read: another's change in between is an ApiError of status 412. */
-  async change_record(table: Id, key: number, change: wire.RecordPatch): Promise<wire.TableRecord> {
-    const path = `${records_path({ table })}/${key}`;
-    if (change.version === undefined) return this.change_as_is(path, change);
-    return (await this.versioned<wire.TableRecord>("PATCH", path, change, etag_of(change.version)))
+  async changeRecord(table: Id, key: number, change: wire.RecordPatch): Promise<wire.TableRecord> {
+    const path = `${recordsPath({ table })}/${key}`;
+    if (change.version === undefined) return this.changeAsIs(path, change);
+    return (await this.versioned<wire.TableRecord>("PATCH", path, change, etagOf(change.version)))
       .value;
   }
   /** `texels`: what becomes of the surface that has the record's key. */
-  async delete_record(table: Id, key: number, texels: TexelsOfDeleted): Promise<void> {
+  async deleteRecord(table: Id, key: number, texels: TexelsOfDeleted): Promise<void> {
     const query = new URLSearchParams({
       texels: texels.what,
       ...(texels.what === "reassign" ? { to: `${texels.to}` } : {}),
     });
-    const path = `${records_path({ table })}/${key}`;
-    await this.delete_as_is(`${path}?${query}`);
+    const path = `${recordsPath({ table })}/${key}`;
+    await this.deleteAsIs(`${path}?${query}`);
   }
   /** Files of a record. */
   async attachments(table: Id, key: number): Promise<wire.Attachment[]> {
     return (
-      await this.json<wire.AttachmentList>("GET", `${records_path({ table })}/${key}/attachments`)
+      await this.json<wire.AttachmentList>("GET", `${recordsPath({ table })}/${key}/attachments`)
     ).attachments;
   }
   /** Where a file is had, or a small JPEG of a picture, of at most so many pixels a side. */
-  attachment_url(id: number, thumbnail?: 64 | 128 | 256 | 512 | 1024): string {
+  attachmentUrl(id: number, thumbnail?: 64 | 128 | 256 | 512 | 1024): string {
     return `${kBase}/attachments/${id}${thumbnail ? `?thumbnail=${thumbnail}` : ""}`;
   }
   async attach(table: Id, key: number, column: string, file: File): Promise<void> {
     const query = new URLSearchParams({ name: file.name, column });
-    await this.request_raw("POST", `${records_path({ table })}/${key}/attachments?${query}`, file, {
+    await this.requestRaw("POST", `${recordsPath({ table })}/${key}/attachments?${query}`, file, {
       "Content-Type": "application/octet-stream",
     });
   }
-  async show_attachment(id: number, visibility: wire.Visibility): Promise<wire.Attachment> {
+  async showAttachment(id: number, visibility: wire.Visibility): Promise<wire.Attachment> {
     return this.json("PATCH", `/attachments/${id}`, { visibility });
   }
   /** Which records files are of, by their names. */
-  async match_attachments(table: Id, match: wire.AttachmentMatch): Promise<wire.AttachmentMatches> {
-    return this.json("POST", `${table_path(table)}/attachments/match`, match);
+  async matchAttachments(table: Id, match: wire.AttachmentMatch): Promise<wire.AttachmentMatches> {
+    return this.json("POST", `${tablePath(table)}/attachments/match`, match);
   }
   /** Where records are had as CSV. */
-  records_url(place: RecordPlace, query: Record<string, string>): string {
-    return `${kBase}${records_path(place)}?${new URLSearchParams({ f: "csv", ...query })}`;
+  recordsUrl(place: RecordPlace, query: Record<string, string>): string {
+    return `${kBase}${recordsPath(place)}?${new URLSearchParams({ f: "csv", ...query })}`;
   }
   /** `dry_run` only reports. Where rows are wrong nothing is written. */
-  async import_records(table: Id, csv: Blob, dry_run: boolean): Promise<wire.RecordsReport> {
-    const path = `${records_path({ table })}${dry_run ? "?dry_run=true" : ""}`;
-    return this.parsed(await this.request_raw("POST", path, csv, { "Content-Type": "text/csv" }));
+  async importRecords(table: Id, csv: Blob, dryRun: boolean): Promise<wire.RecordsReport> {
+    const path = `${recordsPath({ table })}${dryRun ? "?dry_run=true" : ""}`;
+    return this.parsed(await this.requestRaw("POST", path, csv, { "Content-Type": "text/csv" }));
   }
   /**
    * Terms of a list as a tree that is written down; with `q` those that have its words, and those
@@ -688,44 +680,44 @@ export class Api {
       offset: `${offset}`,
       ...(q === "" ? {} : { q }),
     });
-    return this.json("GET", `${table_path(table)}/terms?${query}`);
+    return this.json("GET", `${tablePath(table)}/terms?${query}`);
   }
   /** Where a list of terms is had as a file that may be imported elsewhere. */
-  terms_url(table: Id, format: "csv" | "turtle"): string {
-    return `${kBase}${table_path(table)}/terms?f=${format}`;
+  termsUrl(table: Id, format: "csv" | "turtle"): string {
+    return `${kBase}${tablePath(table)}/terms?f=${format}`;
   }
   /**
    * A new list of the project, or more terms for one. `dry_run` only reports. Where terms are wrong
    * nothing is written.
    */
-  async import_terms(
+  async importTerms(
     into: { project: Id; name: string } | { table: Id },
     file: Blob,
     type: TermsType,
-    dry_run: boolean,
+    dryRun: boolean,
   ): Promise<wire.RecordsReport> {
     const query = new URLSearchParams({
       ...("name" in into ? { name: into.name } : {}),
-      ...(dry_run ? { dry_run: "true" } : {}),
+      ...(dryRun ? { dry_run: "true" } : {}),
     });
-    const place = "table" in into ? table_path(into.table) : project_path(into.project);
+    const place = "table" in into ? tablePath(into.table) : projectPath(into.project);
     return this.parsed(
-      await this.request_raw("POST", `${place}/terms?${query}`, file, { "Content-Type": type }),
+      await this.requestRaw("POST", `${place}/terms?${query}`, file, { "Content-Type": type }),
     );
   }
   async templates(): Promise<wire.Template[]> {
     return this.all("/templates", "templates");
   }
   /** Makes its tables, and its layers on the model. */
-  async use_template(project: Id, template: Id, use: wire.TemplateUse): Promise<TemplateMade> {
+  async useTemplate(project: Id, template: Id, use: wire.TemplateUse): Promise<TemplateMade> {
     const made = await this.json<wire.TemplateMade>(
       "POST",
-      `${project_path(project)}/templates/${encodeURIComponent(template)}`,
+      `${projectPath(project)}/templates/${encodeURIComponent(template)}`,
       use,
     );
-    return { tables: made.tables, layers: made.layers.map(complete_layer) };
+    return { tables: made.tables, layers: made.layers.map(completeLayer) };
   }
-  async has_record(table: Id, key: number): Promise<boolean> {
+  async hasRecord(table: Id, key: number): Promise<boolean> {
     try {
       await this.request("GET", `/tables/${encodeURIComponent(table)}/records/${key}`);
       return true;
@@ -737,22 +729,22 @@ export class Api {
   async tools(): Promise<wire.Tool[]> {
     return this.all("/tools", "tools");
   }
-  async create_tool(picture: Blob, name: string, part: string): Promise<wire.Tool> {
+  async createTool(picture: Blob, name: string, part: string): Promise<wire.Tool> {
     const query = new URLSearchParams({ name, part });
-    const response = await this.request_raw("POST", `/tools?${query}`, picture, {
+    const response = await this.requestRaw("POST", `/tools?${query}`, picture, {
       "Content-Type": picture.type,
     });
     return this.parsed<wire.Tool>(response);
   }
-  async rename_tool(tool: Id, name: string): Promise<wire.Tool> {
+  async renameTool(tool: Id, name: string): Promise<wire.Tool> {
     return this.json("PATCH", `/tools/${encodeURIComponent(tool)}`, { name });
   }
-  async delete_tool(tool: Id): Promise<void> {
+  async deleteTool(tool: Id): Promise<void> {
     await this.request("DELETE", `/tools/${encodeURIComponent(tool)}`);
   }
   /** Where records of the layer lie, and how much surface they have. */
   async extent(model: Id, layer: Id, highlight: wire.Highlight): Promise<wire.Extent> {
-    return this.json("POST", `${layer_path(model, layer)}/extent`, highlight);
+    return this.json("POST", `${layerPath(model, layer)}/extent`, highlight);
   }
   /** What a column holds, in classes; without a count the server's own. */
   async classes(
@@ -767,7 +759,7 @@ export class Api {
     });
     return this.json(
       "GET",
-      `${table_path(table)}/columns/${encodeURIComponent(column)}/classes?${query}`,
+      `${tablePath(table)}/columns/${encodeURIComponent(column)}/classes?${query}`,
     );
   }
   /** What a camera sees at a pixel of its window. */
@@ -784,13 +776,13 @@ export class Api {
     camera: CameraMessage,
     path: readonly (readonly [number, number])[],
   ): Promise<wire.Profile> {
-    return this.profile_of(model, { camera, path, layers: [] });
+    return this.profileOf(model, { camera, path, layers: [] });
   }
   /** The same, or through places; also as the CSV file that the server makes of it. */
-  async profile_of(model: Id, line: ProfileLine): Promise<wire.Profile> {
+  async profileOf(model: Id, line: ProfileLine): Promise<wire.Profile> {
     return this.json("POST", `/models/${encodeURIComponent(model)}/profile`, line);
   }
-  async profile_csv(model: Id, line: ProfileLine): Promise<Blob> {
+  async profileCsv(model: Id, line: ProfileLine): Promise<Blob> {
     return (
       await this.request("POST", `/models/${encodeURIComponent(model)}/profile`, line, {
         Accept: "text/csv",
@@ -798,49 +790,49 @@ export class Api {
     ).blob();
   }
   async statistics(model: Id, layer: Id): Promise<Statistics> {
-    return this.json("GET", `${layer_path(model, layer)}/statistics`);
+    return this.json("GET", `${layerPath(model, layer)}/statistics`);
   }
   /** Where the areas of a layer's classes are had as a sheet. */
-  quantities_url(model: Id, layer: Id, query: SheetQuery): string {
-    return `${kBase}${layer_path(model, layer)}/quantities?${new URLSearchParams({ ...query })}`;
+  quantitiesUrl(model: Id, layer: Id, query: SheetQuery): string {
+    return `${kBase}${layerPath(model, layer)}/quantities?${new URLSearchParams({ ...query })}`;
   }
   /**
    * Where outlines of a layer's classes, and lines and points of its records, are had for maps;
    * `along`: the way that the map is looked at.
    */
-  features_url(model: Id, layer: Id, query: { f: string; along: string; lang: string }): string {
-    return `${kBase}${layer_path(model, layer)}/features?${new URLSearchParams({ ...query })}`;
+  featuresUrl(model: Id, layer: Id, query: { f: string; along: string; lang: string }): string {
+    return `${kBase}${layerPath(model, layer)}/features?${new URLSearchParams({ ...query })}`;
   }
   /** Areas where two layers meet: layers of whole numbers or keys. */
-  async cross_table(model: Id, rows: Id, columns: Id): Promise<wire.CrossTable> {
+  async crossTable(model: Id, rows: Id, columns: Id): Promise<wire.CrossTable> {
     return this.json("POST", `/models/${encodeURIComponent(model)}/cross-table`, { rows, columns });
   }
-  async cross_table_sheet(model: Id, rows: Id, columns: Id, query: SheetQuery): Promise<Blob> {
+  async crossTableSheet(model: Id, rows: Id, columns: Id, query: SheetQuery): Promise<Blob> {
     const path = `/models/${encodeURIComponent(model)}/cross-table?${new URLSearchParams({ ...query })}`;
     return (await this.request("POST", path, { rows, columns }, kAnyFile)).blob();
   }
 
   /** Answered once it is durable. */
   async edit(model: Id, layer: Id, edit: wire.Edit): Promise<wire.EditResult> {
-    return this.json("POST", `${layer_path(model, layer)}/edits`, edit);
+    return this.json("POST", `${layerPath(model, layer)}/edits`, edit);
   }
 
   /** Where a layer's texels are had as a file. */
-  texels_url(model: Id, layer: Id, format: string): string {
-    return `${kBase}${layer_path(model, layer)}/texels.${format}`;
+  texelsUrl(model: Id, layer: Id, format: string): string {
+    return `${kBase}${layerPath(model, layer)}/texels.${format}`;
   }
   /** The layer then holds what the file does. Answered once it is durable. */
-  async put_texels(model: Id, layer: Id, format: string, file: Blob): Promise<wire.EditResult> {
-    const path = `${layer_path(model, layer)}/texels.${format}`;
-    const response = await this.request_raw("PUT", path, file, {
+  async putTexels(model: Id, layer: Id, format: string, file: Blob): Promise<wire.EditResult> {
+    const path = `${layerPath(model, layer)}/texels.${format}`;
+    const response = await this.requestRaw("PUT", path, file, {
       ...kFile,
-      "Idempotency-Key": new_id(),
+      "Idempotency-Key": newId(),
     });
     return (await response.json()) as wire.EditResult;
   }
 
   /** Paints files over the layer. Answered once it is durable. */
-  paint_map(
+  paintMap(
     model: Id,
     layer: Id,
     kind: "readings" | "polygons" | "picture",
@@ -848,7 +840,7 @@ export class Api {
     files: readonly UploadFile[],
     progress: Progress,
   ): Upload<wire.EditResult> {
-    const path = `${layer_path(model, layer)}/${kind}?${new URLSearchParams(query)}`;
+    const path = `${layerPath(model, layer)}/${kind}?${new URLSearchParams(query)}`;
     // the names of maps tell what they are
     return this.upload("POST", path, files, progress, kind !== "readings");
   }
@@ -856,7 +848,7 @@ export class Api {
    * One number a line for each vertex of a scan; `source` where the model has several. Answered
    * once it is durable.
    */
-  put_vertex_values(
+  putVertexValues(
     model: Id,
     layer: Id,
     source: string | null,
@@ -864,10 +856,10 @@ export class Api {
     progress: Progress,
   ): Upload<wire.EditResult> {
     const query = source === null ? "" : `?${new URLSearchParams({ source })}`;
-    return this.upload("PUT", `${layer_path(model, layer)}/vertices.csv${query}`, [file], progress);
+    return this.upload("PUT", `${layerPath(model, layer)}/vertices.csv${query}`, [file], progress);
   }
   /** What a map's files hold. */
-  map_contents(
+  mapContents(
     model: Id,
     query: Record<string, string>,
     files: readonly UploadFile[],
@@ -877,7 +869,7 @@ export class Api {
     return this.upload("POST", path, files, progress, true);
   }
   /** Makes a look of an orthophoto. */
-  add_orthophoto(
+  addOrthophoto(
     model: Id,
     query: Record<string, string>,
     files: readonly UploadFile[],
@@ -897,17 +889,17 @@ export class Api {
   }
 
   /** A job whose file it is. */
-  async make_figure(model: Id, figure: wire.FigureRequest): Promise<Job> {
+  async makeFigure(model: Id, figure: wire.FigureRequest): Promise<Job> {
     return this.parsed(
-      await this.request("POST", figures_path(model), figure, { Prefer: "respond-async" }),
+      await this.request("POST", figuresPath(model), figure, { Prefer: "respond-async" }),
     );
   }
   /** The file itself, for small ones. */
   async figure(model: Id, figure: wire.FigureRequest, signal: AbortSignal): Promise<Blob> {
-    return this.blob("POST", figures_path(model), figure, signal);
+    return this.blob("POST", figuresPath(model), figure, signal);
   }
   /** What a job of this person made. */
-  async job_file(id: Id): Promise<Blob> {
+  async jobFile(id: Id): Promise<Blob> {
     return (
       await this.request("GET", `/jobs/${encodeURIComponent(id)}/file`, undefined, kAnyFile)
     ).blob();
@@ -919,32 +911,32 @@ export class Api {
     path: string,
     files: readonly UploadFile[],
     progress: Progress,
-    as_form = files.length > 1,
+    asForm = files.length > 1,
   ): Upload<T> {
     const form = new FormData();
-    if (as_form) for (const each of files) form.append("files", each.file, each.path);
-    const request = this.make_request_();
+    if (asForm) for (const each of files) form.append("files", each.file, each.path);
+    const request = this._makeRequest();
     const done = new Promise<T>((resolve, reject) => {
       request.open(method, kBase + path);
-      if (!as_form) request.setRequestHeader("Content-Type", "application/octet-stream");
-      request.setRequestHeader("Idempotency-Key", new_id());
+      if (!asForm) request.setRequestHeader("Content-Type", "application/octet-stream");
+      request.setRequestHeader("Idempotency-Key", newId());
       request.upload.onprogress = (event) => {
         if (event.lengthComputable) progress(event.loaded / event.total);
       };
       request.onload = () => {
         if (request.status >= 400) {
-          reject(new ApiError(problem_of_text(request.status, request.responseText)));
+          reject(new ApiError(problemOfText(request.status, request.responseText)));
           return;
         }
         try {
           resolve(JSON.parse(request.responseText) as T);
         } catch {
-          reject(new ApiError(problem_of_text(502, "")));
+          reject(new ApiError(problemOfText(502, "")));
         }
       };
       request.onerror = () => reject(unreachable());
       request.onabort = () => reject(cancelled());
-      request.send(as_form ? form : files[0]!.file);
+      request.send(asForm ? form : files[0]!.file);
     });
     return { done, cancel: () => request.abort() };
   }
@@ -958,16 +950,16 @@ export class Api {
     for (let next: string | null = `${path}?limit=1000`; next !== null;) {
       const response: Response = await this.request("GET", next);
       found.push(...(await this.parsed<Record<string, T[]>>(response))[list]!);
-      next = next_page(response.headers.get("Link"));
+      next = nextPage(response.headers.get("Link"));
     }
     return found;
   }
 
   /** A change that stands on its own, of whatever is there now. */
-  private async change_as_is<T>(path: string, change: unknown): Promise<T> {
+  private async changeAsIs<T>(path: string, change: unknown): Promise<T> {
     return (await this.versioned<T>("PATCH", path, change, "*")).value;
   }
-  private async delete_as_is(path: string): Promise<void> {
+  private async deleteAsIs(path: string): Promise<void> {
     await this.request("DELETE", path, undefined, { "If-Match": "*" });
   }
 
@@ -989,7 +981,7 @@ export class Api {
     try {
       return (await response.json()) as T;
     } catch {
-      throw new ApiError(problem_of_text(502, ""));
+      throw new ApiError(problemOfText(502, ""));
     }
   }
 
@@ -1015,8 +1007,8 @@ export class Api {
     headers: Record<string, string> = {},
     signal?: AbortSignal,
   ): Promise<Response> {
-    if (body === undefined) return this.request_raw(method, path, null, headers, signal);
-    return this.request_raw(
+    if (body === undefined) return this.requestRaw(method, path, null, headers, signal);
+    return this.requestRaw(
       method,
       path,
       JSON.stringify(body),
@@ -1025,7 +1017,7 @@ export class Api {
     );
   }
 
-  private async request_raw(
+  private async requestRaw(
     method: string,
     path: string,
     body: BodyInit | null,
@@ -1034,10 +1026,10 @@ export class Api {
     keepalive = false,
   ): Promise<Response> {
     const all: Record<string, string> = { Accept: "application/json", ...headers };
-    if (method === "POST" && !kWithSecrets.test(path)) all["Idempotency-Key"] ??= new_id();
+    if (method === "POST" && !kWithSecrets.test(path)) all["Idempotency-Key"] ??= newId();
     let response: Response;
     try {
-      response = await this.fetch_(kBase + path, {
+      response = await this._fetch(kBase + path, {
         method,
         headers: all,
         credentials: "same-origin",
@@ -1049,7 +1041,7 @@ export class Api {
       throw signal?.aborted ? cancelled() : unreachable();
     }
     if (!response.ok)
-      throw new ApiError(problem_of_text(response.status, await response.text().catch(() => "")));
+      throw new ApiError(problemOfText(response.status, await response.text().catch(() => "")));
     return response;
   }
 }
@@ -1067,48 +1059,46 @@ const kFile = { "Content-Type": "application/octet-stream" };
 /** A read that takes JSON alone is refused where a file of another kind would answer it. */
 const kAnyFile = { Accept: "*/*" };
 
-const layer_path = (model: Id, layer: Id): string =>
+const layerPath = (model: Id, layer: Id): string =>
   `/models/${encodeURIComponent(model)}/layers/${encodeURIComponent(layer)}`;
 
-const person_path = (user: string): string => `/users/${encodeURIComponent(user)}`;
-const project_group_path = (project: string, group: number): string =>
+const personPath = (user: string): string => `/users/${encodeURIComponent(user)}`;
+const projectGroupPath = (project: string, group: number): string =>
   `/projects/${encodeURIComponent(project)}/groups/${group}`;
-const member_path = (project: string, user: string): string =>
+const memberPath = (project: string, user: string): string =>
   `/projects/${encodeURIComponent(project)}/members/${encodeURIComponent(user)}`;
 
-const project_path = (project: Id): string => `/projects/${encodeURIComponent(project)}`;
+const projectPath = (project: Id): string => `/projects/${encodeURIComponent(project)}`;
 
-const table_path = (table: Id): string => `/tables/${encodeURIComponent(table)}`;
+const tablePath = (table: Id): string => `/tables/${encodeURIComponent(table)}`;
 
-const column_path = (table: Id, column: Id): string =>
-  `${table_path(table)}/columns/${encodeURIComponent(column)}`;
+const columnPath = (table: Id, column: Id): string =>
+  `${tablePath(table)}/columns/${encodeURIComponent(column)}`;
 
-const records_path = (place: RecordPlace): string =>
-  `${"table" in place ? table_path(place.table) : layer_path(place.model, place.layer)}/records`;
+const recordsPath = (place: RecordPlace): string =>
+  `${"table" in place ? tablePath(place.table) : layerPath(place.model, place.layer)}/records`;
 
-const comment_path = (id: number): string => `/comments/${id}`;
+const commentPath = (id: number): string => `/comments/${id}`;
 
-const figures_path = (model: Id): string =>
-  `/models/${encodeURIComponent(model)}/figures?${new URLSearchParams({ lang: page_locale() })}`;
+const figuresPath = (model: Id): string =>
+  `/models/${encodeURIComponent(model)}/figures?${new URLSearchParams({ lang: pageLocale() })}`;
 
-const views_path = (model: Id): string => `/models/${encodeURIComponent(model)}/views`;
-const view_path = (model: Id, view: Id): string =>
-  `${views_path(model)}/${encodeURIComponent(view)}`;
+const viewsPath = (model: Id): string => `/models/${encodeURIComponent(model)}/views`;
+const viewPath = (model: Id, view: Id): string => `${viewsPath(model)}/${encodeURIComponent(view)}`;
 
-const tours_path = (model: Id): string => `/models/${encodeURIComponent(model)}/tours`;
-const tour_path = (model: Id, tour: Id): string =>
-  `${tours_path(model)}/${encodeURIComponent(tour)}`;
-const kiosk_path = (kiosk: number): string => `/kiosks/${kiosk}`;
+const toursPath = (model: Id): string => `/models/${encodeURIComponent(model)}/tours`;
+const tourPath = (model: Id, tour: Id): string => `${toursPath(model)}/${encodeURIComponent(tour)}`;
+const kioskPath = (kiosk: number): string => `/kiosks/${kiosk}`;
 
-const etag_of = (version: number): string => `"v${version}"`;
+const etagOf = (version: number): string => `"v${version}"`;
 
-const look_path = (model: Id, look: Id): string =>
+const lookPath = (model: Id, look: Id): string =>
   `/models/${encodeURIComponent(model)}/looks/${encodeURIComponent(look)}`;
 
 const cancelled = (): ApiError => new ApiError({ status: 499, title: "Cancelled" });
 
 function unreachable(): ApiError {
-  const [title, detail] = own_problems().unreachable;
+  const [title, detail] = ownProblems().unreachable;
   return new ApiError({ status: 0, title, detail });
 }
 
@@ -1116,7 +1106,7 @@ function unreachable(): ApiError {
  * Where the next page of a list is, below `kBase`, by the `Link` of this one (RFC 8288); null: it
  * is the last.
  */
-export function next_page(link: string | null): string | null {
+export function nextPage(link: string | null): string | null {
   const target = /<([^>]*)>\s*;\s*rel="?next"?/.exec(link ?? "")?.[1];
   return target?.startsWith(kBase) ? target.slice(kBase.length) : null;
 }
@@ -1124,7 +1114,7 @@ export function next_page(link: string | null): string | null {
 /**
  * The problem in an answer's text; where the text is not one, what the status means in plain words.
  */
-export function problem_of_text(status: number, text: string): ProblemBody {
+export function problemOfText(status: number, text: string): ProblemBody {
   try {
     const body = JSON.parse(text) as Partial<ProblemBody> | null;
     if (body && typeof body.title === "string") {
@@ -1140,7 +1130,7 @@ export function problem_of_text(status: number, text: string): ProblemBody {
   } catch {
     // Not JSON: a proxy's page, or nothing. The status says enough.
   }
-  const words = own_problems();
+  const words = ownProblems();
   const [title, detail] = words.statuses[status] ?? [
     words.other_status(status),
     words.other_status_detail,
@@ -1149,7 +1139,7 @@ export function problem_of_text(status: number, text: string): ProblemBody {
 }
 
 /** A model's name from its file's: "statue_nefertiti_70k.ply" → "statue nefertiti 70k". */
-export function name_of_file(filename: string): string {
+export function nameOfFile(filename: string): string {
   const stem = filename
     .replace(/\.[a-z0-9]{1,5}$/i, "")
     .replace(/_+/g, " ")
@@ -1158,7 +1148,7 @@ export function name_of_file(filename: string): string {
 }
 
 /** A random UUID; also on plain-HTTP addresses, where `crypto.randomUUID` is absent. */
-export function new_id(): string {
+export function newId(): string {
   const bytes = crypto.getRandomValues(new Uint8Array(16));
   bytes[6] = (bytes[6]! & 0x0f) | 0x40;
   bytes[8] = (bytes[8]! & 0x3f) | 0x80;

@@ -24,17 +24,17 @@ export interface FrameCanvasCallbacks {
 
 const kMediaTypes = { jpeg: "image/jpeg", png: "image/png" } as const;
 
-const decode_image = (part: FrameMessage): Promise<BitmapLike> =>
+const decodeImage = (part: FrameMessage): Promise<BitmapLike> =>
   createImageBitmap(new Blob([part.payload], { type: kMediaTypes[part.header.codec] }));
 
 export class FrameCanvas {
-  private queue_: Promise<void> = Promise.resolve();
-  private generation_ = 0;
+  private _queue: Promise<void> = Promise.resolve();
+  private _generation = 0;
 
   constructor(
-    private readonly canvas_: CanvasLike,
-    private readonly callbacks_: FrameCanvasCallbacks,
-    private readonly decode_: (part: FrameMessage) => Promise<BitmapLike> = decode_image,
+    private readonly _canvas: CanvasLike,
+    private readonly _callbacks: FrameCanvasCallbacks,
+    private readonly _decode: (part: FrameMessage) => Promise<BitmapLike> = decodeImage,
   ) {}
 
   /**
@@ -42,32 +42,32 @@ export class FrameCanvas {
    * as drawn, so that the server's credit never runs dry.
    */
   push(part: FrameMessage): void {
-    const generation = this.generation_;
-    const decoded = this.decode_(part);
+    const generation = this._generation;
+    const decoded = this._decode(part);
     decoded.catch(() => {}); // reported where it is awaited, in order
-    this.queue_ = this.queue_.then(async () => {
+    this._queue = this._queue.then(async () => {
       try {
         const bitmap = await decoded;
-        if (generation === this.generation_) this.draw(part, bitmap);
+        if (generation === this._generation) this.draw(part, bitmap);
         bitmap.close();
       } catch (error) {
-        if (generation === this.generation_) this.callbacks_.failed(String(error));
+        if (generation === this._generation) this._callbacks.failed(String(error));
       }
-      if (generation === this.generation_ && part.header.last) this.callbacks_.drawn(part);
+      if (generation === this._generation && part.header.last) this._callbacks.drawn(part);
     });
   }
 
   /** Forgets what is on its way: the connection it came over is gone. */
   reset(): void {
-    this.generation_ += 1;
+    this._generation += 1;
   }
 
   private draw(part: FrameMessage, bitmap: BitmapLike): void {
-    const { full_width, full_height, x, y } = part.header;
-    if (this.canvas_.width !== full_width || this.canvas_.height !== full_height) {
-      this.canvas_.width = full_width;
-      this.canvas_.height = full_height;
+    const { full_width: fullWidth, full_height: fullHeight, x, y } = part.header;
+    if (this._canvas.width !== fullWidth || this._canvas.height !== fullHeight) {
+      this._canvas.width = fullWidth;
+      this._canvas.height = fullHeight;
     }
-    this.canvas_.getContext("2d", { alpha: false })?.drawImage(bitmap as never, x, y);
+    this._canvas.getContext("2d", { alpha: false })?.drawImage(bitmap as never, x, y);
   }
 }

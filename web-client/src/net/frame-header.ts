@@ -4,10 +4,10 @@
  * both read the same golden vectors.
  */
 
-export const FRAME_HEADER_BYTES = 56;
+export const kFrameHeaderBytes = 56;
 const MAGIC = 0x46525453; // "STRF", little-endian
 const VERSION = 1;
-const MAX_SIZE = 8192;
+const kMaxSize = 8192;
 const CODECS = { 1: "jpeg", 2: "png" } as const;
 const KEYFRAME = 1;
 const STILL = 2;
@@ -60,8 +60,8 @@ function demand(holds: boolean, field: string, detail: string): asserts holds {
 }
 
 /** Header and payload of a whole message. Throws FrameError on every message that breaks a rule. */
-export function decode_frame(message: ArrayBuffer): FrameMessage {
-  demand(message.byteLength >= FRAME_HEADER_BYTES, "message", "it has at least 56 bytes");
+export function decodeFrame(message: ArrayBuffer): FrameMessage {
+  demand(message.byteLength >= kFrameHeaderBytes, "message", "it has at least 56 bytes");
   const view = new DataView(message);
   demand(view.getUint32(0, true) === MAGIC, "magic", "it starts with STRF");
   demand(view.getUint8(4) === VERSION, "version", "only version 1 is known");
@@ -76,8 +76,8 @@ export function decode_frame(message: ArrayBuffer): FrameMessage {
     last: (flags & LAST) !== 0,
     view_id: view.getUint32(8, true),
     frame: view.getUint32(12, true),
-    camera_seq: safe_integer(view, 16, "camera_seq"),
-    scene_sequence: safe_integer(view, 24, "scene_sequence"),
+    camera_seq: safeInteger(view, 16, "camera_seq"),
+    scene_sequence: safeInteger(view, 24, "scene_sequence"),
     x: view.getUint16(32, true),
     y: view.getUint16(34, true),
     width: view.getUint16(36, true),
@@ -90,14 +90,14 @@ export function decode_frame(message: ArrayBuffer): FrameMessage {
   };
   check(header);
   demand(
-    message.byteLength - FRAME_HEADER_BYTES === header.payload_bytes,
+    message.byteLength - kFrameHeaderBytes === header.payload_bytes,
     "payload_bytes",
     "the payload is exactly the rest of the message",
   );
-  return { header, payload: new Uint8Array(message, FRAME_HEADER_BYTES) };
+  return { header, payload: new Uint8Array(message, kFrameHeaderBytes) };
 }
 
-function safe_integer(view: DataView, offset: number, field: string): number {
+function safeInteger(view: DataView, offset: number, field: string): number {
   const value = view.getBigUint64(offset, true);
   demand(value <= BigInt(Number.MAX_SAFE_INTEGER), field, "it is at most 2^53 - 1");
   return Number(value);
@@ -107,12 +107,12 @@ function safe_integer(view: DataView, offset: number, field: string): number {
 function check(h: FrameHeader): void {
   demand(h.view_id <= 15, "view_id", "a view is 0 to 15");
   demand(
-    h.full_width >= 1 && h.full_width <= MAX_SIZE,
+    h.full_width >= 1 && h.full_width <= kMaxSize,
     "full_width",
     "a picture is 1 to 8192 pixels wide",
   );
   demand(
-    h.full_height >= 1 && h.full_height <= MAX_SIZE,
+    h.full_height >= 1 && h.full_height <= kMaxSize,
     "full_height",
     "a picture is 1 to 8192 pixels high",
   );

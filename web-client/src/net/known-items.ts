@@ -13,35 +13,35 @@ export class KnownItems<T extends Item> {
   failed = false;
   loaded = false;
 
-  private known_ = new Map<number, T>();
+  private _known = new Map<number, T>();
   // what happens meanwhile
-  private reading_: { gone: Set<number>; come: Set<number> } | null = null;
+  private _reading: { gone: Set<number>; come: Set<number> } | null = null;
 
   get all(): T[] {
-    return [...this.known_.values()];
+    return [...this._known.values()];
   }
   find(id: number): T | null {
-    return this.known_.get(id) ?? null;
+    return this._known.get(id) ?? null;
   }
 
   /** All of them anew. False: they are being read once more, whose answer counts. */
   async load(read: () => Promise<readonly T[]>): Promise<boolean> {
-    const reading = (this.reading_ = { gone: new Set<number>(), come: new Set<number>() });
+    const reading = (this._reading = { gone: new Set<number>(), come: new Set<number>() });
     let items: readonly T[];
     try {
       items = await read();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (reading !== this.reading_) return false;
+      if (reading !== this._reading) return false;
       this.failed = true;
       return true;
     }
-    if (reading !== this.reading_) return false;
-    this.reading_ = null;
+    if (reading !== this._reading) return false;
+    this._reading = null;
     this.failed = false;
     this.loaded = true;
     const come = this.all.filter(({ id }) => reading.come.has(id));
-    this.known_ = new Map(
+    this._known = new Map(
       items.filter(({ id }) => !reading.gone.has(id)).map((item) => [item.id, item]),
     );
     for (const item of come) this.put(item);
@@ -50,15 +50,15 @@ export class KnownItems<T extends Item> {
 
   /** False: what is known is newer, or it is gone. */
   put(item: T): boolean {
-    const known = this.known_.get(item.id);
-    if ((known && known.version > item.version) || this.reading_?.gone.has(item.id)) return false;
-    this.known_.set(item.id, item);
-    this.reading_?.come.add(item.id);
+    const known = this._known.get(item.id);
+    if ((known && known.version > item.version) || this._reading?.gone.has(item.id)) return false;
+    this._known.set(item.id, item);
+    this._reading?.come.add(item.id);
     return true;
   }
 
   drop(id: number): void {
-    this.reading_?.gone.add(id);
-    this.known_.delete(id);
+    this._reading?.gone.add(id);
+    this._known.delete(id);
   }
 }

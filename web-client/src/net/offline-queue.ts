@@ -17,7 +17,7 @@ const kChanges: readonly string[] = [
 
 type Key = [user: string, model: number, made: number, id: string];
 
-const result_of = <T>(request: IDBRequest<T>): Promise<T> =>
+const resultOf = <T>(request: IDBRequest<T>): Promise<T> =>
   new Promise((done, failed) => {
     request.onsuccess = () => done(request.result);
     request.onerror = () => failed(request.error ?? new Error("IndexedDB"));
@@ -29,7 +29,7 @@ function open(): Promise<IDBDatabase> {
   if (database) return database;
   const request = indexedDB.open(kDatabase, 1);
   request.onupgradeneeded = () => void request.result.createObjectStore(kStore);
-  database = result_of(request).then((opened) => {
+  database = resultOf(request).then((opened) => {
     // by the browser: its data were cleared, or the disk failed
     opened.onclose = () => (database = null);
     return opened;
@@ -38,7 +38,7 @@ function open(): Promise<IDBDatabase> {
   return database;
 }
 
-const is_change = (row: unknown): row is ChangeMessage =>
+const isChange = (row: unknown): row is ChangeMessage =>
   typeof row === "object" &&
   row !== null &&
   "id" in row &&
@@ -51,41 +51,41 @@ const is_change = (row: unknown): row is ChangeMessage =>
  * lives as long as the page.
  */
 export class UnsavedShelf {
-  private readonly keys_ = new Map<string, Key>();
-  private made_ = 0;
+  private readonly _keys = new Map<string, Key>();
+  private _made = 0;
 
   constructor(
-    private readonly user_: string,
-    private readonly model_: number,
-    private readonly failed_: (why: unknown) => void,
+    private readonly _user: string,
+    private readonly _model: number,
+    private readonly _failed: (why: unknown) => void,
   ) {}
 
   /** In the order it was made. */
   async read(): Promise<ChangeMessage[]> {
     try {
       const store = (await open()).transaction(kStore).objectStore(kStore);
-      const mine = IDBKeyRange.bound([this.user_, this.model_], [this.user_, this.model_, []]);
+      const mine = IDBKeyRange.bound([this._user, this._model], [this._user, this._model, []]);
       const [keys, rows] = await Promise.all([
-        result_of(store.getAllKeys(mine)),
-        result_of<unknown[]>(store.getAll(mine)),
+        resultOf(store.getAllKeys(mine)),
+        resultOf<unknown[]>(store.getAll(mine)),
       ]);
-      for (const key of keys as Key[]) this.keys_.set(key[3], key);
-      return rows.filter(is_change);
+      for (const key of keys as Key[]) this._keys.set(key[3], key);
+      return rows.filter(isChange);
     } catch {
       return []; // told when something is to be kept
     }
   }
 
   put(message: ChangeMessage): void {
-    this.made_ = Math.max(this.made_ + 1, Date.now() * 1000);
-    const key: Key = [this.user_, this.model_, this.made_, message.id];
-    this.keys_.set(message.id, key);
+    this._made = Math.max(this._made + 1, Date.now() * 1000);
+    const key: Key = [this._user, this._model, this._made, message.id];
+    this._keys.set(message.id, key);
     this.change((store) => store.put(message, key));
   }
 
   remove(ids: readonly string[]): void {
-    const keys = ids.map((id) => this.keys_.get(id)).filter((key) => key !== undefined);
-    for (const id of ids) this.keys_.delete(id);
+    const keys = ids.map((id) => this._keys.get(id)).filter((key) => key !== undefined);
+    for (const id of ids) this._keys.delete(id);
     this.change(...keys.map((key) => (store: IDBObjectStore) => store.delete(key)));
   }
 
@@ -97,8 +97,8 @@ export class UnsavedShelf {
       const store = (await open())
         .transaction(kStore, "readwrite", { durability: "relaxed" })
         .objectStore(kStore);
-      await Promise.all(changes.map((each) => result_of(each(store))));
+      await Promise.all(changes.map((each) => resultOf(each(store))));
     };
-    all().catch(this.failed_);
+    all().catch(this._failed);
   }
 }

@@ -1,7 +1,7 @@
 // Everything this page asked the server to change and that is not known to be durable yet, in the
 // order it was asked. Ids never change, so sending a message again paints nothing twice.
 
-import { new_id } from "./api";
+import { newId } from "./api";
 import type {
   EditRequest,
   Redo,
@@ -27,14 +27,14 @@ interface SingleEntry {
 type Entry = StrokeEntry | SingleEntry;
 
 export class Outbox {
-  private entries_: Entry[] = [];
+  private _entries: Entry[] = [];
 
   /** `dropped` hears the ids of what waits no longer. */
-  constructor(private readonly dropped_: (ids: string[]) => void = () => {}) {}
+  constructor(private readonly _dropped: (ids: string[]) => void = () => {}) {}
 
   /** Changes that are not durable. */
   get waiting(): number {
-    return this.entries_.reduce(
+    return this._entries.reduce(
       (sum, entry) => sum + (entry.kind === "stroke" ? entry.parts.length : 1),
       0,
     );
@@ -43,7 +43,7 @@ export class Outbox {
   add(message: ChangeMessage): void {
     switch (message.op) {
       case "stroke.begin":
-        this.entries_.push({ kind: "stroke", begin: message, parts: [], end: null });
+        this._entries.push({ kind: "stroke", begin: message, parts: [], end: null });
         break;
       case "stroke.extend":
         this.stroke(message.stroke)?.parts.push(message);
@@ -54,7 +54,7 @@ export class Outbox {
         break;
       }
       default:
-        this.entries_.push({ kind: "single", message });
+        this._entries.push({ kind: "single", message });
     }
   }
 
@@ -65,23 +65,23 @@ export class Outbox {
   adopt(messages: readonly ChangeMessage[]): number {
     const before = this.waiting;
     const left = messages.filter((message) => !this.has(message.id));
-    const own = this.entries_;
-    this.entries_ = [];
+    const own = this._entries;
+    this._entries = [];
     for (const message of left) this.add(message);
-    for (const entry of [...this.entries_])
+    for (const entry of [...this._entries])
       if (entry.kind === "stroke" && !entry.end)
-        this.add({ op: "stroke.end", id: new_id(), stroke: entry.begin.stroke });
-    this.entries_.push(...own);
+        this.add({ op: "stroke.end", id: newId(), stroke: entry.begin.stroke });
+    this._entries.push(...own);
     return this.waiting - before;
   }
 
-  has_stroke(stroke: string): boolean {
+  hasStroke(stroke: string): boolean {
     return this.stroke(stroke) !== undefined;
   }
 
   /** Whether the id is of a message that waits here. */
   has(id: string): boolean {
-    return this.entries_.some((entry) =>
+    return this._entries.some((entry) =>
       entry.kind === "single"
         ? entry.message.id === id
         : entry.begin.id === id ||
@@ -100,7 +100,7 @@ export class Outbox {
         const entry = this.stroke(answer.stroke);
         if (entry) entry.parts = entry.parts.filter((part) => part.n !== answer.n);
       } else if (answer.id !== undefined) {
-        this.entries_ = this.entries_.filter(
+        this._entries = this._entries.filter(
           (entry) => entry.kind !== "single" || entry.message.id !== answer.id,
         );
       }
@@ -108,24 +108,24 @@ export class Outbox {
   }
 
   /** Whether the message is a stroke's batch, and one before it waits, too. */
-  follows_waiting_batch(id: string): boolean {
-    return this.entries_.some(
+  followsWaitingBatch(id: string): boolean {
+    return this._entries.some(
       (entry) => entry.kind === "stroke" && entry.parts.findIndex((part) => part.id === id) > 0,
     );
   }
 
   /** The server keeps all batches of the stroke up to n. */
-  saved_through(stroke: string, n: number): void {
+  savedThrough(stroke: string, n: number): void {
     const entry = this.stroke(stroke);
     if (entry) this.shrink(() => (entry.parts = entry.parts.filter((part) => part.n > n)));
   }
 
   /** The server will never take this message. Returns the ids that are given up with it. */
-  give_up(id: string): string[] {
+  giveUp(id: string): string[] {
     return this.shrink(() => {
-      for (const entry of this.entries_)
+      for (const entry of this._entries)
         if (entry.kind === "stroke") entry.parts = entry.parts.filter((part) => part.id !== id);
-      this.entries_ = this.entries_.filter(
+      this._entries = this._entries.filter(
         (entry) => (entry.kind === "single" ? entry.message.id : entry.begin.id) !== id,
       );
     });
@@ -133,7 +133,7 @@ export class Outbox {
 
   /** What to send again, in order. */
   messages(): ChangeMessage[] {
-    return this.entries_.flatMap((entry): ChangeMessage[] =>
+    return this._entries.flatMap((entry): ChangeMessage[] =>
       entry.kind === "single"
         ? [entry.message]
         : [entry.begin, ...entry.parts, ...(entry.end ? [entry.end] : [])],
@@ -141,7 +141,7 @@ export class Outbox {
   }
 
   private stroke(stroke: string): StrokeEntry | undefined {
-    return this.entries_.find(
+    return this._entries.find(
       (entry): entry is StrokeEntry => entry.kind === "stroke" && entry.begin.stroke === stroke,
     );
   }
@@ -153,12 +153,12 @@ export class Outbox {
   private shrink(change: () => void, besides: readonly ChangeMessage[] = []): string[] {
     const before = [...this.messages(), ...besides];
     change();
-    this.entries_ = this.entries_.filter(
+    this._entries = this._entries.filter(
       (entry) => entry.kind === "single" || entry.end === null || entry.parts.length > 0,
     );
     const left = new Set(this.messages());
     const gone = before.filter((message) => !left.has(message)).map((message) => message.id);
-    if (gone.length > 0) this.dropped_(gone);
+    if (gone.length > 0) this._dropped(gone);
     return gone;
   }
 }

@@ -1,29 +1,29 @@
 // When to read anew what is told of before it is saved: soon after the first news, and once more
 // when the last of them has surely been saved.
 
-const kSoon_ms = 1000; // what happens in one go is read once
-const kSaved_ms = 3000; // after the last of it
+const kSoonMs = 1000; // what happens in one go is read once
+const kSavedMs = 3000; // after the last of it
 
 export class ReadAgain {
-  private timer_: ReturnType<typeof setTimeout> | null = null;
-  private newest_ms_ = 0;
+  private _timer: ReturnType<typeof setTimeout> | null = null;
+  private _newestMs = 0;
 
   /** `last`: nothing follows, unless there is more news. */
-  constructor(private readonly read_: (last: boolean) => void) {}
+  constructor(private readonly _read: (last: boolean) => void) {}
 
   news(): void {
-    this.newest_ms_ = performance.now();
-    this.timer_ ??= setTimeout(this.look_, kSoon_ms);
+    this._newestMs = performance.now();
+    this._timer ??= setTimeout(this._look, kSoonMs);
   }
 
   stop(): void {
-    if (this.timer_ !== null) clearTimeout(this.timer_);
-    this.timer_ = null;
+    if (this._timer !== null) clearTimeout(this._timer);
+    this._timer = null;
   }
 
-  private readonly look_ = (): void => {
-    const left_ms = this.newest_ms_ + kSaved_ms - performance.now();
-    this.timer_ = left_ms > 0 ? setTimeout(this.look_, left_ms) : null;
-    this.read_(left_ms <= 0);
+  private readonly _look = (): void => {
+    const leftMs = this._newestMs + kSavedMs - performance.now();
+    this._timer = leftMs > 0 ? setTimeout(this._look, leftMs) : null;
+    this._read(leftMs <= 0);
   };
 }

@@ -3,14 +3,14 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { property } from "lit/decorators.js";
-import { follow_session } from "./follow-session";
+import { followSession } from "./follow-session";
 import { icon } from "../ui/icons";
 import { Kept } from "../core/kept";
 import type { ModelSession } from "./model-session";
-import { shared_styles } from "../ui/styles";
+import { sharedStyles } from "../ui/styles";
 
-export const folding_styles = [
-  shared_styles,
+export const foldingStyles = [
+  sharedStyles,
   css`
     :host {
       display: block;
@@ -58,20 +58,20 @@ export const folding_styles = [
 
 export abstract class FoldingPanel extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  private readonly open_: Kept<boolean>;
+  private readonly _open: Kept<boolean>;
 
   /** `name`: by which the browser keeps whether it is open. */
   constructor(name: string) {
     super();
-    this.open_ = new Kept(() => localStorage, `strata.${name}_panel_open`, false);
-    follow_session(this);
+    this._open = new Kept(() => localStorage, `strata.${name}_panel_open`, false);
+    followSession(this);
   }
 
   protected abstract readonly heading: string;
   /** What is drawn only while it is open. */
   protected abstract content(): unknown;
   /** In the button, after its words. */
-  protected beside_heading(): unknown {
+  protected besideHeading(): unknown {
     return nothing;
   }
   /** After the button. */
@@ -80,23 +80,23 @@ export abstract class FoldingPanel extends LitElement {
   }
   protected toggled(): void {}
 
-  get is_open(): boolean {
-    return this.open_.value;
+  get isOpen(): boolean {
+    return this._open.value;
   }
 
   override render(): TemplateResult {
-    const { is_open } = this;
+    const { isOpen } = this;
     return html`<div class="heading">
         <h2>
-          <button class="quiet" aria-expanded=${is_open} aria-controls="parts" @click=${this.toggle}>${icon("up")}${this.heading}${this.beside_heading()}</button>
+          <button class="quiet" aria-expanded=${isOpen} aria-controls="parts" @click=${this.toggle}>${icon("up")}${this.heading}${this.besideHeading()}</button>
         </h2>
         ${this.tools()}
       </div>
-      <div id="parts" class="parts" ?hidden=${!is_open}>${is_open ? this.content() : nothing}</div>`;
+      <div id="parts" class="parts" ?hidden=${!isOpen}>${isOpen ? this.content() : nothing}</div>`;
   }
 
   private toggle(): void {
-    this.open_.value = !this.open_.value;
+    this._open.value = !this._open.value;
     this.toggled();
     this.requestUpdate();
   }

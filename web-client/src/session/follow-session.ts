@@ -7,34 +7,34 @@ import type { ModelSession } from "./model-session";
  * To be called in the constructor. Follows the session that the element has, for as long as the
  * element is in the page.
  */
-export function follow_session(host: ReactiveControllerHost & { session: ModelSession }): void {
+export function followSession(host: ReactiveControllerHost & { session: ModelSession }): void {
   host.addController(new SessionFollower(host));
 }
 
 class SessionFollower implements ReactiveController {
-  private connected_ = false;
-  private followed_: ModelSession | null = null;
-  private unsubscribe_: (() => void) | null = null;
+  private _connected = false;
+  private _followed: ModelSession | null = null;
+  private _unsubscribe: (() => void) | null = null;
 
-  constructor(private readonly host_: ReactiveControllerHost & { session: ModelSession }) {}
+  constructor(private readonly _host: ReactiveControllerHost & { session: ModelSession }) {}
 
   hostConnected(): void {
-    this.connected_ = true;
-    this.host_.requestUpdate();
+    this._connected = true;
+    this._host.requestUpdate();
   }
 
   hostUpdate(): void {
-    const { session } = this.host_;
+    const { session } = this._host;
     // an update may still be due after the element has left
-    if (!this.connected_ || session === this.followed_) return;
-    this.unsubscribe_?.();
-    this.followed_ = session;
-    this.unsubscribe_ = session.subscribe(() => this.host_.requestUpdate());
+    if (!this._connected || session === this._followed) return;
+    this._unsubscribe?.();
+    this._followed = session;
+    this._unsubscribe = session.subscribe(() => this._host.requestUpdate());
   }
 
   hostDisconnected(): void {
-    this.connected_ = false;
-    this.unsubscribe_?.();
-    this.unsubscribe_ = this.followed_ = null;
+    this._connected = false;
+    this._unsubscribe?.();
+    this._unsubscribe = this._followed = null;
   }
 }

@@ -6,7 +6,7 @@
 import { ApiError, type Api } from "../net/api";
 import type { FigureRequest } from "../core/protocol.gen";
 import type { Job, LayerCreate, ProblemBody, Transfer, TransferReport } from "../core/types";
-import { follow_job, job_is_over } from "../net/follow-job";
+import { followJob, jobIsOver } from "../net/follow-job";
 
 export interface LayerJob {
   key: number;
@@ -22,27 +22,27 @@ export interface StartedJob {
   done: Promise<readonly number[]>;
 }
 
-export const is_busy = (entry: LayerJob): boolean => !entry.problem && !job_is_over(entry.job);
+export const isBusy = (entry: LayerJob): boolean => !entry.problem && !jobIsOver(entry.job);
 
 export class LayerJobs {
   entries: readonly LayerJob[] = [];
-  private next_key_ = 1;
+  private _nextKey = 1;
 
   constructor(
-    private readonly api_: Api,
-    private readonly model_id_: string,
-    private readonly changed_: () => void,
+    private readonly _api: Api,
+    private readonly _modelId: string,
+    private readonly _changed: () => void,
   ) {}
 
   /** Throws an ApiError where the server refuses it at once. */
   async compute(layer: LayerCreate): Promise<StartedJob> {
-    const job = await this.api_.compute_layer(this.model_id_, layer);
+    const job = await this._api.computeLayer(this._modelId, layer);
     return { done: this.follow(this.add(layer.name, job), job) };
   }
 
   /** The same. `name`: what the person is told that it is. */
   async transfer(name: string, wish: Transfer): Promise<StartedJob> {
-    const job = await this.api_.transfer(this.model_id_, wish);
+    const job = await this._api.transfer(this._modelId, wish);
     return { done: this.follow(this.add(name, job), job) };
   }
 
@@ -54,12 +54,12 @@ export class LayerJobs {
   /**
    * A file. Returns the key of its entry; `made` hears of it once it is done. Throws as the others.
    */
-  async make_figure(
+  async makeFigure(
     name: string,
     wish: FigureRequest,
     made: (key: number, job: Job) => void,
   ): Promise<number> {
-    const job = await this.api_.make_figure(this.model_id_, wish);
+    const job = await this._api.makeFigure(this._modelId, wish);
     const key = this.add(name, job);
     void this.follow(key, job, (last) => made(key, last));
     return key;
@@ -67,16 +67,16 @@ export class LayerJobs {
 
   async cancel(key: number): Promise<void> {
     const job = this.entries.find((entry) => entry.key === key)?.job;
-    if (job) await this.api_.cancel_job(job.id);
+    if (job) await this._api.cancelJob(job.id);
   }
 
   dismiss(key: number): void {
     this.entries = this.entries.filter((entry) => entry.key !== key);
-    this.changed_();
+    this._changed();
   }
 
   private add(name: string, job: Job): number {
-    const key = this.next_key_++;
+    const key = this._nextKey++;
     this.entries = [...this.entries, { key, name, job, problem: null, report: null }];
     return key;
   }
@@ -87,7 +87,7 @@ export class LayerJobs {
     made: (job: Job) => void = () => {},
   ): Promise<readonly number[]> {
     try {
-      const job = await follow_job(this.api_, first, (now) => this.change(key, { job: now }));
+      const job = await followJob(this._api, first, (now) => this.change(key, { job: now }));
       if (job.state === "failed")
         this.change(key, { problem: job.problem ?? { status: 500, title: job.message } });
       else if (job.report) this.change(key, { report: job.report });
@@ -105,6 +105,6 @@ export class LayerJobs {
     this.entries = this.entries.map((entry) =>
       entry.key === key ? { ...entry, ...change } : entry,
     );
-    this.changed_();
+    this._changed();
   }
 }

@@ -1,16 +1,16 @@
 // The values of layers in words.
 
-import { holds_fractions, value_range, type Layer } from "../core/types";
-import { format_number } from "../domain/measure";
+import { holdsFractions, valueRange, type Layer } from "../core/types";
+import { formatNumber } from "../domain/measure";
 import { texts } from "../texts";
 
 /** Why a value cannot be painted in the layer, in plain words; null when it can. */
-export function value_problem(layer: Layer, value: number): string | null {
+export function valueProblem(layer: Layer, value: number): string | null {
   if (!Number.isFinite(value)) return texts.brush.bad_value;
-  if (!holds_fractions(layer.type) && !Number.isInteger(value)) return texts.brush.whole_number;
-  const [low, high] = value_range(layer.type);
+  if (!holdsFractions(layer.type) && !Number.isInteger(value)) return texts.brush.whole_number;
+  const [low, high] = valueRange(layer.type);
   if (value < low || value > high)
-    return texts.brush.out_of_range(format_number(low), format_number(high));
+    return texts.brush.out_of_range(formatNumber(low), formatNumber(high));
   return null;
 }
 
@@ -25,15 +25,15 @@ export interface RecordLabels {
  * A value as people read it: its term, the label of its class, the name of its record, or the
  * number with its unit.
  */
-export function describe_value(
+export function describeValue(
   layer: Layer,
   value: number,
   records: RecordLabels | null = null,
 ): string {
   const term = layer.table === undefined ? null : (records?.term(layer.table, value) ?? null);
   if (term !== null) return term;
-  const by_value = layer.palette.mode === "categorical" && !layer.palette.column;
-  const label = by_value ? layer.palette.points.find((p) => p.at === value)?.label : "";
+  const byValue = layer.palette.mode === "categorical" && !layer.palette.column;
+  const label = byValue ? layer.palette.points.find((p) => p.at === value)?.label : "";
   if (label) return label;
   if (layer.kind === "database") {
     return (
@@ -42,5 +42,5 @@ export function describe_value(
     );
   }
   if (layer.palette.mode === "categorical") return texts.layers.class_number(value);
-  return `${format_number(value, 4)}${layer.unit ? ` ${layer.unit}` : ""}`;
+  return `${formatNumber(value, 4)}${layer.unit ? ` ${layer.unit}` : ""}`;
 }

@@ -3,20 +3,20 @@
 import { html, nothing, type TemplateResult } from "lit";
 import { beside } from "../ui/beside";
 import type { Point } from "../net/connection";
-import { format_length } from "../domain/measure";
+import { formatLength } from "../domain/measure";
 import { styled } from "../ui/styled";
 import type { ViewControl } from "./view-control";
 
 const kLength = { width: 96, height: 28 };
 
 // room for how long a line is, CSS pixels
-const kGap_px = 14;
+const kGapPx = 14;
 
 /**
  * Beside the end of a line that is being drawn, at a window pixel. Who cannot see it is told when
  * the line is finished.
  */
-export function length_so_far(
+export function lengthSoFar(
   { camera, scale }: ViewControl,
   metres: number | null,
   [x, y]: Point,
@@ -27,7 +27,7 @@ export function length_so_far(
     end,
     kLength,
     { width: camera.width / scale, height: camera.height / scale },
-    kGap_px,
+    kGapPx,
   );
   if (!place) return nothing;
   const at = {
@@ -36,5 +36,5 @@ export function length_so_far(
     width: `${kLength.width}px`,
     "justify-content": place.left < end[0] ? "end" : "start",
   };
-  return html`<div class="length numeric" aria-hidden="true" ${styled(at)}><b>${format_length(metres)}</b></div>`;
+  return html`<div class="length numeric" aria-hidden="true" ${styled(at)}><b>${formatLength(metres)}</b></div>`;
 }

@@ -5,12 +5,12 @@
 import type { Point } from "../net/connection";
 import type { Outline } from "../tools/tool";
 
-const kAskEvery_ms = 80;
+const kAskEveryMs = 80;
 
 export interface LineMeasureHost<Step> {
   /** What lies under the pixels of a path. */
-  look_along(path: readonly Point[]): Promise<readonly Step[]>;
-  metres_along(steps: readonly Step[]): number;
+  lookAlong(path: readonly Point[]): Promise<readonly Step[]>;
+  metresAlong(steps: readonly Step[]): number;
   changed(): void;
 }
 
@@ -26,45 +26,45 @@ export class LineMeasure<Step> {
    */
   metres: number | null = null;
 
-  private line_: Pick<Outline, "points" | "pointer"> | null = null;
-  private due_ = false; // it is another than the one that `metres` is about
-  private known_: Part<Step>[] = [];
-  private asking_ = false;
-  private timer_: ReturnType<typeof setTimeout> | null = null;
-  private count_ = 0; // of lines: answers about the one before come too late
+  private _line: Pick<Outline, "points" | "pointer"> | null = null;
+  private _due = false; // it is another than the one that `metres` is about
+  private _known: Part<Step>[] = [];
+  private _asking = false;
+  private _timer: ReturnType<typeof setTimeout> | null = null;
+  private _count = 0; // of lines: answers about the one before come too late
 
-  constructor(private readonly host_: LineMeasureHost<Step>) {}
+  constructor(private readonly _host: LineMeasureHost<Step>) {}
 
   /** The line goes this way now; null: there is none any more. */
   follow(line: Pick<Outline, "points" | "pointer"> | null): void {
-    this.line_ = line && { points: [...line.points], pointer: line.pointer };
-    this.due_ = line !== null;
+    this._line = line && { points: [...line.points], pointer: line.pointer };
+    this._due = line !== null;
     if (line) {
       this.ask();
       return;
     }
     this.metres = null;
-    this.known_ = [];
-    this.count_ += 1;
+    this._known = [];
+    this._count += 1;
   }
 
   private ask(): void {
-    if (!this.line_ || !this.due_ || this.asking_ || this.timer_) return;
-    const { points, pointer } = this.line_;
-    const known = this.keep_known(points);
+    if (!this._line || !this._due || this._asking || this._timer) return;
+    const { points, pointer } = this._line;
+    const known = this.keepKnown(points);
     if (known < points.length - 1) {
       void this.learn(points.slice(known), true);
     } else {
-      this.due_ = false;
+      this._due = false;
       if (pointer) void this.learn([points[known]!, pointer], false);
       else this.tell([]);
     }
   }
 
   /** Only what is still drawn so; how many points on the last of it is. */
-  private keep_known(points: readonly Point[]): number {
+  private keepKnown(points: readonly Point[]): number {
     let at = 0;
-    const other = this.known_.findIndex(({ path }) => {
+    const other = this._known.findIndex(({ path }) => {
       if (
         path.some(([x, y], index) => points[at + index]?.[0] !== x || points[at + index]?.[1] !== y)
       )
@@ -72,32 +72,32 @@ export class LineMeasure<Step> {
       at += path.length - 1;
       return false;
     });
-    if (other >= 0) this.known_.length = other;
+    if (other >= 0) this._known.length = other;
     return at;
   }
 
   /** `stays`: no pointer leads there, it is drawn. */
   private async learn(path: readonly Point[], stays: boolean): Promise<void> {
-    const count = this.count_;
-    this.asking_ = true;
-    this.timer_ = setTimeout(() => {
-      this.timer_ = null;
+    const count = this._count;
+    this._asking = true;
+    this._timer = setTimeout(() => {
+      this._timer = null;
       this.ask();
-    }, kAskEvery_ms);
+    }, kAskEveryMs);
     // what is wrong is told when the line is finished
-    const steps = await this.host_.look_along(path).catch(() => null);
-    this.asking_ = false;
-    if (count === this.count_) {
-      if (!steps) this.due_ = false;
-      else if (stays) this.known_.push({ path, steps });
+    const steps = await this._host.lookAlong(path).catch(() => null);
+    this._asking = false;
+    if (count === this._count) {
+      if (!steps) this._due = false;
+      else if (stays) this._known.push({ path, steps });
       else this.tell(steps);
     }
     this.ask();
   }
 
   private tell(tip: readonly Step[]): void {
-    const metres = this.host_.metres_along([...this.known_.flatMap(({ steps }) => steps), ...tip]);
+    const metres = this._host.metresAlong([...this._known.flatMap(({ steps }) => steps), ...tip]);
     this.metres = metres > 0 ? metres : null;
-    this.host_.changed();
+    this._host.changed();
   }
 }

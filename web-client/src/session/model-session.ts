@@ -36,12 +36,12 @@ export interface ModelSession {
   readonly model: Model | null;
   readonly deleted: boolean;
   /** The server no longer knows who this is. */
-  readonly signed_out: boolean;
+  readonly signedOut: boolean;
   readonly role: Role;
   /** The name of who looks. */
   readonly user: string;
   readonly session: string;
-  readonly connection_state: ConnectionState;
+  readonly connectionState: ConnectionState;
   readonly saving: SavingState;
   readonly view: ViewControl;
   readonly layers: LayerList;
@@ -66,44 +66,44 @@ export interface ModelSession {
   readonly face: FacePick;
   readonly tools: ToolManager;
   readonly api: Api;
-  readonly model_id: string;
+  readonly modelId: string;
   readonly gestures: GestureHandler;
   subscribe(listener: () => void): () => void;
   /**
    * Ends the connection; what is not saved is sent when the same person comes back to the model.
    */
   discard(): void;
-  check_connection(): void;
-  readonly can_paint: boolean;
-  readonly can_curate: boolean;
+  checkConnection(): void;
+  readonly canPaint: boolean;
+  readonly canCurate: boolean;
   /**
    * To this person: curators change locked layers, too, but for those that are as they were
    * computed.
    */
-  is_locked(layer: Layer): boolean;
+  isLocked(layer: Layer): boolean;
   /** The chosen layer, where a tool is in hand that would change its texels but may not. */
-  readonly locked_target: Layer | null;
+  readonly lockedTarget: Layer | null;
   /** The table of the layer that is painted on: shown, or no longer. */
-  toggle_table(): void;
-  choose_tool(name: ToolName): void;
+  toggleTable(): void;
+  chooseTool(name: ToolName): void;
   /** What is drawn next goes into this column of the record. */
-  draw_marks(layer: Layer, key: number, column: Column): void;
+  drawMarks(layer: Layer, key: number, column: Column): void;
   /** Strokes; with tools that add to records, changes of the table. */
   undo(): void;
   redo(): void;
   /** Behind the model; null: as the server has it. */
-  set_background(background: Background | null): void;
+  setBackground(background: Background | null): void;
   /** A layer that this person made: it is what they paint on next. */
-  add_created(layer: Layer): void;
+  addCreated(layer: Layer): void;
   /** Layers that work made for this person: the first is what they look at next. */
-  show_made(ids: readonly number[]): void;
-  change_model(change: ModelPatch): Promise<void>;
-  reload_model(): Promise<void>;
+  showMade(ids: readonly number[]): void;
+  changeModel(change: ModelPatch): Promise<void>;
+  reloadModel(): Promise<void>;
   /**
    * Shows the model as if it had this unit and up direction, without keeping them; null: as it has
    * them.
    */
-  preview_scale(scale: Pick<Model, "unit" | "up"> | null): void;
+  previewScale(scale: Pick<Model, "unit" | "up"> | null): void;
   /** What lengths on the screen are told in. */
-  readonly shown_unit: Model["unit"];
+  readonly shownUnit: Model["unit"];
 }

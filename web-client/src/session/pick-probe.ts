@@ -1,12 +1,12 @@
 // Asks the server what is under the pointer: one question at a time, the newest place wins, and not
 // too often.
 
-import { new_id } from "../net/api";
+import { newId } from "../net/api";
 import type { PointerSample } from "../ui/input";
 import type { Picked } from "../core/protocol.gen";
 
-const kAskEvery_ms = 60;
-const kGiveUpAfter_ms = 2000;
+const kAskEveryMs = 60;
+const kGiveUpAfterMs = 2000;
 
 /** What somebody does there: only points, taps to look closer, or takes the value. */
 export type PickPurpose = "hover" | "look" | "take";
@@ -18,71 +18,71 @@ export interface PickProbeHost {
 }
 
 export class PickProbe {
-  private asked_: { id: string; at_ms: number; purpose: PickPurpose } | null = null;
-  private waiting_: { sample: PointerSample; purpose: PickPurpose } | null = null;
-  private timer_: ReturnType<typeof setTimeout> | null = null;
+  private _asked: { id: string; atMs: number; purpose: PickPurpose } | null = null;
+  private _waiting: { sample: PointerSample; purpose: PickPurpose } | null = null;
+  private _timer: ReturnType<typeof setTimeout> | null = null;
 
-  constructor(private readonly host_: PickProbeHost) {}
+  constructor(private readonly _host: PickProbeHost) {}
 
   /** No question waits, and no answer is on its way. */
   get idle(): boolean {
-    return this.asked_ === null && this.waiting_ === null;
+    return this._asked === null && this._waiting === null;
   }
 
   /** A press that still waits keeps its purpose, wherever the pointer goes meanwhile. */
   ask(sample: PointerSample, purpose: PickPurpose = "hover"): void {
-    this.waiting_ = {
+    this._waiting = {
       sample,
-      purpose: purpose === "hover" ? (this.waiting_?.purpose ?? "hover") : purpose,
+      purpose: purpose === "hover" ? (this._waiting?.purpose ?? "hover") : purpose,
     };
     this.send();
   }
 
   /** The surface may have changed under a pointer that rests. */
-  ask_again(sample: PointerSample | null): void {
-    if (sample && !this.waiting_) this.ask(sample);
+  askAgain(sample: PointerSample | null): void {
+    if (sample && !this._waiting) this.ask(sample);
   }
 
   /** True when it was the answer to this probe's question. */
   answer(message: Picked): boolean {
-    const asked = this.asked_;
+    const asked = this._asked;
     if (!asked || message.id !== asked.id) return false;
-    this.asked_ = null;
-    this.host_.answered(message, asked.purpose);
+    this._asked = null;
+    this._host.answered(message, asked.purpose);
     this.send();
     return true;
   }
 
   /** True when the refusal is of this probe's question; the next move of the pointer asks anew. */
   refused(ref: string | undefined): boolean {
-    if (ref === undefined || ref !== this.asked_?.id) return false;
-    this.asked_ = null;
+    if (ref === undefined || ref !== this._asked?.id) return false;
+    this._asked = null;
     return true;
   }
 
   /** The connection is gone, and the answer with it. */
   reset(): void {
-    this.asked_ = null;
+    this._asked = null;
   }
 
   stop(): void {
-    if (this.timer_) clearTimeout(this.timer_);
-    this.timer_ = null;
-    this.waiting_ = this.asked_ = null;
+    if (this._timer) clearTimeout(this._timer);
+    this._timer = null;
+    this._waiting = this._asked = null;
   }
 
   private send(): void {
-    const waiting = this.waiting_;
-    if (!waiting || this.timer_ || !this.host_.ready()) return;
-    const now_ms = performance.now();
+    const waiting = this._waiting;
+    if (!waiting || this._timer || !this._host.ready()) return;
+    const nowMs = performance.now();
     // its answer sends the next
-    if (this.asked_ && now_ms - this.asked_.at_ms < kGiveUpAfter_ms) return;
-    this.waiting_ = null;
-    this.asked_ = { id: new_id(), at_ms: now_ms, purpose: waiting.purpose };
-    this.host_.ask(this.asked_.id, waiting.sample);
-    this.timer_ = setTimeout(() => {
-      this.timer_ = null;
+    if (this._asked && nowMs - this._asked.atMs < kGiveUpAfterMs) return;
+    this._waiting = null;
+    this._asked = { id: newId(), atMs: nowMs, purpose: waiting.purpose };
+    this._host.ask(this._asked.id, waiting.sample);
+    this._timer = setTimeout(() => {
+      this._timer = null;
       this.send();
-    }, kAskEvery_ms);
+    }, kAskEveryMs);
   }
 }

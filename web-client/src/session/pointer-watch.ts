@@ -5,13 +5,13 @@ import type { PointerSample } from "../ui/input";
 import type { Picked } from "../core/protocol.gen";
 import { PickProbe, type PickPurpose } from "./pick-probe";
 
-const kPresenceEvery_ms = 100;
+const kPresenceEveryMs = 100;
 
 export interface PointerHost {
   camera(): OrbitCamera;
   ready(): boolean;
   ask(id: string, sample: PointerSample): void;
-  show_others(pointer: PointerSample | null): void;
+  showOthers(pointer: PointerSample | null): void;
   /** Somebody pressed here to take the value, or tapped to look closer. */
   taken(message: Picked): void;
   looked(message: Picked): void;
@@ -24,88 +24,88 @@ export class PointerWatch {
   at: PointerSample | null = null; // window pixels
   picked: Picked | null = null; // under the pointer, newest known
 
-  private depth_: number | null = null; // of the last surface point seen under the pointer
-  private presence_timer_: ReturnType<typeof setTimeout> | null = null;
-  private readonly probe_: PickProbe;
+  private _depth: number | null = null; // of the last surface point seen under the pointer
+  private _presenceTimer: ReturnType<typeof setTimeout> | null = null;
+  private readonly _probe: PickProbe;
 
-  constructor(private readonly host_: PointerHost) {
-    this.probe_ = new PickProbe({
-      ready: () => host_.ready(),
-      ask: (id, sample) => host_.ask(id, sample),
-      answered: (message, purpose) => this.on_picked(message, purpose),
+  constructor(private readonly _host: PointerHost) {
+    this._probe = new PickProbe({
+      ready: () => _host.ready(),
+      ask: (id, sample) => _host.ask(id, sample),
+      answered: (message, purpose) => this.onPicked(message, purpose),
     });
   }
 
   /** `picked` is of where the pointer is now. */
   get settled(): boolean {
-    return this.probe_.idle;
+    return this._probe.idle;
   }
 
   hover(sample: PointerSample | null): void {
     this.at = sample;
-    if (sample) this.probe_.ask(sample);
+    if (sample) this._probe.ask(sample);
     else this.picked = null;
-    this.schedule_presence();
-    this.host_.changed();
+    this.schedulePresence();
+    this._host.changed();
   }
 
   take(sample: PointerSample): void {
-    this.probe_.ask(sample, "take");
+    this._probe.ask(sample, "take");
   }
   look(sample: PointerSample): void {
-    this.probe_.ask(sample, "look");
+    this._probe.ask(sample, "look");
   }
 
   /** The surface or the view may have changed under a pointer that rests. */
-  ask_again(): void {
-    this.probe_.ask_again(this.at);
+  askAgain(): void {
+    this._probe.askAgain(this.at);
   }
 
   answer(message: Picked): void {
-    this.probe_.answer(message);
+    this._probe.answer(message);
   }
   /** True when the refusal is of a question of this pointer. */
   refused(ref: string | undefined): boolean {
-    return this.probe_.refused(ref);
+    return this._probe.refused(ref);
   }
   /** The connection is gone, and the answer with it. */
   reset(): void {
-    this.probe_.reset();
+    this._probe.reset();
   }
 
   stop(): void {
-    if (this.presence_timer_) clearTimeout(this.presence_timer_);
-    this.presence_timer_ = null;
-    this.probe_.stop();
+    if (this._presenceTimer) clearTimeout(this._presenceTimer);
+    this._presenceTimer = null;
+    this._probe.stop();
   }
 
   /** Depth of the surface under the pointer; where it is not known, of the camera's target. */
-  surface_depth(): number {
-    return this.depth_ !== null && this.depth_ > 0 ? this.depth_ : this.host_.camera().distance;
+  surfaceDepth(): number {
+    return this._depth !== null && this._depth > 0 ? this._depth : this._host.camera().distance;
   }
 
-  private on_picked(message: Picked, purpose: PickPurpose): void {
+  private onPicked(message: Picked, purpose: PickPurpose): void {
     if (this.at || purpose !== "hover") this.picked = message;
     if (message.hit && message.position)
-      this.see_depth(this.host_.camera().depth_of(message.position));
-    if (purpose === "take") this.host_.taken(message);
-    if (purpose === "look") this.host_.looked(message);
-    this.host_.learned();
-    this.host_.changed();
+      this.seeDepth(this._host.camera().depthOf(message.position));
+    if (purpose === "take") this._host.taken(message);
+    if (purpose === "look") this._host.looked(message);
+    this._host.learned();
+    this._host.changed();
   }
 
   /** How large the brush is on the surface was told with the depth that was known then. */
-  private see_depth(depth: number): void {
-    const told = this.depth_;
-    this.depth_ = depth;
-    if (this.at && depth !== told) this.schedule_presence();
+  private seeDepth(depth: number): void {
+    const told = this._depth;
+    this._depth = depth;
+    if (this.at && depth !== told) this.schedulePresence();
   }
 
-  private schedule_presence(): void {
-    if (this.presence_timer_) return;
-    this.presence_timer_ = setTimeout(() => {
-      this.presence_timer_ = null;
-      this.host_.show_others(this.at);
-    }, kPresenceEvery_ms);
+  private schedulePresence(): void {
+    if (this._presenceTimer) return;
+    this._presenceTimer = setTimeout(() => {
+      this._presenceTimer = null;
+      this._host.showOthers(this.at);
+    }, kPresenceEveryMs);
   }
 }

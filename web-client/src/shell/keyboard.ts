@@ -29,7 +29,7 @@ const kArrows: Record<string, [number, number]> = {
 const kArrowStep = 0.04;
 
 /** Does what the key stands for; false when it stands for nothing here. */
-export function handle_key(
+export function handleKey(
   event: KeyboardEvent,
   session: OpenModelSession,
   show: (dialog: "help" | "figure") => void,
@@ -45,7 +45,7 @@ export function handle_key(
   if (session.tools.key(key)) return true;
   const tool = kTools[key.toLowerCase()];
   if (tool) {
-    session.choose_tool(tool);
+    session.chooseTool(tool);
     return true;
   }
   const arrow = kArrows[key];
@@ -59,7 +59,7 @@ export function handle_key(
   switch (key) {
     case "Escape":
       if (!session.together.followed) return session.comments.close();
-      session.together.stop_following();
+      session.together.stopFollowing();
       return true;
     case "+":
     case "=":
@@ -74,23 +74,23 @@ export function handle_key(
       return true;
     case "p":
     case "P":
-      session.view.set_perspective(true);
+      session.view.setPerspective(true);
       return true;
     case "o":
     case "O":
-      session.view.set_perspective(false);
+      session.view.setPerspective(false);
       return true;
     case "[":
     case "]":
-      session.painting.set_brush((brush) => brush.step_width(key === "]" ? 1 : -1));
+      session.painting.setBrush((brush) => brush.stepWidth(key === "]" ? 1 : -1));
       return true;
     case "k":
     case "K":
-      session.appearance.next_light();
+      session.appearance.nextLight();
       return true;
     case "x":
     case "X":
-      session.appearance.next_section();
+      session.appearance.nextSection();
       return true;
     case "n":
     case "N":
@@ -98,7 +98,7 @@ export function handle_key(
       return true;
     case "t":
     case "T":
-      session.toggle_table();
+      session.toggleTable();
       return true;
     case "f":
     case "F":
@@ -110,6 +110,6 @@ export function handle_key(
   }
   const view = /^[1-6]$/.test(key) ? kViews[Number(key) - 1] : undefined;
   if (!view) return false;
-  session.view.standard_view(view);
+  session.view.standardView(view);
   return true;
 }

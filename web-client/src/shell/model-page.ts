@@ -5,7 +5,7 @@ import { html, LitElement, nothing, type PropertyValues, type TemplateResult } f
 import { customElement, property, query, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
 import { ApiError, type Api } from "../net/api";
-import { label_of } from "../domain/cells";
+import { labelOf } from "../domain/cells";
 import type { Project, TourEntry } from "../core/protocol.gen";
 import type { Column, Layer, Me, Model, Role } from "../core/types";
 import { kPaintingTools, type ToolName } from "../tools/tool";
@@ -18,36 +18,36 @@ import "../features/comments/comment-panel";
 import "../features/comments/comment-pins";
 import "../features/activity/activity-panel";
 import "../features/review/review-panel";
-import { ask, modal_is_open } from "../ui/dialog";
+import { ask, modalIsOpen } from "../ui/dialog";
 import { icon, logo } from "../ui/icons";
-import { handle_key } from "./keyboard";
-import { is_for_field } from "../ui/keyboard";
+import { handleKey } from "./keyboard";
+import { isForField } from "../ui/keyboard";
 import { growing, growth } from "../ui/growth";
 import "../features/records/hover-card";
 import type { LayerPanelRequest } from "../features/layers/layer-panel";
 import "../features/layers/layer-panel";
 import "../features/painting/paint-chip";
-import { model_styles } from "./model-styles";
+import { modelStyles } from "./model-styles";
 import "../features/measuring/measure-panel";
 import { OpenModelSession } from "./open-model-session";
 import { notices } from "../ui/notices";
-import { has_part, load_part_later } from "./page-parts";
+import { hasPart, loadPartLater } from "./page-parts";
 import "../features/records/record-card";
 import "../features/presence/people-menu";
-import { is_one_of_several, sees_to_kiosks } from "../features/home/project-list";
+import { isOneOfSeveral, seesToKiosks } from "../features/home/project-list";
 import {
-  comment_of,
+  commentOf,
   follow,
-  hash_of_comment,
-  hash_of_view,
-  path_of_project,
-  put_hash,
-  view_of,
+  hashOfComment,
+  hashOfView,
+  pathOfProject,
+  putHash,
+  viewOf,
 } from "../ui/routes";
 import "./stage";
 import type { StrataStage } from "./stage";
 import { styled } from "../ui/styled";
-import { shared_styles } from "../ui/styles";
+import { sharedStyles } from "../ui/styles";
 import type { TablePanelRequest } from "../session/requests";
 import "../features/tables/table-panel";
 import "../features/tours/tour-list";
@@ -60,7 +60,7 @@ import "../features/onboarding/onboarding";
 import type { StrataTour } from "../features/onboarding/onboarding";
 import type { TourRequest } from "../session/requests";
 import "../features/painting/value-readout";
-import { wants_less_motion } from "../session/view-control";
+import { wantsLessMotion } from "../session/view-control";
 import type { ViewRequest } from "../session/requests";
 import "../features/appearance/view-panel";
 
@@ -85,68 +85,68 @@ const kNotFound = { heading: texts.model.not_found_title, lead: texts.model.not_
 export class StrataModelPage extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) me!: Me;
-  @property() model_id = "";
+  @property({ attribute: "model_id" }) modelId = "";
   /** All that this person sees. */
   @property({ attribute: false }) projects: readonly Project[] = [];
-  @state() private dialog_: OpenDialog = null;
+  @state() private _dialog: OpenDialog = null;
   // beside dialogs: while a stop is tried, views may be kept
-  @state() private tour_editor_: { tour: TourEntry | null } | null = null;
-  @state() private missing_: { heading: string; lead: string } | null = null;
-  @state() private panel_width_ = Number(localStorage.getItem(kPanelKey)) || kPanelWidth.first;
-  @state() private table_height_ = Number(localStorage.getItem(kTableKey)) || kTableHeight.first;
-  @state() private panel_shown_ = window.innerWidth > kNarrow;
-  @query("strata-stage") private stage_!: StrataStage | null;
-  @query("strata-tour") private tour_!: StrataTour | null;
-  @query(".options") private options_!: HTMLElement | null;
-  private session_: OpenModelSession | null = null;
-  private asked_scale_ = false;
-  private measures_ = false;
-  private tool_: ToolName | null = null; // whose options are in sight
-  private role_: Role | null = null; // of the newest welcome
-  private wanted_comment_: number | null = null; // by the address
-  private wanted_view_: string | null = null;
+  @state() private _tourEditor: { tour: TourEntry | null } | null = null;
+  @state() private _missing: { heading: string; lead: string } | null = null;
+  @state() private _panelWidth = Number(localStorage.getItem(kPanelKey)) || kPanelWidth.first;
+  @state() private _tableHeight = Number(localStorage.getItem(kTableKey)) || kTableHeight.first;
+  @state() private _panelShown = window.innerWidth > kNarrow;
+  @query("strata-stage") private _stage!: StrataStage | null;
+  @query("strata-tour") private _tour!: StrataTour | null;
+  @query(".options") private _options!: HTMLElement | null;
+  private _session: OpenModelSession | null = null;
+  private _askedScale = false;
+  private _measures = false;
+  private _tool: ToolName | null = null; // whose options are in sight
+  private _role: Role | null = null; // of the newest welcome
+  private _wantedComment: number | null = null; // by the address
+  private _wantedView: string | null = null;
 
-  static override styles = [shared_styles, model_styles];
+  static override styles = [sharedStyles, modelStyles];
 
   override connectedCallback(): void {
     super.connectedCallback();
-    load_part_later("model_dialogs");
-    addEventListener("keydown", this.on_key_down);
-    addEventListener("keyup", this.on_key_up);
-    addEventListener("blur", this.on_blur);
-    addEventListener("hashchange", this.on_hash);
+    loadPartLater("model_dialogs");
+    addEventListener("keydown", this.onKeyDown);
+    addEventListener("keyup", this.onKeyUp);
+    addEventListener("blur", this.onBlur);
+    addEventListener("hashchange", this.onHash);
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    removeEventListener("keydown", this.on_key_down);
-    removeEventListener("keyup", this.on_key_up);
-    removeEventListener("blur", this.on_blur);
-    removeEventListener("hashchange", this.on_hash);
-    this.lift_notices(null);
-    this.session_?.close();
-    this.session_ = null;
+    removeEventListener("keydown", this.onKeyDown);
+    removeEventListener("keyup", this.onKeyUp);
+    removeEventListener("blur", this.onBlur);
+    removeEventListener("hashchange", this.onHash);
+    this.liftNotices(null);
+    this._session?.close();
+    this._session = null;
   }
 
   override willUpdate(changed: PropertyValues<this>): void {
-    if (!changed.has("model_id")) return;
-    this.session_?.close();
-    this.session_ = new OpenModelSession(this.api, this.model_id);
-    this.missing_ = this.tour_editor_ = null;
-    this.asked_scale_ = false;
-    this.read_address();
-    void this.open(this.session_);
+    if (!changed.has("modelId")) return;
+    this._session?.close();
+    this._session = new OpenModelSession(this.api, this.modelId);
+    this._missing = this._tourEditor = null;
+    this._askedScale = false;
+    this.readAddress();
+    void this.open(this._session);
   }
 
   override updated(): void {
-    this.tour_?.requestUpdate(); // what it speaks of may be elsewhere now
-    const session = this.session_;
-    if (session) this.bring_options(session.tools.active);
+    this._tour?.requestUpdate(); // what it speaks of may be elsewhere now
+    const session = this._session;
+    if (session) this.bringOptions(session.tools.active);
     const narrow = matchMedia(`(max-width: ${kNarrow}px)`).matches;
-    if (session?.tables.view) this.lift_notices(narrow ? "52dvh" : `${this.table_height_}px`);
+    if (session?.tables.view) this.liftNotices(narrow ? "52dvh" : `${this._tableHeight}px`);
     // its sheet lies over the tools
     else
-      this.lift_notices(
+      this.liftNotices(
         narrow && session && session.comments.card !== null ? "calc(48dvh - 56px)" : null,
       );
   }
@@ -154,125 +154,125 @@ export class StrataModelPage extends LitElement {
   /**
    * They are an element of the whole page, and would lie over the table, or the sheet of a comment.
    */
-  private lift_notices(height: string | null): void {
+  private liftNotices(height: string | null): void {
     const { style } = document.documentElement;
     if (height) style.setProperty("--beneath", height);
     else style.removeProperty("--beneath");
   }
 
   private async open(session: OpenModelSession): Promise<void> {
-    session.subscribe(() => this.on_session(session));
+    session.subscribe(() => this.onSession(session));
     try {
       await session.open();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
-      else if (error.status === 404) this.missing_ = kNotFound;
-      else this.missing_ = { heading: error.problem.title, lead: error.problem.detail ?? "" };
+      else if (error.status === 404) this._missing = kNotFound;
+      else this._missing = { heading: error.problem.title, lead: error.problem.detail ?? "" };
     }
   }
 
-  private on_session(session: OpenModelSession): void {
-    if (session !== this.session_) return;
-    if (session.deleted) this.missing_ = kNotFound;
-    if (session.signed_out) this.dispatchEvent(new CustomEvent("signed-out"));
-    if (session.session !== "" && session.role !== this.role_) {
-      this.role_ = session.role;
+  private onSession(session: OpenModelSession): void {
+    if (session !== this._session) return;
+    if (session.deleted) this._missing = kNotFound;
+    if (session.signedOut) this.dispatchEvent(new CustomEvent("signed-out"));
+    if (session.session !== "" && session.role !== this._role) {
+      this._role = session.role;
       if (session.role !== this.me.role) this.dispatchEvent(new CustomEvent("role-changed"));
     }
-    this.show_measuring(session);
+    this.showMeasuring(session);
     if (session.model) document.title = `${session.model.name} – ${texts.product}`;
-    this.follow_address(session);
-    const asks_scale = session.model && !session.model.scale_verified && session.can_curate;
-    if (asks_scale && session.view.frames_drawn > 0 && !this.asked_scale_) {
-      this.asked_scale_ = true;
-      this.dialog_ ??= { dialog: "scale" };
+    this.followAddress(session);
+    const asksScale = session.model && !session.model.scale_verified && session.canCurate;
+    if (asksScale && session.view.framesDrawn > 0 && !this._askedScale) {
+      this._askedScale = true;
+      this._dialog ??= { dialog: "scale" };
     }
     this.requestUpdate();
   }
 
   /** What is measured is told in the panel. */
-  private show_measuring(session: OpenModelSession): void {
+  private showMeasuring(session: OpenModelSession): void {
     const measures = session.tools.active === "measure";
-    if (measures && !this.measures_) this.panel_shown_ = true;
-    this.measures_ = measures;
+    if (measures && !this._measures) this._panelShown = true;
+    this._measures = measures;
   }
 
   /** Whoever takes up a tool sees what can be chosen for it, however far the panel was scrolled. */
-  private bring_options(tool: ToolName): void {
-    const { options_: options } = this;
-    if (tool === this.tool_) return;
-    this.tool_ = tool;
+  private bringOptions(tool: ToolName): void {
+    const { _options: options } = this;
+    if (tool === this._tool) return;
+    this._tool = tool;
     options?.parentElement?.scrollTo({
       top: options.offsetTop,
-      behavior: wants_less_motion() ? "instant" : "smooth",
+      behavior: wantsLessMotion() ? "instant" : "smooth",
     });
   }
 
   /** What can be chosen for the tool in hand, from where the panel lies over the model. */
-  private show_options(session: OpenModelSession): void {
+  private showOptions(session: OpenModelSession): void {
     if (session.tables.view) session.tables.close();
-    this.panel_shown_ = true;
-    this.tool_ = null; // brought into sight with the next update
+    this._panelShown = true;
+    this._tool = null; // brought into sight with the next update
     this.requestUpdate();
   }
 
-  private readonly on_hash = (event: HashChangeEvent): void => {
+  private readonly onHash = (event: HashChangeEvent): void => {
     if (event.newURL !== location.href) return; // the page was held, and its address put back
-    this.read_address();
-    if (this.session_) this.follow_address(this.session_);
+    this.readAddress();
+    if (this._session) this.followAddress(this._session);
   };
 
-  private read_address(): void {
-    this.wanted_comment_ = comment_of(location.hash);
-    this.wanted_view_ = view_of(location.hash);
+  private readAddress(): void {
+    this._wantedComment = commentOf(location.hash);
+    this._wantedView = viewOf(location.hash);
   }
 
   /**
    * To the comment or view that the address names, once it can be gone to; from then on the address
    * names what is looked at.
    */
-  private follow_address(session: OpenModelSession): void {
+  private followAddress(session: OpenModelSession): void {
     const { comments, view, views } = session;
-    if (view.frames_drawn === 0) return;
-    const [comment, kept] = [this.wanted_comment_, this.wanted_view_];
+    if (view.framesDrawn === 0) return;
+    const [comment, kept] = [this._wantedComment, this._wantedView];
     if (comment !== null && comments.loaded) {
-      this.wanted_comment_ = null;
-      comments.go_to(comment);
+      this._wantedComment = null;
+      comments.goTo(comment);
     }
     if (kept !== null && (views.loaded || views.failed)) {
-      this.wanted_view_ = null;
+      this._wantedView = null;
       if (views.loaded) views.follow(kept);
       else notices.show("problem", texts.kept_views.failed);
     }
-    if (this.wanted_comment_ !== null || this.wanted_view_ !== null) return;
+    if (this._wantedComment !== null || this._wantedView !== null) return;
     const seen = views.current;
-    put_hash(
+    putHash(
       typeof comments.card === "number"
-        ? hash_of_comment(comments.card)
+        ? hashOfComment(comments.card)
         : seen
-          ? hash_of_view(seen.slug)
+          ? hashOfView(seen.slug)
           : "",
     );
   }
 
   override render(): TemplateResult {
-    const session = this.session_;
-    if (this.missing_) {
-      return html`<strata-blank heading=${this.missing_.heading} lead=${this.missing_.lead}>
+    const session = this._session;
+    if (this._missing) {
+      return html`<strata-blank heading=${this._missing.heading} lead=${this._missing.lead}>
         <a class="button" href="/" @click=${follow}>${icon("back")}${texts.model.back}</a>
       </strata-blank>`;
     }
     if (!session) return html``;
     return html`<div
-        class="page ${this.panel_shown_ ? "" : "without-panel"} ${session.tables.view ? "with-table" : ""}"
-        ${styled({ "--panel": growing(this.panel_width_), "--table": `${this.table_height_}px` })}
-        @click=${{ handleEvent: give_back_keyboard, capture: true }}
+        class="page ${this._panelShown ? "" : "without-panel"} ${session.tables.view ? "with-table" : ""}"
+        ${styled({ "--panel": growing(this._panelWidth), "--table": `${this._tableHeight}px` })}
+        @click=${{ handleEvent: giveBackKeyboard, capture: true }}
       >
-        <strata-tour .session=${session} .held=${this.dialog_ !== null || this.tour_editor_ !== null}></strata-tour>
+        <strata-tour .session=${session} .held=${this._dialog !== null || this._tourEditor !== null}></strata-tour>
         ${this.header(session)}
         <section class="tools" aria-label=${texts.model.tools}>
-          <strata-paint-chip .session=${session} @options=${() => this.show_options(session)}></strata-paint-chip>
+          <strata-paint-chip .session=${session} @options=${() => this.showOptions(session)}></strata-paint-chip>
           <strata-tool-rail role="toolbar" aria-label=${texts.model.tools} .session=${session}></strata-tool-rail>
         </section>
         <main>
@@ -286,7 +286,7 @@ export class StrataModelPage extends LitElement {
               session.tables.card
                 ? html`<strata-record-card
                   .session=${session}
-                  @request=${(event: CustomEvent<TablePanelRequest>) => (this.dialog_ = event.detail)}
+                  @request=${(event: CustomEvent<TablePanelRequest>) => (this._dialog = event.detail)}
                 ></strata-record-card>`
                 : nothing
             }
@@ -294,43 +294,43 @@ export class StrataModelPage extends LitElement {
           </div>
           <strata-hover-card .session=${session}></strata-hover-card>
         </main>
-        ${session.tables.view ? this.table(session, session.tables.view) : nothing} ${this.panel_shown_ ? this.panel(session) : nothing}
+        ${session.tables.view ? this.table(session, session.tables.view) : nothing} ${this._panelShown ? this.panel(session) : nothing}
       </div>
       ${this.dialog(session)}
       ${
-        this.tour_editor_ && has_part("model_dialogs", this)
-          ? html`<strata-tour-dialog .session=${session} .tour=${this.tour_editor_.tour} @try=${this.make_room} @closed=${() => (this.tour_editor_ = null)}></strata-tour-dialog>`
+        this._tourEditor && hasPart("model_dialogs", this)
+          ? html`<strata-tour-dialog .session=${session} .tour=${this._tourEditor.tour} @try=${this.makeRoom} @closed=${() => (this._tourEditor = null)}></strata-tour-dialog>`
           : nothing
       }`;
   }
 
   /** Something on the model is looked at: a narrow window has no room for the panel as well. */
-  private make_room(): void {
-    if (window.innerWidth <= kNarrow) this.panel_shown_ = false;
+  private makeRoom(): void {
+    if (window.innerWidth <= kNarrow) this._panelShown = false;
   }
 
-  private on_view_request(request: ViewRequest | TourRequest): void {
-    if (request.dialog === "tour") this.tour_editor_ ??= { tour: request.tour };
-    else this.dialog_ = request;
+  private onViewRequest(request: ViewRequest | TourRequest): void {
+    if (request.dialog === "tour") this._tourEditor ??= { tour: request.tour };
+    else this._dialog = request;
   }
 
   private header(session: OpenModelSession): TemplateResult {
     const { model } = session;
     return html`<header>
-      <a class="home" href=${model && is_one_of_several(model.project, this.projects) ? path_of_project(model.project) : "/"} title=${texts.model.back} aria-label=${texts.model.back} @click=${follow}>${logo()}</a>
+      <a class="home" href=${model && isOneOfSeveral(model.project, this.projects) ? pathOfProject(model.project) : "/"} title=${texts.model.back} aria-label=${texts.model.back} @click=${follow}>${logo()}</a>
       <h1 class="ellipsis">${model?.name ?? ""}</h1>
       <button
         class="icon quiet"
         aria-label=${texts.model.details}
         title=${texts.model.details}
         ?disabled=${!model}
-        @click=${() => (this.dialog_ = { dialog: "about" })}
+        @click=${() => (this._dialog = { dialog: "about" })}
       >
         ${icon("info")}
       </button>
       ${
-        model && !model.scale_verified && session.can_curate
-          ? html`<button class="scale-chip" @click=${() => (this.dialog_ = { dialog: "scale" })}>${texts.model.check_size}</button>`
+        model && !model.scale_verified && session.canCurate
+          ? html`<button class="scale-chip" @click=${() => (this._dialog = { dialog: "scale" })}>${texts.model.check_size}</button>`
           : nothing
       }
       <span class="grow"></span>
@@ -341,31 +341,31 @@ export class StrataModelPage extends LitElement {
         data-tour="share"
         aria-label=${texts.model.help}
         title="${texts.model.help} (?)"
-        @click=${() => (this.dialog_ = { dialog: "help" })}
+        @click=${() => (this._dialog = { dialog: "help" })}
       >
         ${icon("help")}
       </button>
       <button
         class="icon quiet"
         data-tour="panel"
-        aria-pressed=${this.panel_shown_}
-        aria-label=${this.panel_shown_ ? texts.model.hide_panel : texts.model.show_panel}
-        title=${this.panel_shown_ ? texts.model.hide_panel : texts.model.show_panel}
-        @click=${() => (this.panel_shown_ = !this.panel_shown_)}
+        aria-pressed=${this._panelShown}
+        aria-label=${this._panelShown ? texts.model.hide_panel : texts.model.show_panel}
+        title=${this._panelShown ? texts.model.hide_panel : texts.model.show_panel}
+        @click=${() => (this._panelShown = !this._panelShown)}
       >
         ${icon("panel")}${
-          !this.panel_shown_ && session.comments.unread_count > 0
-            ? html`<span class="unread" role="img" aria-label=${texts.comments.unread(session.comments.unread_count)}></span>`
+          !this._panelShown && session.comments.unreadCount > 0
+            ? html`<span class="unread" role="img" aria-label=${texts.comments.unread(session.comments.unreadCount)}></span>`
             : nothing
         }
       </button>
-      <strata-account-menu .me=${this.me} .kiosks=${sees_to_kiosks(this.me, this.projects)}></strata-account-menu>
+      <strata-account-menu .me=${this.me} .kiosks=${seesToKiosks(this.me, this.projects)}></strata-account-menu>
     </header>`;
   }
 
   private saving(session: OpenModelSession): TemplateResult {
     const { waiting, failing } = session.saving;
-    const lost = session.connection_state !== "open";
+    const lost = session.connectionState !== "open";
     const state = waiting === 0 ? "saved" : failing || lost ? "not-saved" : "saving";
     const words =
       state === "saved"
@@ -384,22 +384,22 @@ export class StrataModelPage extends LitElement {
   }
 
   private banner(session: OpenModelSession): TemplateResult {
-    const reconnects = session.connection_state === "connecting" && session.view.frames_drawn > 0;
-    if (session.connection_state !== "lost" && !reconnects) {
+    const reconnects = session.connectionState === "connecting" && session.view.framesDrawn > 0;
+    if (session.connectionState !== "lost" && !reconnects) {
       return html``;
     }
     const { waiting } = session.saving;
     return html`<div class="banner" role="alert">
       ${icon("warning")}
       <span class="grow">${texts.connection.lost} ${waiting > 0 ? texts.connection.kept(waiting) : ""}</span>
-      <button @click=${() => session.check_connection()}>${texts.connection.retry}</button>
+      <button @click=${() => session.checkConnection()}>${texts.connection.retry}</button>
     </div>`;
   }
 
   private panel(session: OpenModelSession): TemplateResult {
     const paints = kPaintingTools.includes(session.tools.active);
     const request = (event: CustomEvent<LayerPanelRequest | WhereRequest>): void => {
-      this.dialog_ = event.detail;
+      this._dialog = event.detail;
     };
     return html`<aside aria-label=${texts.model.panel}>
       <div
@@ -407,12 +407,12 @@ export class StrataModelPage extends LitElement {
         role="separator"
         aria-orientation="vertical"
         aria-label=${texts.model.resize_panel}
-        aria-valuenow=${this.panel_width_}
+        aria-valuenow=${this._panelWidth}
         aria-valuemin=${kPanelWidth.least}
         aria-valuemax=${kPanelWidth.most}
         tabindex="0"
-        @pointerdown=${(event: PointerEvent) => follow_drag(event, (at) => this.set_panel_width((window.innerWidth - at.clientX) / growth()))}
-        @keydown=${this.on_splitter_key}
+        @pointerdown=${(event: PointerEvent) => followDrag(event, (at) => this.setPanelWidth((window.innerWidth - at.clientX) / growth()))}
+        @keydown=${this.onSplitterKey}
       ></div>
       <div class="scroll">
         ${session.tools.active === "measure" ? html`<section class="options"><strata-measure-panel .session=${session}></strata-measure-panel></section>` : nothing}
@@ -423,14 +423,14 @@ export class StrataModelPage extends LitElement {
             @request=${request}
           ></strata-layer-panel>
         </section>
-        ${session.can_paint && session.reviews.is_used ? html`<section><strata-review-panel .session=${session}></strata-review-panel></section>` : nothing}
+        ${session.canPaint && session.reviews.isUsed ? html`<section><strata-review-panel .session=${session}></strata-review-panel></section>` : nothing}
         <section><strata-comment-panel .session=${session}></strata-comment-panel></section>
         <section><strata-activity-panel .session=${session}></strata-activity-panel></section>
         <section>
           <strata-view-panel
             .session=${session}
-            @orthophoto=${() => (this.dialog_ = { dialog: "orthophoto" })}
-            @request=${(event: CustomEvent<ViewRequest | TourRequest>) => this.on_view_request(event.detail)}
+            @orthophoto=${() => (this._dialog = { dialog: "orthophoto" })}
+            @request=${(event: CustomEvent<ViewRequest | TourRequest>) => this.onViewRequest(event.detail)}
           ></strata-view-panel>
         </section>
       </div>
@@ -444,19 +444,19 @@ export class StrataModelPage extends LitElement {
         role="separator"
         aria-orientation="horizontal"
         aria-label=${texts.tables.resize}
-        aria-valuenow=${this.table_height_}
+        aria-valuenow=${this._tableHeight}
         aria-valuemin=${kTableHeight.least}
         tabindex="0"
-        @pointerdown=${(event: PointerEvent) => follow_drag(event, (at) => this.set_table_height(window.innerHeight - at.clientY))}
-        @keydown=${this.on_table_splitter_key}
+        @pointerdown=${(event: PointerEvent) => followDrag(event, (at) => this.setTableHeight(window.innerHeight - at.clientY))}
+        @keydown=${this.onTableSplitterKey}
       ></div>
       ${keyed(
         view,
         html`<strata-table-panel
           .session=${session}
           .view=${view}
-          @request=${(event: CustomEvent<TablePanelRequest>) => (this.dialog_ = event.detail)}
-          @drop-column=${(event: CustomEvent<Column>) => void drop_column(session, view, event.detail)}
+          @request=${(event: CustomEvent<TablePanelRequest>) => (this._dialog = event.detail)}
+          @drop-column=${(event: CustomEvent<Column>) => void dropColumn(session, view, event.detail)}
         ></strata-table-panel>`,
       )}
     </section>`;
@@ -464,10 +464,10 @@ export class StrataModelPage extends LitElement {
 
   private dialog(session: OpenModelSession): TemplateResult {
     const closed = (): void => {
-      this.dialog_ = null;
+      this._dialog = null;
     };
-    const dialog = this.dialog_;
-    if (dialog && !has_part("model_dialogs", this)) return html``;
+    const dialog = this._dialog;
+    if (dialog && !hasPart("model_dialogs", this)) return html``;
     switch (dialog?.dialog) {
       case undefined:
         return html``;
@@ -530,8 +530,8 @@ export class StrataModelPage extends LitElement {
         return html`<strata-figure-dialog
           .session=${session}
           .view=${dialog.view}
-          @aside=${this.make_room}
-          @correct=${() => (this.dialog_ = { dialog: "scale" })}
+          @aside=${this.makeRoom}
+          @correct=${() => (this._dialog = { dialog: "scale" })}
           @closed=${closed}
         ></strata-figure-dialog>`;
       case "kiosks":
@@ -548,89 +548,89 @@ export class StrataModelPage extends LitElement {
       case "scale":
         return html`<strata-scale-dialog .session=${session} @closed=${closed}></strata-scale-dialog>`;
       case "help":
-        return html`<strata-help-sheet @closed=${closed} @tour=${() => void this.tour_?.start()}></strata-help-sheet>`;
+        return html`<strata-help-sheet @closed=${closed} @tour=${() => void this._tour?.start()}></strata-help-sheet>`;
       case "about":
         return session.model
           ? html`<strata-about-sheet
               .model=${session.model}
               .viewer=${session.role}
-              .correctable=${session.can_curate}
-              @download-for=${(event: CustomEvent<Model["source_download"]>) => void this.say_who_downloads(event.detail)}
+              .correctable=${session.canCurate}
+              @download-for=${(event: CustomEvent<Model["source_download"]>) => void this.sayWhoDownloads(event.detail)}
               @closed=${closed}
-              @correct=${() => (this.dialog_ = { dialog: "scale" })}
+              @correct=${() => (this._dialog = { dialog: "scale" })}
             ></strata-about-sheet>`
           : html``;
     }
   }
 
   private show(dialog: "help" | "figure"): void {
-    this.dialog_ = dialog === "figure" ? { dialog, view: null } : { dialog };
+    this._dialog = dialog === "figure" ? { dialog, view: null } : { dialog };
   }
 
-  private async say_who_downloads(source_download: Model["source_download"]): Promise<void> {
+  private async sayWhoDownloads(sourceDownload: Model["source_download"]): Promise<void> {
     try {
-      await this.session_?.change_model({ source_download });
+      await this._session?.changeModel({ source_download: sourceDownload });
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       notices.error(error);
     }
   }
 
-  private readonly on_key_down = (event: KeyboardEvent): void => {
-    const session = this.session_;
-    if (!session || modal_is_open() || event.defaultPrevented || is_for_field(event)) return;
-    const on_button = event.composedPath()[0] instanceof HTMLButtonElement;
-    if (event.key === "Enter" && on_button) return;
+  private readonly onKeyDown = (event: KeyboardEvent): void => {
+    const session = this._session;
+    if (!session || modalIsOpen() || event.defaultPrevented || isForField(event)) return;
+    const onButton = event.composedPath()[0] instanceof HTMLButtonElement;
+    if (event.key === "Enter" && onButton) return;
     if (event.key === " ") {
-      if (on_button) return;
-      if (this.stage_) this.stage_.orbit_held = true;
+      if (onButton) return;
+      if (this._stage) this._stage.orbitHeld = true;
       event.preventDefault();
       return;
     }
     const does =
-      handle_key(event, session, (dialog) => this.show(dialog)) ||
-      (event.key === "Escape" && this.tour_?.end());
+      handleKey(event, session, (dialog) => this.show(dialog)) ||
+      (event.key === "Escape" && this._tour?.end());
     if (does) event.preventDefault();
   };
 
-  private readonly on_key_up = (event: KeyboardEvent): void => {
-    if (event.key === " " && this.stage_) this.stage_.orbit_held = false;
+  private readonly onKeyUp = (event: KeyboardEvent): void => {
+    if (event.key === " " && this._stage) this._stage.orbitHeld = false;
   };
 
   /** The key may come up in another window. */
-  private readonly on_blur = (): void => {
-    if (this.stage_) this.stage_.orbit_held = false;
+  private readonly onBlur = (): void => {
+    if (this._stage) this._stage.orbitHeld = false;
   };
 
-  private on_splitter_key(event: KeyboardEvent): void {
+  private onSplitterKey(event: KeyboardEvent): void {
     const step = { ArrowLeft: 20, ArrowRight: -20 }[event.key];
     if (!step) return;
     event.preventDefault();
-    this.set_panel_width(this.panel_width_ + step);
+    this.setPanelWidth(this._panelWidth + step);
   }
 
-  private on_table_splitter_key(event: KeyboardEvent): void {
+  private onTableSplitterKey(event: KeyboardEvent): void {
     const step = { ArrowUp: 20, ArrowDown: -20 }[event.key];
     if (!step) return;
     event.preventDefault();
-    this.set_table_height(this.table_height_ + step);
+    this.setTableHeight(this._tableHeight + step);
   }
 
-  private set_table_height(height: number): void {
-    this.table_height_ = Math.round(
+  private setTableHeight(height: number): void {
+    this._tableHeight = Math.round(
       Math.min(window.innerHeight * 0.75, Math.max(kTableHeight.least, height)),
     );
-    localStorage.setItem(kTableKey, String(this.table_height_));
+    localStorage.setItem(kTableKey, String(this._tableHeight));
   }
 
-  private set_panel_width(width: number): void {
+  private setPanelWidth(width: number): void {
     const most = Math.min(kPanelWidth.most, (window.innerWidth * 0.6) / growth());
-    this.panel_width_ = Math.round(Math.min(most, Math.max(kPanelWidth.least, width)));
-    localStorage.setItem(kPanelKey, String(this.panel_width_));
+    this._panelWidth = Math.round(Math.min(most, Math.max(kPanelWidth.least, width)));
+    localStorage.setItem(kPanelKey, String(this._panelWidth));
   }
 }
 
-function follow_drag(event: PointerEvent, move: (at: PointerEvent) => void): void {
+function followDrag(event: PointerEvent, move: (at: PointerEvent) => void): void {
   const splitter = event.currentTarget as HTMLElement;
   splitter.setPointerCapture(event.pointerId);
   splitter.addEventListener("pointermove", move);
@@ -641,7 +641,7 @@ function follow_drag(event: PointerEvent, move: (at: PointerEvent) => void): voi
   );
 }
 
-async function drop_column(
+async function dropColumn(
   session: OpenModelSession,
   view: TableView,
   column: Column,
@@ -649,7 +649,7 @@ async function drop_column(
   const words = texts.tables;
   if (
     !(await ask({
-      heading: words.drop_title(label_of(column)),
+      heading: words.drop_title(labelOf(column)),
       lead: words.drop_lead,
       yes: words.drop,
       danger: true,
@@ -657,8 +657,8 @@ async function drop_column(
   )
     return;
   try {
-    await session.api.drop_column(view.table_id, column.id);
-    await session.tables.reload(view.table_id);
+    await session.api.dropColumn(view.tableId, column.id);
+    await session.tables.reload(view.tableId);
   } catch (error) {
     notices.error(error);
   }
@@ -668,7 +668,7 @@ async function drop_column(
  * A button that was pressed with the pointer does not keep the keyboard: Space would press it again
  * instead of turning the model. One that was pressed by a key does.
  */
-function give_back_keyboard(event: MouseEvent): void {
+function giveBackKeyboard(event: MouseEvent): void {
   if (event.detail === 0) return;
   for (const element of event.composedPath())
     if (element instanceof HTMLButtonElement) element.blur();

@@ -1,6 +1,6 @@
 import { css } from "lit";
 
-export const model_styles = css`
+export const modelStyles = css`
   :host {
     display: block;
   }

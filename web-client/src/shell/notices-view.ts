@@ -6,16 +6,16 @@ import { repeat } from "lit/directives/repeat.js";
 import { icon } from "../ui/icons";
 import { notices, type Notice, type NoticeLink } from "../ui/notices";
 import { follow } from "../ui/routes";
-import { shared_styles } from "../ui/styles";
+import { sharedStyles } from "../ui/styles";
 import { texts } from "../texts";
 
 @customElement("strata-notices")
 export class StrataNotices extends LitElement {
-  @state() private shown_: readonly Notice[] = [];
-  private unsubscribe_: (() => void) | null = null;
+  @state() private _shown: readonly Notice[] = [];
+  private _unsubscribe: (() => void) | null = null;
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         position: fixed;
@@ -85,16 +85,16 @@ export class StrataNotices extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    this.unsubscribe_ = notices.subscribe((shown) => (this.shown_ = shown));
+    this._unsubscribe = notices.subscribe((shown) => (this._shown = shown));
   }
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.unsubscribe_?.();
+    this._unsubscribe?.();
   }
 
   override render(): TemplateResult {
     return html`${repeat(
-      this.shown_,
+      this._shown,
       (notice) => notice.id,
       (
         notice,
@@ -102,7 +102,7 @@ export class StrataNotices extends LitElement {
         <div class="words">
           <strong>${notice.title}</strong>
           ${notice.detail ? html`<p>${notice.detail}</p>` : ""}
-          ${notice.link ? link_of(notice, notice.link) : ""}
+          ${notice.link ? linkOf(notice, notice.link) : ""}
         </div>
         <button
           class="icon quiet"
@@ -116,7 +116,7 @@ export class StrataNotices extends LitElement {
   }
 }
 
-function link_of({ id }: Notice, link: NoticeLink): TemplateResult {
+function linkOf({ id }: Notice, link: NoticeLink): TemplateResult {
   if ("href" in link)
     return html`<a class="text" href=${link.href} @click=${follow}>${link.label}</a>`;
   const act = (): void => {

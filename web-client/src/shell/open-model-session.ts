@@ -26,10 +26,10 @@ import type {
   Welcome,
 } from "../core/protocol.gen";
 import {
-  complete_layer,
-  is_as_computed,
-  may_curate,
-  may_paint,
+  completeLayer,
+  isAsComputed,
+  mayCurate,
+  mayPaint,
   type Column,
   type Layer,
   type Model,
@@ -55,7 +55,7 @@ import { Comments } from "../features/comments/comments";
 import { FacePick } from "../features/figures/face-pick";
 import { Figures } from "../features/figures/figures";
 import { LayerJobs } from "../session/layer-jobs";
-import { why_locked } from "../session/layer-lock";
+import { whyLocked } from "../session/layer-lock";
 import { LayerList } from "../features/layers/layer-list";
 import { MarkDrawing } from "../features/records/mark-drawing";
 import { Measuring } from "../features/measuring/measuring";
@@ -72,18 +72,18 @@ import { texts } from "../texts";
 import { Together, type Shown } from "../features/presence/together";
 import { ToolShapes } from "../features/painting/tool-shapes";
 import { Tours } from "../features/tours/tours";
-import { ViewControl, wants_less_motion } from "../session/view-control";
+import { ViewControl, wantsLessMotion } from "../session/view-control";
 import { Views } from "../features/views/views";
 import type { ModelSession } from "../session/model-session";
 
 export class OpenModelSession implements ModelSession {
   model: Model | null = null;
   deleted = false;
-  signed_out = false; // the server no longer knows who this is
+  signedOut = false; // the server no longer knows who this is
   role: Role = "viewer";
   user = ""; // the name of who looks
   session = "";
-  connection_state: ConnectionState = "connecting";
+  connectionState: ConnectionState = "connecting";
   saving: SavingState = { waiting: 0, failing: false };
 
   readonly view: ViewControl;
@@ -109,71 +109,71 @@ export class OpenModelSession implements ModelSession {
   readonly face: FacePick;
   readonly tools: ToolManager;
   /** Set by the stage. */
-  on_frame: (part: FrameMessage) => void = () => {};
-  on_reset_frames: () => void = () => {};
+  onFrame: (part: FrameMessage) => void = () => {};
+  onResetFrames: () => void = () => {};
 
-  private readonly connection_: Connection;
-  private readonly listeners_ = new Set<() => void>();
-  private etag_ = "";
-  private preview_: Pick<Model, "unit" | "up"> | null = null;
-  private was_open_ = false;
-  private closed_ = false; // its page is gone
-  private told_left_ = false;
+  private readonly _connection: Connection;
+  private readonly _listeners = new Set<() => void>();
+  private _etag = "";
+  private _preview: Pick<Model, "unit" | "up"> | null = null;
+  private _wasOpen = false;
+  private _closed = false; // its page is gone
+  private _toldLeft = false;
   // the layer of which the person knows that it is locked
-  private told_locked_: number | null = null;
+  private _toldLocked: number | null = null;
 
   constructor(
     readonly api: Api,
-    readonly model_id: string,
-    make_socket?: (url: string, protocol: string) => SocketLike,
+    readonly modelId: string,
+    makeSocket?: (url: string, protocol: string) => SocketLike,
   ) {
-    this.connection_ = this.make_connection(make_socket);
+    this._connection = this.makeConnection(makeSocket);
     const changed = (): void => this.changed();
     this.view = new ViewControl({
       send: (moving) => {
-        this.hovered.wait_again();
-        this.comments.sight.camera_moved();
-        this.measuring.camera_moved();
-        this.connection_.set_camera(this.view.camera.message(), moving);
+        this.hovered.waitAgain();
+        this.comments.sight.cameraMoved();
+        this.measuring.cameraMoved();
+        this._connection.setCamera(this.view.camera.message(), moving);
       },
-      when_free: (action) => this.painting.when_free(action),
-      is_painting: () => this.painting.stroking,
-      came_to_rest: () => {
-        this.pointer.ask_again();
-        this.cursors.look_again();
-        this.together.came_to_rest();
-        this.comments.look_again();
-        this.measuring.came_to_rest();
+      whenFree: (action) => this.painting.whenFree(action),
+      isPainting: () => this.painting.stroking,
+      cameToRest: () => {
+        this.pointer.askAgain();
+        this.cursors.lookAgain();
+        this.together.cameToRest();
+        this.comments.lookAgain();
+        this.measuring.cameToRest();
       },
-      went_own_way: () => this.together.stop_following(),
+      wentOwnWay: () => this.together.stopFollowing(),
       changed,
     });
-    this.layers = new LayerList(api, model_id, {
-      send_overrides: (overrides) => this.connection_.set_layer_overrides(overrides),
-      changed: () => this.target_changed(),
+    this.layers = new LayerList(api, modelId, {
+      sendOverrides: (overrides) => this._connection.setLayerOverrides(overrides),
+      changed: () => this.targetChanged(),
     });
-    this.jobs = new LayerJobs(api, model_id, changed);
-    this.appearance = new Appearance(api, model_id, {
-      send: (looks, light) => this.connection_.set_appearance(looks, light),
-      send_section: (planes, moving) => this.view.set_section(planes, moving),
+    this.jobs = new LayerJobs(api, modelId, changed);
+    this.appearance = new Appearance(api, modelId, {
+      send: (looks, light) => this._connection.setAppearance(looks, light),
+      sendSection: (planes, moving) => this.view.setSection(planes, moving),
       bounds: () => this.model?.bounds ?? null,
       changed,
     });
     this.pointer = new PointerWatch({
       camera: () => this.view.camera,
-      ready: () => this.connection_state === "open",
-      ask: (id, { x, y }) => this.connection_.pick(id, x, y),
-      show_others: (pointer) => this.together.show(this.shown_at(pointer)),
+      ready: () => this.connectionState === "open",
+      ask: (id, { x, y }) => this._connection.pick(id, x, y),
+      showOthers: (pointer) => this.together.show(this.shownAt(pointer)),
       taken: (message) => {
-        this.painting.take_picked(message);
-        this.tables.show_card(this.layers.selected, message);
+        this.painting.takePicked(message);
+        this.tables.showCard(this.layers.selected, message);
       },
-      looked: (message) => this.tables.show_card(this.layer_with_record(message), message),
+      looked: (message) => this.tables.showCard(this.layerWithRecord(message), message),
       learned: () => this.hovered.picked(),
       changed,
     });
     this.painting = new Painting({
-      connection: this.connection_,
+      connection: this._connection,
       view: this.view,
       layers: this.layers,
       pointer: this.pointer,
@@ -182,25 +182,25 @@ export class OpenModelSession implements ModelSession {
         label: (table, key) => this.tables.label(table, key),
         term: (table, key) => this.tables.term(table, key),
       },
-      may_paint: () => this.can_paint,
-      is_locked: (layer) => this.is_locked(layer),
+      mayPaint: () => this.canPaint,
+      isLocked: (layer) => this.isLocked(layer),
       changed,
     });
     this.shapes = new ToolShapes(api, {
       chosen: () => this.painting.brush.shape,
-      choose: (shape) => this.painting.set_brush((brush) => (brush.shape = shape)),
+      choose: (shape) => this.painting.setBrush((brush) => (brush.shape = shape)),
       changed,
     });
     this.tables = new Tables(api, {
-      model_id,
+      modelId,
       project: () => this.model?.project ?? null,
-      highlight: (layer_id, what) => this.layers.set_highlight(layer_id, what),
-      fly_to: (bounds) => this.view.fly_to(bounds),
+      highlight: (layerId, what) => this.layers.setHighlight(layerId, what),
+      flyTo: (bounds) => this.view.flyTo(bounds),
       changed,
     });
     this.editors = new RecordEditors({
-      say: (what) => this.connection_.edit_record(what),
-      name_of: (user) => this.together.name_of(user),
+      say: (what) => this._connection.editRecord(what),
+      nameOf: (user) => this.together.nameOf(user),
       changed,
     });
     this.marks = new MarkDrawing(api, {
@@ -217,7 +217,7 @@ export class OpenModelSession implements ModelSession {
       model: () => this.model,
       changed,
     });
-    this.comments = new Comments(api, model_id, {
+    this.comments = new Comments(api, modelId, {
       view: this.view,
       layers: this.layers,
       tables: this.tables,
@@ -234,121 +234,121 @@ export class OpenModelSession implements ModelSession {
       model: () => this.model,
       changed,
     });
-    this.reviews = new Reviews(api, model_id, {
+    this.reviews = new Reviews(api, modelId, {
       view: this.view,
       layers: this.layers,
       me: () => this.user,
-      name_of: (user) => this.together.name_of(user),
-      can_paint: () => this.can_paint,
-      can_curate: () => this.can_curate,
+      nameOf: (user) => this.together.nameOf(user),
+      canPaint: () => this.canPaint,
+      canCurate: () => this.canCurate,
       changed,
     });
     this.hovered = new RecordHover({
-      here: () => this.record_here(),
+      here: () => this.recordHere(),
       settled: () => this.pointer.settled,
       changed,
     });
     this.together = new Together({
       session: () => this.session,
-      ready: () => this.connection_state === "open",
-      send: (shown) => this.connection_.presence(shown),
+      ready: () => this.connectionState === "open",
+      send: (shown) => this._connection.presence(shown),
       view: this.view,
-      ask: (id, x, y) => this.connection_.pick(id, x, y),
+      ask: (id, x, y) => this._connection.pick(id, x, y),
       changed,
     });
     this.cursors = new PeopleCursors({
       camera: () => this.view.camera,
       scale: () => this.view.scale,
-      ready: () => this.connection_state === "open",
-      ask: (id, x, y, camera) => this.connection_.pick(id, x, y, camera),
-      wants_less_motion,
+      ready: () => this.connectionState === "open",
+      ask: (id, x, y, camera) => this._connection.pick(id, x, y, camera),
+      wantsLessMotion,
     });
-    this.views = new Views(api, model_id, {
+    this.views = new Views(api, modelId, {
       view: this.view,
       layers: this.layers,
       appearance: this.appearance,
       tables: this.tables,
-      when_free: (action) => this.painting.when_free(action),
-      can_curate: () => this.can_curate,
+      whenFree: (action) => this.painting.whenFree(action),
+      canCurate: () => this.canCurate,
       changed,
     });
-    this.tours = new Tours(api, model_id, changed);
+    this.tours = new Tours(api, modelId, changed);
     this.figures = new Figures(api, this.jobs);
     this.face = new FacePick(api, {
       view: this.view,
       model: () => this.model,
       begin: () => this.tools.borrow("face"),
-      end: () => this.tools.give_back(),
+      end: () => this.tools.giveBack(),
     });
-    this.tools = this.make_tools();
+    this.tools = this.makeTools();
   }
 
   readonly gestures: GestureHandler = {
-    tool_down: (sample) => this.tools.down(sample),
-    tool_move: (samples) => this.tools.move(samples),
-    tool_up: () => this.tools.up(),
-    tool_cancel: () => this.tools.cancel(),
-    orbit: (dx, dy) => this.view.orbit_pixels(dx, dy),
-    pan: (dx, dy) => this.view.pan_pixels(dx, dy),
-    zoom: (factor, x, y) => this.view.zoom_at(factor, x, y),
+    toolDown: (sample) => this.tools.down(sample),
+    toolMove: (samples) => this.tools.move(samples),
+    toolUp: () => this.tools.up(),
+    toolCancel: () => this.tools.cancel(),
+    orbit: (dx, dy) => this.view.orbitPixels(dx, dy),
+    pan: (dx, dy) => this.view.panPixels(dx, dy),
+    zoom: (factor, x, y) => this.view.zoomAt(factor, x, y),
     twist: (angle) => this.view.twist(angle),
     hover: (sample) => {
       this.tools.hover(sample);
       this.pointer.hover(sample);
     },
-    free_mouse: (sample) => this.hovered.move(sample),
-    tool_is_for_pen: () => kChangingTools.includes(this.tools.active),
+    freeMouse: (sample) => this.hovered.move(sample),
+    toolIsForPen: () => kChangingTools.includes(this.tools.active),
   };
 
-  private make_connection(make_socket?: (url: string, protocol: string) => SocketLike): Connection {
+  private makeConnection(makeSocket?: (url: string, protocol: string) => SocketLike): Connection {
     const { protocol, host } = window.location;
-    const url = `${protocol === "https:" ? "wss" : "ws"}://${host}/api/v1/models/${encodeURIComponent(this.model_id)}/live`;
+    const url = `${protocol === "https:" ? "wss" : "ws"}://${host}/api/v1/models/${encodeURIComponent(this.modelId)}/live`;
     const client = "strata-page/0.1";
     return new Connection(
       {
         url,
         client,
-        device_pixel_ratio: window.devicePixelRatio,
-        ...(make_socket ? { make_socket } : {}),
-        make_shelf: (user, model) => new UnsavedShelf(user, model, not_kept),
+        devicePixelRatio: window.devicePixelRatio,
+        ...(makeSocket ? { makeSocket } : {}),
+        makeShelf: (user, model) => new UnsavedShelf(user, model, notKept),
       },
       {
-        state: (state) => this.on_state(state),
-        welcome: (message) => this.on_welcome(message),
-        frame: (part) => this.on_frame(part),
-        saving: (state) => this.on_saving(state),
+        state: (state) => this.onState(state),
+        welcome: (message) => this.onWelcome(message),
+        frame: (part) => this.onFrame(part),
+        saving: (state) => this.onSaving(state),
         applied: (message) => {
-          this.painting.on_applied(message);
-          this.pointer.ask_again();
+          this.painting.onApplied(message);
+          this.pointer.askAgain();
         },
         saved: () => {
           this.reviews.saved();
-          this.tables.refresh_areas(); // with the areas that this person's own strokes leave
+          this.tables.refreshAreas(); // with the areas that this person's own strokes leave
           this.activity.outdated();
         },
-        layer: (event) => this.on_layer(event),
+        layer: (event) => this.onLayer(event),
         look: (event) => {
-          this.appearance.on_event(event);
+          this.appearance.onEvent(event);
           this.activity.outdated();
         },
-        tool: (event) => this.shapes.on_event(event),
-        model: (event) => this.on_model(event),
+        tool: (event) => this.shapes.onEvent(event),
+        model: (event) => this.onModel(event),
         record: (event) => {
-          this.tables.on_record(event);
+          this.tables.onRecord(event);
           this.activity.outdated();
         },
         table: (event) => {
-          this.tables.on_table(event);
+          this.tables.onTable(event);
           this.activity.outdated();
         },
         comment: (event) => {
-          this.comments.on_event(event);
+          this.comments.onEvent(event);
           this.activity.outdated();
         },
-        view: (event) => this.views.on_event(event),
-        editors: (message) => this.editors.on_message(message),
+        view: (event) => this.views.onEvent(event),
+        editors: (message) => this.editors.onMessage(message),
         presence: ({ users }) => {
-          if (this.closed_) return;
+          if (this._closed) return;
           this.together.receive(users);
           this.cursors.receive(users.filter(({ session }) => session !== this.session));
         },
@@ -356,57 +356,57 @@ export class OpenModelSession implements ModelSession {
           if (!this.cursors.answer(message) && !this.together.answer(message))
             this.pointer.answer(message);
         },
-        problem: (problem) => this.on_problem(problem),
-        taken_up: (changes) =>
+        problem: (problem) => this.onProblem(problem),
+        takenUp: (changes) =>
           notices.show("info", texts.saving.taken_up(changes), texts.saving.taken_up_hint),
       },
     );
   }
 
-  private make_tools(): ToolManager {
-    const brush_host = {
-      begin_stroke: (erase: boolean) => this.painting.begin_stroke(erase),
-      stroke_ended: () => this.painting.stroke_ended(),
-      radius_px: () => this.painting.radius_window_px(),
-      width_of: (pressure: number) => this.painting.width_of(pressure),
-      next_frame: (callback: () => void) => void requestAnimationFrame(callback),
+  private makeTools(): ToolManager {
+    const brushHost = {
+      beginStroke: (erase: boolean) => this.painting.beginStroke(erase),
+      strokeEnded: () => this.painting.strokeEnded(),
+      radiusPx: () => this.painting.radiusWindowPx(),
+      widthOf: (pressure: number) => this.painting.widthOf(pressure),
+      nextFrame: (callback: () => void) => void requestAnimationFrame(callback),
     };
     const comment = (sample: PointerSample): void => void this.comments.begin(sample);
     const navigator = {
-      orbit: (dx: number, dy: number) => this.view.orbit_pixels(dx, dy),
-      pan: (dx: number, dy: number) => this.view.pan_pixels(dx, dy),
+      orbit: (dx: number, dy: number) => this.view.orbitPixels(dx, dy),
+      pan: (dx: number, dy: number) => this.view.panPixels(dx, dy),
       tap: (sample: PointerSample) => this.pointer.look(sample),
     };
     const { measuring } = this;
-    const measure_host = {
+    const measureHost = {
       ...navigator,
-      tap: (sample: PointerSample) => measuring.set_at(sample),
-      point_at: (sample: PointerSample | null) => measuring.point_at(sample),
-      set_in_middle: () => measuring.set_in_middle(),
+      tap: (sample: PointerSample) => measuring.setAt(sample),
+      pointAt: (sample: PointerSample | null) => measuring.pointAt(sample),
+      setInMiddle: () => measuring.setInMiddle(),
       end: () => measuring.end(),
-      take_back: () => measuring.take_back(),
+      takeBack: () => measuring.takeBack(),
       clear: () => measuring.clear(),
       begun: () => measuring.begun,
     };
-    const face_host = {
+    const faceHost = {
       ...navigator,
-      tap: (sample: PointerSample) => void this.face.take_at(sample),
-      take_in_middle: () => this.face.take_in_middle(),
-      give_up: () => this.face.give_up(),
+      tap: (sample: PointerSample) => void this.face.takeAt(sample),
+      takeInMiddle: () => this.face.takeInMiddle(),
+      giveUp: () => this.face.giveUp(),
     };
-    const outline_host = {
-      begin_outline: () => this.painting.begin_outline(),
-      finish_outline: (path: Point[]) => this.painting.finish_outline(path),
-      outline_ended: () => this.painting.stroke_ended(),
+    const outlineHost = {
+      beginOutline: () => this.painting.beginOutline(),
+      finishOutline: (path: Point[]) => this.painting.finishOutline(path),
+      outlineEnded: () => this.painting.strokeEnded(),
       scale: () => this.view.scale,
-      outline_changed: () => this.changed(),
+      outlineChanged: () => this.changed(),
     };
-    const line_host = {
-      ...outline_host,
-      begin_outline: () => this.marks.begin_line(),
-      finish_outline: (path: Point[]) => this.marks.finish_line(path),
-      outline_changed: () => {
-        this.marks.line_changed(this.tools.outline);
+    const lineHost = {
+      ...outlineHost,
+      beginOutline: () => this.marks.beginLine(),
+      finishOutline: (path: Point[]) => this.marks.finishLine(path),
+      outlineChanged: () => {
+        this.marks.lineChanged(this.tools.outline);
         this.changed();
       },
     };
@@ -414,23 +414,23 @@ export class OpenModelSession implements ModelSession {
       [
         new OrbitTool(navigator),
         new PanTool(navigator),
-        new BrushTool("brush", brush_host),
-        new BrushTool("eraser", brush_host),
-        new PolygonTool(outline_host),
-        new LassoTool(outline_host),
-        new BucketTool((sample) => this.painting.fill_at(sample)),
+        new BrushTool("brush", brushHost),
+        new BrushTool("eraser", brushHost),
+        new PolygonTool(outlineHost),
+        new LassoTool(outlineHost),
+        new BucketTool((sample) => this.painting.fillAt(sample)),
         new PickTool((sample) => this.pointer.take(sample)),
-        new LineTool(line_host),
-        new PointTool((sample) => this.marks.set_point(sample)),
-        new MeasureTool(measure_host),
-        new FaceTool(face_host),
+        new LineTool(lineHost),
+        new PointTool((sample) => this.marks.setPoint(sample)),
+        new MeasureTool(measureHost),
+        new FaceTool(faceHost),
         new CommentTool({ ...navigator, tap: comment }, () => ({
           x: this.view.camera.width / 2,
           y: this.view.camera.height / 2,
         })),
       ],
       "orbit",
-      () => this.target_changed(),
+      () => this.targetChanged(),
     );
   }
 
@@ -438,16 +438,16 @@ export class OpenModelSession implements ModelSession {
   // ──────────────────────────────────────────────────────────────────────────────────────────────────────────
 
   subscribe(listener: () => void): () => void {
-    this.listeners_.add(listener);
-    return () => this.listeners_.delete(listener);
+    this._listeners.add(listener);
+    return () => this._listeners.delete(listener);
   }
 
   async open(): Promise<void> {
-    const model = await this.api.model(this.model_id);
-    if (this.closed_) return;
-    this.take_model(model);
+    const model = await this.api.model(this.modelId);
+    if (this._closed) return;
+    this.takeModel(model);
     remember(this);
-    this.connection_.open();
+    this._connection.open();
   }
 
   /**
@@ -455,7 +455,7 @@ export class OpenModelSession implements ModelSession {
    * of it is saved.
    */
   close(): void {
-    this.closed_ = true;
+    this._closed = true;
     this.layers.flush();
     this.tools.stop();
     this.view.stop();
@@ -466,15 +466,15 @@ export class OpenModelSession implements ModelSession {
     this.activity.close();
     this.reviews.close();
     this.tables.close();
-    this.listeners_.clear();
-    this.on_frame = this.on_reset_frames = () => {};
+    this._listeners.clear();
+    this.onFrame = this.onResetFrames = () => {};
     if (this.saving.waiting === 0) {
       this.discard();
       return;
     }
-    this.connection_.presence({});
-    this.connection_.stop_viewing();
-    this.tell_left_behind();
+    this._connection.presence({});
+    this._connection.stopViewing();
+    this.tellLeftBehind();
   }
 
   /**
@@ -483,63 +483,63 @@ export class OpenModelSession implements ModelSession {
   discard(): void {
     forget(this);
     this.saving = { waiting: 0, failing: false };
-    this.connection_.close();
+    this._connection.close();
   }
 
-  check_connection(): void {
-    this.connection_.check();
+  checkConnection(): void {
+    this._connection.check();
   }
 
-  get can_paint(): boolean {
-    return may_paint(this.role);
+  get canPaint(): boolean {
+    return mayPaint(this.role);
   }
-  get can_curate(): boolean {
-    return may_curate(this.role);
+  get canCurate(): boolean {
+    return mayCurate(this.role);
   }
 
   /**
    * To this person: curators change locked layers, too, but for those that are as they were
    * computed.
    */
-  is_locked(layer: Layer): boolean {
-    return layer.locked && (!this.can_curate || is_as_computed(layer));
+  isLocked(layer: Layer): boolean {
+    return layer.locked && (!this.canCurate || isAsComputed(layer));
   }
 
   /** The chosen layer, where a tool is in hand that would change its texels but may not. */
-  get locked_target(): Layer | null {
+  get lockedTarget(): Layer | null {
     const { selected } = this.layers;
     const { active } = this.tools;
     const paints = kPaintingTools.includes(active) && !kMarkingTools.includes(active);
-    return paints && selected && this.is_locked(selected) ? selected : null;
+    return paints && selected && this.isLocked(selected) ? selected : null;
   }
 
   /**
    * Another tool, another layer, or another lock: who cannot paint any more is told so once, before
    * they try.
    */
-  private target_changed(): void {
-    const locked = this.locked_target;
-    const told = this.told_locked_;
-    this.told_locked_ = locked?.id ?? null;
+  private targetChanged(): void {
+    const locked = this.lockedTarget;
+    const told = this._toldLocked;
+    this._toldLocked = locked?.id ?? null;
     if (locked && locked.id !== told) {
-      this.painting.break_off();
+      this.painting.breakOff();
       this.tools.stop();
-      this.tell_locked(locked);
+      this.tellLocked(locked);
     }
     this.changed();
   }
 
   private changed(): void {
-    for (const listener of this.listeners_) listener();
+    for (const listener of this._listeners) listener();
   }
 
   /** The one that is painted on, if there is a record, or the topmost that shows one. */
-  private layer_with_record(picked: Picked): Layer | null {
+  private layerWithRecord(picked: Picked): Layer | null {
     const { selected, all } = this.layers;
-    if (selected && this.shows_record(selected, picked)) return selected;
-    return [...all].reverse().find((layer) => this.shows_record(layer, picked)) ?? null;
+    if (selected && this.showsRecord(selected, picked)) return selected;
+    return [...all].reverse().find((layer) => this.showsRecord(layer, picked)) ?? null;
   }
-  private shows_record(layer: Layer, { values }: Picked): boolean {
+  private showsRecord(layer: Layer, { values }: Picked): boolean {
     return (
       layer.table !== undefined &&
       this.layers.visible(layer) &&
@@ -548,15 +548,15 @@ export class OpenModelSession implements ModelSession {
   }
 
   /** Under the pointer, where the tool's tap would show its card, and does not already. */
-  private record_here(): RecordAt | null {
+  private recordHere(): RecordAt | null {
     const { picked } = this.pointer;
     const { active } = this.tools;
     const { selected } = this.layers;
     if (!picked) return null;
     const looks = active === "orbit" || active === "pan";
     const layer = looks
-      ? this.layer_with_record(picked)
-      : active === "pick" && selected && this.shows_record(selected, picked)
+      ? this.layerWithRecord(picked)
+      : active === "pick" && selected && this.showsRecord(selected, picked)
         ? selected
         : null;
     const key = layer ? picked.values?.[layer.slug]?.value : undefined;
@@ -567,7 +567,7 @@ export class OpenModelSession implements ModelSession {
   }
 
   /** The table of the layer that is painted on: shown, or no longer. */
-  toggle_table(): void {
+  toggleTable(): void {
     const layer = this.layers.selected;
     if (this.tables.view) this.tables.close();
     else if (layer) this.tables.open(layer);
@@ -576,162 +576,162 @@ export class OpenModelSession implements ModelSession {
   // ── what elements ask for
   // ─────────────────────────────────────────────────────────────────────────────────────────
 
-  choose_tool(name: ToolName): void {
-    if (kChangingTools.includes(name) && this.refuses_changes()) return;
+  chooseTool(name: ToolName): void {
+    if (kChangingTools.includes(name) && this.refusesChanges()) return;
     this.tools.choose(name);
   }
 
   /** Who may only look was told so, once they could look. */
-  private refuses_changes(): boolean {
-    if (!this.can_paint && this.was_open_) notices.show("problem", texts.brush.viewer_only);
-    return !this.can_paint;
+  private refusesChanges(): boolean {
+    if (!this.canPaint && this._wasOpen) notices.show("problem", texts.brush.viewer_only);
+    return !this.canPaint;
   }
 
   /** What is drawn next goes into this column of the record. */
-  draw_marks(layer: Layer, key: number, column: Column): void {
+  drawMarks(layer: Layer, key: number, column: Column): void {
     if (layer.table === undefined) return;
     this.layers.select(layer);
-    this.painting.set_brush((brush) => brush.set_value(layer, key));
-    this.marks.choose_column(layer.table, column);
+    this.painting.setBrush((brush) => brush.setValue(layer, key));
+    this.marks.chooseColumn(layer.table, column);
     this.tools.choose(column.kind === "line" ? "line" : "point");
   }
 
   /** Strokes; with tools that add to records, changes of the table. */
   undo(): void {
-    if (this.refuses_changes()) return;
+    if (this.refusesChanges()) return;
     if (kMarkingTools.includes(this.tools.active)) this.marks.undo();
     else this.painting.undo();
   }
   redo(): void {
-    if (this.refuses_changes()) return;
+    if (this.refusesChanges()) return;
     if (kMarkingTools.includes(this.tools.active)) this.marks.redo();
     else this.painting.redo();
   }
 
   /** Behind the model; null: as the server has it. */
-  set_background(background: Background | null): void {
-    this.connection_.set_background(background);
+  setBackground(background: Background | null): void {
+    this._connection.setBackground(background);
   }
 
-  frame_drawn(part: FrameMessage): void {
-    this.connection_.ack(part.header.view_id, part.header.frame);
-    this.view.count_frame();
+  frameDrawn(part: FrameMessage): void {
+    this._connection.ack(part.header.view_id, part.header.frame);
+    this.view.countFrame();
   }
 
   /** A layer that this person made: it is what they paint on next. */
-  add_created(layer: Layer): void {
+  addCreated(layer: Layer): void {
     this.layers.put(layer);
     this.layers.select(layer);
-    this.show_to_maker(layer);
-    if (this.tools.active !== "brush" && !this.is_locked(layer)) this.tools.choose("brush");
+    this.showToMaker(layer);
+    if (this.tools.active !== "brush" && !this.isLocked(layer)) this.tools.choose("brush");
   }
 
   /** What was computed does not cover what others look at: who made it sees it at once. */
-  private show_to_maker(layer: Layer): void {
-    if (!this.layers.visible(layer)) this.layers.set_visible(layer, true);
+  private showToMaker(layer: Layer): void {
+    if (!this.layers.visible(layer)) this.layers.setVisible(layer, true);
   }
 
   /** Layers that work made for this person: the first is what they look at next. */
-  show_made(ids: readonly number[]): void {
+  showMade(ids: readonly number[]): void {
     const layer = this.layers.find(ids[0] ?? null);
     if (layer) this.layers.select(layer);
     for (const id of ids) {
       const made = this.layers.find(id);
-      if (made) this.show_to_maker(made);
+      if (made) this.showToMaker(made);
     }
   }
 
-  async change_model(change: ModelPatch): Promise<void> {
-    this.take_model(await this.api.change_model(this.model_id, change, this.etag_));
+  async changeModel(change: ModelPatch): Promise<void> {
+    this.takeModel(await this.api.changeModel(this.modelId, change, this._etag));
   }
 
-  async reload_model(): Promise<void> {
-    this.take_model(await this.api.model(this.model_id));
+  async reloadModel(): Promise<void> {
+    this.takeModel(await this.api.model(this.modelId));
   }
 
   /**
    * Shows the model as if it had this unit and up direction, without keeping them; null: as it has
    * them.
    */
-  preview_scale(scale: Pick<Model, "unit" | "up"> | null): void {
+  previewScale(scale: Pick<Model, "unit" | "up"> | null): void {
     if (!this.model) return;
-    this.preview_ = scale;
-    this.view.preview_up(this.model, scale?.up ?? this.model.up);
+    this._preview = scale;
+    this.view.previewUp(this.model, scale?.up ?? this.model.up);
     this.changed();
   }
 
   /** What lengths on the screen are told in. */
-  get shown_unit(): Model["unit"] {
-    return this.preview_?.unit ?? this.model?.unit ?? "m";
+  get shownUnit(): Model["unit"] {
+    return this._preview?.unit ?? this.model?.unit ?? "m";
   }
 
-  private take_model({ value, etag }: Versioned<Model>): void {
-    this.etag_ = etag;
-    this.put_model(value);
+  private takeModel({ value, etag }: Versioned<Model>): void {
+    this._etag = etag;
+    this.putModel(value);
   }
 
-  private put_model(model: Model): void {
+  private putModel(model: Model): void {
     const turned = this.model !== null && this.model.up !== model.up;
     this.model = model;
     // What somebody else changes meanwhile does not end the preview.
-    if (this.preview_) this.view.set_model({ ...model, up: this.preview_.up }, false);
-    else this.view.set_model(model, turned);
+    if (this._preview) this.view.setModel({ ...model, up: this._preview.up }, false);
+    else this.view.setModel(model, turned);
     this.changed();
   }
 
   // ── messages
   // ──────────────────────────────────────────────────────────────────────────────────────────────────────
 
-  private on_state(state: ConnectionState): void {
-    this.connection_state = state;
+  private onState(state: ConnectionState): void {
+    this.connectionState = state;
     if (state !== "open") {
       this.editors.left();
       this.together.disconnected();
       this.cursors.reset();
       this.pointer.reset();
-      this.on_reset_frames();
+      this.onResetFrames();
     }
     if (state === "lost") {
-      if (this.closed_) this.tell_left_behind();
-      void this.find_why_lost();
+      if (this._closed) this.tellLeftBehind();
+      void this.findWhyLost();
     }
     this.changed();
   }
 
   /** A refused socket does not say why; the same question over HTTP does. */
-  private async find_why_lost(): Promise<void> {
+  private async findWhyLost(): Promise<void> {
     try {
-      await this.api.model(this.model_id);
+      await this.api.model(this.modelId);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (error.status === 404) this.on_deleted();
-      this.signed_out = error.status === 401;
+      if (error.status === 404) this.onDeleted();
+      this.signedOut = error.status === 401;
       this.changed();
     }
   }
 
-  private on_deleted(): void {
+  private onDeleted(): void {
     const { waiting } = this.saving;
     if (waiting > 0) notices.show("problem", texts.saving.lost_with_model(waiting, this.name));
-    this.connection_.forget();
+    this._connection.forget();
     this.deleted = true;
     this.discard();
     this.changed();
   }
 
-  private on_saving(state: SavingState): void {
+  private onSaving(state: SavingState): void {
     this.saving = state;
-    if (this.closed_ && state.waiting === 0) {
-      if (this.told_left_) notices.show("success", texts.saving.left_saved(this.name));
+    if (this._closed && state.waiting === 0) {
+      if (this._toldLeft) notices.show("success", texts.saving.left_saved(this.name));
       this.discard();
     }
     this.changed();
   }
 
   /** Once, and only when it takes long: usually all is saved in a moment. */
-  private tell_left_behind(): void {
-    if (this.told_left_ || this.connection_state === "open") return;
-    this.told_left_ = true;
+  private tellLeftBehind(): void {
+    if (this._toldLeft || this.connectionState === "open") return;
+    this._toldLeft = true;
     notices.show(
       "problem",
       texts.saving.left_behind(this.saving.waiting, this.name),
@@ -743,8 +743,8 @@ export class OpenModelSession implements ModelSession {
     return this.model?.name ?? "";
   }
 
-  private on_welcome(message: Welcome): void {
-    if (this.was_open_ && !this.closed_) {
+  private onWelcome(message: Welcome): void {
+    if (this._wasOpen && !this._closed) {
       if (message.role === this.role) notices.show("success", texts.connection.back);
       else
         notices.show(
@@ -753,16 +753,16 @@ export class OpenModelSession implements ModelSession {
           texts.role_hints[message.role],
         );
     }
-    this.was_open_ = true;
-    this.signed_out = false;
+    this._wasOpen = true;
+    this.signedOut = false;
     this.user = message.user;
     this.role = message.role;
-    if (!this.can_paint && kChangingTools.includes(this.tools.active)) this.tools.choose("orbit");
+    if (!this.canPaint && kChangingTools.includes(this.tools.active)) this.tools.choose("orbit");
     this.session = message.session;
     this.editors.joined(message.session, message.user);
-    this.put_model(message.model);
-    this.layers.take_all(message.layers.map(complete_layer), message.personal_view);
-    this.appearance.take_looks(message.looks);
+    this.putModel(message.model);
+    this.layers.takeAll(message.layers.map(completeLayer), message.personal_view);
+    this.appearance.takeLooks(message.looks);
     this.shapes.refresh();
     this.tables.refresh();
     this.together.connected();
@@ -773,62 +773,62 @@ export class OpenModelSession implements ModelSession {
   }
 
   /** The brush is told as large as it is on the surface. */
-  private shown_at(pointer: PointerSample | null): Shown {
+  private shownAt(pointer: PointerSample | null): Shown {
     if (!pointer) return { pointer: null };
     const { active } = this.tools;
     const { view, painting } = this;
     const radius =
-      painting.radius_window_px() * view.camera.unit_per_pixel(this.pointer.surface_depth());
-    const in_hand = (active === "brush" || active === "eraser") && radius > 0;
-    return { pointer: [pointer.x, pointer.y], ...(in_hand ? { radius } : {}) };
+      painting.radiusWindowPx() * view.camera.unitPerPixel(this.pointer.surfaceDepth());
+    const inHand = (active === "brush" || active === "eraser") && radius > 0;
+    return { pointer: [pointer.x, pointer.y], ...(inHand ? { radius } : {}) };
   }
 
-  private on_layer(event: LayerEvent): void {
-    this.layers.on_event(event);
-    this.reviews.on_event(event);
+  private onLayer(event: LayerEvent): void {
+    this.layers.onEvent(event);
+    this.reviews.onEvent(event);
     this.activity.outdated();
     if (event.event === "edited") {
-      this.pointer.ask_again();
-      this.measuring.on_layer_edited(event.layer_id);
-      this.tables.on_layer_edited(event.layer_id);
+      this.pointer.askAgain();
+      this.measuring.onLayerEdited(event.layer_id);
+      this.tables.onLayerEdited(event.layer_id);
     } else if (event.event === "deleted") {
-      this.tables.on_layer_deleted(event.layer_id);
+      this.tables.onLayerDeleted(event.layer_id);
     }
   }
 
-  private on_model(event: ModelEvent): void {
+  private onModel(event: ModelEvent): void {
     this.activity.outdated();
-    if (event.event === "deleted") this.on_deleted();
-    else this.painting.when_free(() => this.reload_after_change());
+    if (event.event === "deleted") this.onDeleted();
+    else this.painting.whenFree(() => this.reloadAfterChange());
   }
 
-  private reload_after_change(): void {
+  private reloadAfterChange(): void {
     // with the version that changes need
-    this.reload_model().catch((error: unknown) => notices.error(error));
+    this.reloadModel().catch((error: unknown) => notices.error(error));
   }
 
-  private on_problem(problem: Omit<ProblemMessage, "op">): void {
+  private onProblem(problem: Omit<ProblemMessage, "op">): void {
     const { ref } = problem;
     if (this.pointer.refused(ref) || this.cursors.refused(ref) || this.together.refused(problem))
       return;
     const { selected } = this.layers;
-    if (is_of_lock(problem) && selected && this.is_locked(selected)) this.tell_locked(selected);
+    if (isOfLock(problem) && selected && this.isLocked(selected)) this.tellLocked(selected);
     else notices.problem(problem);
   }
 
   /** In the words that the page has for it, whoever noticed: one notice stands for all. */
-  private tell_locked(layer: Layer): void {
-    notices.show("problem", texts.layers.locked, why_locked(layer));
+  private tellLocked(layer: Layer): void {
+    notices.show("problem", texts.layers.locked, whyLocked(layer));
   }
 }
 
-let told_not_kept = false;
-const not_kept = (why: unknown): void => {
-  if (told_not_kept) return;
-  told_not_kept = true;
+let toldNotKept = false;
+const notKept = (why: unknown): void => {
+  if (toldNotKept) return;
+  toldNotKept = true;
   notices.show("problem", texts.saving.not_kept, `${texts.saving.not_kept_hint} (${String(why)})`);
 };
 
 /** It is painting that was on its way when the layer was locked. */
-const is_of_lock = ({ status, field }: Omit<ProblemMessage, "op">): boolean =>
+const isOfLock = ({ status, field }: Omit<ProblemMessage, "op">): boolean =>
   status === 403 && field === "layer";

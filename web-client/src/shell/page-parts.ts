@@ -20,7 +20,7 @@ export type PagePart =
 export type PartLoads = Readonly<Record<PagePart, () => Promise<unknown>>>;
 
 let loads: PartLoads;
-export function set_part_loads(known: PartLoads): void {
+export function setPartLoads(known: PartLoads): void {
   loads = known;
 }
 
@@ -28,8 +28,8 @@ const here = new Set<PagePart>();
 const loading = new Map<PagePart, Promise<void>>();
 
 function load(part: PagePart): Promise<void> {
-  const under_way = loading.get(part);
-  if (under_way) return under_way;
+  const underWay = loading.get(part);
+  if (underWay) return underWay;
   const loaded = loads[part]()
     .then(() => void here.add(part))
     .finally(() => loading.delete(part));
@@ -42,7 +42,7 @@ function load(part: PagePart): Promise<void> {
  * here. Files of a build go with it: a page that was opened before an update of the server may miss
  * a piece, and is loaded anew by its person.
  */
-export function has_part(part: PagePart, host: { requestUpdate(): void }): boolean {
+export function hasPart(part: PagePart, host: { requestUpdate(): void }): boolean {
   if (here.has(part)) return true;
   load(part).then(
     () => host.requestUpdate(),
@@ -63,7 +63,7 @@ export function has_part(part: PagePart, host: { requestUpdate(): void }): boole
  * Loads it while the person looks at something else. Nothing is said when it fails: it is asked for
  * again when it is needed.
  */
-export function load_part_later(part: PagePart): void {
+export function loadPartLater(part: PagePart): void {
   const begin = (): void => {
     if (!here.has(part)) load(part).catch(() => {});
   };

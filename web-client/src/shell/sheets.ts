@@ -2,25 +2,25 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { up_name } from "../math/camera";
-import { format_count } from "../core/locale";
+import { upName } from "../math/camera";
+import { formatCount } from "../core/locale";
 import {
-  detail_choices,
-  format_area,
-  format_bytes,
-  format_length,
-  format_size,
-  metres_per,
+  detailChoices,
+  formatArea,
+  formatBytes,
+  formatLength,
+  formatSize,
+  metresPer,
 } from "../domain/measure";
 import type { ServerVersion } from "../core/protocol.gen";
-import { may_download, type Model, type Role } from "../core/types";
+import { mayDownload, type Model, type Role } from "../core/types";
 import "../ui/dialog";
 import type { StrataDialog } from "../ui/dialog";
-import { has_fingers_only } from "../ui/pointers";
-import { shared_styles } from "../ui/styles";
+import { hasFingersOnly } from "../ui/pointers";
+import { sharedStyles } from "../ui/styles";
 import { texts } from "../texts";
 
-const sheet_styles = css`
+const sheetStyles = css`
   h3 {
     margin: 2px 0 -0.5rem;
     font: 600 1rem var(--serif);
@@ -79,22 +79,22 @@ const sheet_styles = css`
 
 @customElement("strata-help-sheet")
 export class StrataHelpSheet extends LitElement {
-  @query("strata-dialog") private dialog_!: StrataDialog;
+  @query("strata-dialog") private _dialog!: StrataDialog;
 
-  static override styles = [shared_styles, sheet_styles];
+  static override styles = [sharedStyles, sheetStyles];
 
   /** Of the server, which brings the page. Empty until it has answered. */
-  @state() private version_ = "";
+  @state() private _version = "";
 
   override connectedCallback(): void {
     super.connectedCallback();
-    void this.read_version();
+    void this.readVersion();
   }
 
-  private async read_version(): Promise<void> {
+  private async readVersion(): Promise<void> {
     try {
       const answer = await fetch("/api/v1/version");
-      if (answer.ok) this.version_ = ((await answer.json()) as ServerVersion).version;
+      if (answer.ok) this._version = ((await answer.json()) as ServerVersion).version;
     } catch {
       // The help is useful without it.
     }
@@ -109,17 +109,17 @@ export class StrataHelpSheet extends LitElement {
       </section>`;
     return html`<strata-dialog wide prose long heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <div class="parts">
-        ${has_fingers_only() ? nothing : part(words.mouse, words.mouse_rows)} ${part(words.touch, words.touch_rows)} ${part(words.keys, words.key_rows)}
+        ${hasFingersOnly() ? nothing : part(words.mouse, words.mouse_rows)} ${part(words.touch, words.touch_rows)} ${part(words.keys, words.key_rows)}
         ${part(words.brush, words.brush_rows)} ${part(words.terms, words.terms_rows)} ${part(words.table, words.table_rows)} ${part(words.layers, words.layer_rows)}
       </div>
-      ${this.version_ ? html`<p class="version">Strata ${this.version_}</p>` : nothing}
-      <button slot="actions" @click=${this.show_tour}>${texts.tour.again}</button>
+      ${this._version ? html`<p class="version">Strata ${this._version}</p>` : nothing}
+      <button slot="actions" @click=${this.showTour}>${texts.tour.again}</button>
     </strata-dialog>`;
   }
 
   /** Closed first: the tour gives the keyboard back to what opened the help. */
-  private show_tour(): void {
-    this.dialog_.close();
+  private showTour(): void {
+    this._dialog.close();
     this.dispatchEvent(new CustomEvent("tour"));
   }
 }
@@ -133,24 +133,24 @@ export class StrataAboutSheet extends LitElement {
   /** This person may correct the model's unit and up direction, and say who gets its files. */
   @property({ type: Boolean }) correctable = false;
 
-  static override styles = [shared_styles, sheet_styles];
+  static override styles = [sharedStyles, sheetStyles];
 
   override render(): TemplateResult {
     const { model } = this;
     const words = texts.model.details_list;
-    const metres = metres_per(model.unit);
+    const metres = metresPer(model.unit);
     const sides = [0, 1, 2].map(
       (axis) => (model.bounds.max[axis]! - model.bounds.min[axis]!) * metres,
     );
-    const detail = detail_choices(model.atlas).find(
+    const detail = detailChoices(model.atlas).find(
       (choice) => choice.resolution === model.default_resolution,
     );
     const rows: [string, string][] = [
-      [words.size, format_size(sides)],
-      [words.area, format_area(model.area_m2)],
-      [words.triangles, format_count(model.triangles)],
-      [words.up, up_name(model.up)],
-      [words.smallest, detail ? format_length(detail.detail_m) : ""],
+      [words.size, formatSize(sides)],
+      [words.area, formatArea(model.area_m2)],
+      [words.triangles, formatCount(model.triangles)],
+      [words.up, upName(model.up)],
+      [words.smallest, detail ? formatLength(detail.detailM) : ""],
       [words.crs, model.crs],
       [words.inventory_number, model.inventory_number],
       [words.owner, model.owner],
@@ -160,7 +160,7 @@ export class StrataAboutSheet extends LitElement {
       [words.credit, model.credit],
       [
         words.repairs,
-        model.repairs.map((repair) => `${repair.what}: ${format_count(repair.count)}`).join("; "),
+        model.repairs.map((repair) => `${repair.what}: ${formatCount(repair.count)}`).join("; "),
       ],
     ];
     return html`<strata-dialog wide prose heading=${model.name} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
@@ -174,19 +174,19 @@ export class StrataAboutSheet extends LitElement {
                   (file) =>
                     html`<div>
                       ${
-                        may_download(this.viewer, model)
+                        mayDownload(this.viewer, model)
                           ? html`<a class="text" href="/api/v1/models/${model.id}/source/${encodeURIComponent(file.name)}" download=${file.name}>${file.name}</a>`
                           : file.name
                       }
-                      <span class="hint numeric">${format_bytes(file.bytes)}</span>
+                      <span class="hint numeric">${formatBytes(file.bytes)}</span>
                     </div>`,
                 )}
-                ${may_download(this.viewer, model) ? nothing : html`<p class="hint">${texts.visibility.no_download}</p>`}
+                ${mayDownload(this.viewer, model) ? nothing : html`<p class="hint">${texts.visibility.no_download}</p>`}
               </dd>`
             : nothing
         }
       </dl>
-      ${this.correctable ? this.download_choice() : nothing}
+      ${this.correctable ? this.downloadChoice() : nothing}
       ${
         this.correctable
           ? html`<button slot="actions" @click=${() => this.dispatchEvent(new CustomEvent("correct"))}>
@@ -197,7 +197,7 @@ export class StrataAboutSheet extends LitElement {
     </strata-dialog>`;
   }
 
-  private download_choice(): TemplateResult {
+  private downloadChoice(): TemplateResult {
     const words = texts.visibility;
     return html`<label class="field">
       <span>${words.download}</span>

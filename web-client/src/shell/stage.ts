@@ -6,42 +6,42 @@ import { customElement, property, query } from "lit/decorators.js";
 import { FrameCanvas } from "../net/frame-canvas";
 import type { FrameMessage } from "../net/frame-header";
 import { StageInput } from "../ui/input";
-import { metres_per, scale_bar } from "../domain/measure";
-import { color_of, css_color } from "../domain/palette";
-import { follow_session } from "../session/follow-session";
+import { metresPer, scaleBar } from "../domain/measure";
+import { colorOf, cssColor } from "../domain/palette";
+import { followSession } from "../session/follow-session";
 import type { OpenModelSession } from "./open-model-session";
-import { measure_overlay } from "../features/measuring/measure-overlay";
+import { measureOverlay } from "../features/measuring/measure-overlay";
 import { notices } from "../ui/notices";
-import { on_theme, stage_background } from "../ui/preferences";
-import { outline_overlay } from "../features/painting/outline-overlay";
+import { onTheme, stageBackground } from "../ui/preferences";
+import { outlineOverlay } from "../features/painting/outline-overlay";
 import "../features/presence/people-overlay";
 import { styled } from "../ui/styled";
-import { shared_styles } from "../ui/styles";
+import { sharedStyles } from "../ui/styles";
 import { texts } from "../texts";
-import { shape_picture } from "../features/painting/tool-shapes";
+import { shapePicture } from "../features/painting/tool-shapes";
 
 const kMostWindowPixels = 1920 * 1200;
 const kMostScale = 2; // window pixels per CSS pixel
-const kScaleBar_px = 150;
+const kScaleBarPx = 150;
 
 @customElement("strata-stage")
 export class StrataStage extends LitElement {
   @property({ attribute: false }) session!: OpenModelSession;
-  @query("canvas") private canvas_!: HTMLCanvasElement;
-  @query(".surface") private surface_!: HTMLElement;
+  @query("canvas") private _canvas!: HTMLCanvasElement;
+  @query(".surface") private _surface!: HTMLElement;
 
-  private input_: StageInput | null = null;
-  private frames_: FrameCanvas | null = null;
-  private observer_: ResizeObserver | null = null;
-  private end_theme_: (() => void) | null = null;
+  private _input: StageInput | null = null;
+  private _frames: FrameCanvas | null = null;
+  private _observer: ResizeObserver | null = null;
+  private _endTheme: (() => void) | null = null;
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: block;
@@ -159,41 +159,41 @@ export class StrataStage extends LitElement {
   ];
 
   override firstUpdated(): void {
-    this.frames_ = new FrameCanvas(this.canvas_, {
-      drawn: (part) => this.on_drawn(part),
+    this._frames = new FrameCanvas(this._canvas, {
+      drawn: (part) => this.onDrawn(part),
       failed: (reason) => notices.show("problem", texts.problems.picture, reason),
     });
-    this.session.on_frame = (part) => this.frames_?.push(part);
-    this.session.on_reset_frames = () => this.frames_?.reset();
-    this.input_ = new StageInput(
-      this.surface_,
+    this.session.onFrame = (part) => this._frames?.push(part);
+    this.session.onResetFrames = () => this._frames?.reset();
+    this._input = new StageInput(
+      this._surface,
       this.session.gestures,
       () => this.session.view.scale,
     );
-    this.observer_ = new ResizeObserver(() => this.measure());
-    this.observer_.observe(this);
+    this._observer = new ResizeObserver(() => this.measure());
+    this._observer.observe(this);
     this.measure();
-    const show_background = (): void => this.session.set_background(stage_background());
-    this.end_theme_ = on_theme(show_background);
-    show_background();
+    const showBackground = (): void => this.session.setBackground(stageBackground());
+    this._endTheme = onTheme(showBackground);
+    showBackground();
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.observer_?.disconnect();
-    this.input_?.detach();
-    this.end_theme_?.();
+    this._observer?.disconnect();
+    this._input?.detach();
+    this._endTheme?.();
   }
 
-  set orbit_held(held: boolean) {
-    if (this.input_) this.input_.orbit_held = held;
+  set orbitHeld(held: boolean) {
+    if (this._input) this._input.orbitHeld = held;
   }
 
   /** What the canvas shows is told in its data attributes, for tests and tools. */
-  private on_drawn(part: FrameMessage): void {
-    this.session.frame_drawn(part);
-    const { dataset } = this.canvas_;
-    dataset["frames"] = String(this.session.view.frames_drawn);
+  private onDrawn(part: FrameMessage): void {
+    this.session.frameDrawn(part);
+    const { dataset } = this._canvas;
+    dataset["frames"] = String(this.session.view.framesDrawn);
     dataset["cameraSeq"] = String(part.header.camera_seq);
     dataset["sceneSequence"] = String(part.header.scene_sequence);
     dataset["still"] = String(part.header.still);
@@ -203,7 +203,7 @@ export class StrataStage extends LitElement {
     const { clientWidth: width, clientHeight: height } = this;
     if (width < 2 || height < 2) return;
     const most = Math.sqrt(kMostWindowPixels / (width * height));
-    this.session.view.set_viewport(
+    this.session.view.setViewport(
       width,
       height,
       Math.min(window.devicePixelRatio || 1, kMostScale, most),
@@ -213,7 +213,7 @@ export class StrataStage extends LitElement {
   override render(): TemplateResult {
     const { session } = this;
     const tool = session.tools.active;
-    const locked = session.locked_target !== null;
+    const locked = session.lockedTarget !== null;
     const paints = !locked && (tool === "brush" || tool === "eraser");
     const aims =
       tool === "polygon" ||
@@ -232,36 +232,36 @@ export class StrataStage extends LitElement {
         aria-label=${texts.model.stage}
       >
         <canvas width="2" height="2"></canvas>
-        ${paints ? this.brush_cursor() : nothing}
-        ${session.tools.outline ? outline_overlay(session, session.tools.outline) : nothing}
-        ${tool === "measure" ? measure_overlay(session) : nothing}
+        ${paints ? this.brushCursor() : nothing}
+        ${session.tools.outline ? outlineOverlay(session, session.tools.outline) : nothing}
+        ${tool === "measure" ? measureOverlay(session) : nothing}
       </div>
       <strata-people-overlay .session=${session}></strata-people-overlay>
-      ${this.scale_bar()}
+      ${this.scaleBar()}
       ${
-        session.view.frames_drawn === 0
+        session.view.framesDrawn === 0
           ? html`<div class="waiting" role="status">${texts.model.waiting_for_picture}</div>`
           : nothing
       }`;
   }
 
   /** The footprint in the picture: what the stroke covers, to the pixel. */
-  private brush_cursor(): TemplateResult {
+  private brushCursor(): TemplateResult {
     const { session } = this;
     const { at } = session.pointer;
     const { scale } = session.view;
     if (!at) return html``;
     const [x, y] = [at.x / scale, at.y / scale];
-    const radius = session.painting.radius_window_px() / scale;
+    const radius = session.painting.radiusWindowPx() / scale;
     const layer = session.layers.selected;
     const erases = session.tools.active === "eraser";
     const color =
-      layer && !erases ? color_of(layer.palette, session.painting.brush.value_of(layer)) : null;
-    const fill = color ? css_color(color) : "none";
+      layer && !erases ? colorOf(layer.palette, session.painting.brush.valueFor(layer)) : null;
+    const fill = color ? cssColor(color) : "none";
     const { shape } = session.painting.brush;
     const square = shape === "square";
     if (typeof shape === "number" && radius >= 4)
-      return this.shape_cursor(shape, x, y, radius, erases ? null : color);
+      return this.shapeCursor(shape, x, y, radius, erases ? null : color);
     const outline = (
       width: number,
       stroke: string,
@@ -285,7 +285,7 @@ export class StrataStage extends LitElement {
   }
 
   /** The same for a shape of a picture: a tint with a dark rim, in the layer's colour or clear. */
-  private shape_cursor(
+  private shapeCursor(
     tool: number,
     x: number,
     y: number,
@@ -299,23 +299,21 @@ export class StrataStage extends LitElement {
       height: `${2 * radius}px`,
     };
     const tint = {
-      "mask-image": `url(${shape_picture(tool)})`,
-      background: color ? css_color(color) : "var(--mark-light)",
+      "mask-image": `url(${shapePicture(tool)})`,
+      background: color ? cssColor(color) : "var(--mark-light)",
     };
     return html`<div class="shape-cursor" aria-hidden="true" ${styled(square)}><i ${styled(tint)}></i></div>`;
   }
 
-  private scale_bar(): TemplateResult {
+  private scaleBar(): TemplateResult {
     const { session } = this;
-    if (!session.model || session.view.frames_drawn === 0) return html``;
+    if (!session.model || session.view.framesDrawn === 0) return html``;
     const depth = session.pointer.picked?.hit
-      ? session.pointer.surface_depth()
+      ? session.pointer.surfaceDepth()
       : session.view.camera.distance;
-    const metres_per_px =
-      session.view.camera.unit_per_pixel(depth) *
-      session.view.scale *
-      metres_per(session.shown_unit);
-    const bar = scale_bar(metres_per_px, kScaleBar_px);
+    const metresPerPx =
+      session.view.camera.unitPerPixel(depth) * session.view.scale * metresPer(session.shownUnit);
+    const bar = scaleBar(metresPerPx, kScaleBarPx);
     const lowered = session.together.followed || session.together.leading;
     return html`<div class="scale numeric ${lowered ? "lowered" : ""}"><i ${styled({ width: `${bar.px.toFixed(1)}px` })}></i>${bar.label}${session.model.scale_verified ? nothing : html`<small>${texts.home.scale_open}</small>`}</div>`;
   }

@@ -10,11 +10,11 @@ import type { Me } from "../core/types";
 import type { AccountRequest } from "../ui/account-menu";
 import "../ui/status-page";
 import { ask } from "../ui/dialog";
-import { invitation_of } from "../features/account/entry";
+import { invitationOf } from "../features/account/entry";
 import { icon } from "../ui/icons";
-import { dropped_files, has_files, without_folders, type DroppedFile } from "../ui/drop";
+import { droppedFiles, hasFiles, withoutFolders, type DroppedFile } from "../ui/drop";
 import {
-  choose_scans,
+  chooseScans,
   Imports,
   type ImportEntry,
   type ImportResult,
@@ -22,28 +22,23 @@ import {
 } from "../features/home/imports";
 import { notices } from "../ui/notices";
 import "./notices-view";
-import { has_part, load_part_later, set_part_loads } from "./page-parts";
+import { hasPart, loadPartLater, setPartLoads } from "./page-parts";
 import { curates, kDefaultProject } from "../features/home/project-list";
 import {
-  may_leave_page,
+  mayLeavePage,
   navigate,
-  on_navigate,
-  path_now,
-  path_of_model,
-  replace_address,
-  route_of,
+  onNavigate,
+  pathNow,
+  pathOfModel,
+  replaceAddress,
+  routeOf,
   type Route,
 } from "../ui/routes";
-import {
-  check_connections,
-  discard_unsaved,
-  keep_views,
-  unsaved_changes,
-} from "../session/sessions";
-import { shared_styles } from "../ui/styles";
+import { checkConnections, discardUnsaved, keepViews, unsavedChanges } from "../session/sessions";
+import { sharedStyles } from "../ui/styles";
 import { texts } from "../texts";
 
-set_part_loads({
+setPartLoads({
   home: () => import("../features/home/home-page"),
   model: () => import("./model-page"),
   model_dialogs: () => import("./model-dialogs"),
@@ -57,21 +52,21 @@ set_part_loads({
 
 @customElement("strata-app")
 export class StrataApp extends LitElement {
-  private readonly api_ = new Api();
-  private readonly imports_ = new Imports(this.api_);
-  @state() private route_: Route = route_of(path_now());
-  @state() private me_: Me | null = null;
-  @state() private projects_: readonly Project[] = [];
-  @state() private chosen_project_ = ""; // for imports
-  @state() private session_: "unknown" | "signed-in" | "signed-out" | "unreachable" = "unknown";
-  @state() private problem_ = "";
-  @state() private dialog_: "account" | "people" | "kiosks" | "preferences" | null = null;
-  @state() private dropping_ = false;
-  @state() private imported_ = 0;
-  private drag_depth_ = 0;
+  private readonly _api = new Api();
+  private readonly _imports = new Imports(this._api);
+  @state() private _route: Route = routeOf(pathNow());
+  @state() private _me: Me | null = null;
+  @state() private _projects: readonly Project[] = [];
+  @state() private _chosenProject = ""; // for imports
+  @state() private _session: "unknown" | "signed-in" | "signed-out" | "unreachable" = "unknown";
+  @state() private _problem = "";
+  @state() private _dialog: "account" | "people" | "kiosks" | "preferences" | null = null;
+  @state() private _dropping = false;
+  @state() private _imported = 0;
+  private _dragDepth = 0;
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       .drop-target {
         position: fixed;
@@ -103,56 +98,56 @@ export class StrataApp extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    on_navigate(() => (this.route_ = route_of(path_now())));
+    onNavigate(() => (this._route = routeOf(pathNow())));
     addEventListener("unhandledrejection", (event) => notices.error(event.reason));
-    addEventListener("online", check_connections);
+    addEventListener("online", checkConnections);
     document.addEventListener("visibilitychange", () => {
-      if (document.visibilityState !== "visible") return keep_views();
-      check_connections();
-      void this.refresh_me();
+      if (document.visibilityState !== "visible") return keepViews();
+      checkConnections();
+      void this.refreshMe();
     });
-    addEventListener("pagehide", keep_views);
+    addEventListener("pagehide", keepViews);
     addEventListener("beforeunload", (event) => {
-      if (unsaved_changes() > 0) event.preventDefault();
+      if (unsavedChanges() > 0) event.preventDefault();
     });
-    addEventListener("dragenter", this.on_drag_enter);
-    addEventListener("dragover", this.on_drag_over);
-    addEventListener("dragleave", this.on_drag_leave);
-    addEventListener("drop", this.on_drop);
-    void this.check_session();
+    addEventListener("dragenter", this.onDragEnter);
+    addEventListener("dragover", this.onDragOver);
+    addEventListener("dragleave", this.onDragLeave);
+    addEventListener("drop", this.onDrop);
+    void this.checkSession();
   }
 
-  private async check_session(): Promise<void> {
+  private async checkSession(): Promise<void> {
     try {
-      await this.take_me(await this.api_.me());
-      this.session_ = "signed-in";
-      check_connections();
+      await this.takeMe(await this._api.me());
+      this._session = "signed-in";
+      checkConnections();
     } catch (error) {
       if (error instanceof ApiError && error.status === 401) {
-        this.session_ = "signed-out";
+        this._session = "signed-out";
         return;
       }
-      this.session_ = "unreachable";
-      this.problem_ = error instanceof Error ? error.message : "";
-      setTimeout(() => void this.check_session(), 3000);
+      this._session = "unreachable";
+      this._problem = error instanceof Error ? error.message : "";
+      setTimeout(() => void this.checkSession(), 3000);
     }
   }
 
-  private async take_me(me: Me): Promise<void> {
-    const lost = this.me_ && this.me_.user !== me.user ? discard_unsaved() : 0;
+  private async takeMe(me: Me): Promise<void> {
+    const lost = this._me && this._me.user !== me.user ? discardUnsaved() : 0;
     if (lost > 0) notices.show("problem", texts.saving.discarded(lost));
-    this.projects_ = await this.api_.projects();
-    this.me_ = me;
+    this._projects = await this._api.projects();
+    this._me = me;
   }
 
   /** Others may have changed what this person may do, or signed them out. */
-  private readonly refresh_me = async (): Promise<void> => {
-    if (this.session_ !== "signed-in") return;
+  private readonly refreshMe = async (): Promise<void> => {
+    if (this._session !== "signed-in") return;
     try {
-      await this.take_me(await this.api_.me());
+      await this.takeMe(await this._api.me());
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (error.status === 401) this.signed_out(); // anything else is told where it matters
+      if (error.status === 401) this.signedOut(); // anything else is told where it matters
     }
   };
 
@@ -160,26 +155,26 @@ export class StrataApp extends LitElement {
    * `next`: where what was changed is seen. It is gone to with nothing to come back to from there
    * where the place itself is gone.
    */
-  private async take_projects(next: string | null): Promise<void> {
-    await this.refresh_me();
-    if (next === null || next === path_now()) return;
-    if (next === "/") replace_address(next);
+  private async takeProjects(next: string | null): Promise<void> {
+    await this.refreshMe();
+    if (next === null || next === pathNow()) return;
+    if (next === "/") replaceAddress(next);
     else navigate(next);
   }
 
-  private readonly signed_out = (): void => {
-    this.session_ = "signed-out";
-    this.dialog_ = null;
+  private readonly signedOut = (): void => {
+    this._session = "signed-out";
+    this._dialog = null;
   };
 
-  private async on_account({ detail }: CustomEvent<AccountRequest>): Promise<void> {
-    if (detail === "sign-out") await this.sign_out();
-    else this.dialog_ = detail;
+  private async onAccount({ detail }: CustomEvent<AccountRequest>): Promise<void> {
+    if (detail === "sign-out") await this.signOut();
+    else this._dialog = detail;
   }
 
-  private async sign_out(): Promise<void> {
-    if (!(await may_leave_page())) return;
-    const lost = unsaved_changes();
+  private async signOut(): Promise<void> {
+    if (!(await mayLeavePage())) return;
+    const lost = unsavedChanges();
     const words = texts.account;
     const question = {
       heading: words.sign_out_title,
@@ -188,21 +183,21 @@ export class StrataApp extends LitElement {
     };
     if (lost > 0 && !(await ask({ ...question, danger: true }))) return;
     try {
-      await this.api_.logout();
+      await this._api.logout();
     } catch (error) {
       if (!(error instanceof ApiError) || error.status !== 401) {
         notices.error(error); // nobody must think that they are signed out while they are not
         return;
       }
     }
-    discard_unsaved();
-    this.signed_out();
+    discardUnsaved();
+    this.signedOut();
   }
 
   override render(): TemplateResult {
-    return html`${this.page()} ${this.session_ === "signed-in" && this.me_ ? this.dialog(this.me_) : nothing}
+    return html`${this.page()} ${this._session === "signed-in" && this._me ? this.dialog(this._me) : nothing}
       ${
-        this.dropping_
+        this._dropping
           ? html`<div class="drop-target">
             <div>${icon("upload")}<b>${texts.home.drop_title}</b><span>${texts.home.drop_lead}</span></div>
           </div>`
@@ -212,62 +207,62 @@ export class StrataApp extends LitElement {
   }
 
   private page(): unknown {
-    const { session_: session, me_: me } = this;
+    const { _session: session, _me: me } = this;
     if (session === "unknown") return nothing;
     if (session === "unreachable")
-      return html`<strata-blank heading=${texts.connection.lost} lead=${this.problem_}></strata-blank>`;
-    if (this.route_.page === "join") return this.join_page(session === "signed-in" ? me : null);
+      return html`<strata-blank heading=${texts.connection.lost} lead=${this._problem}></strata-blank>`;
+    if (this._route.page === "join") return this.joinPage(session === "signed-in" ? me : null);
     if (session === "signed-out" || !me) {
-      if (!has_part("sign_in", this)) return nothing;
-      return html`<strata-sign-in .api=${this.api_} @signed-in=${() => void this.check_session()}></strata-sign-in>`;
+      if (!hasPart("sign_in", this)) return nothing;
+      return html`<strata-sign-in .api=${this._api} @signed-in=${() => void this.checkSession()}></strata-sign-in>`;
     }
-    const is_model = this.route_.page === "model";
-    if (!has_part(is_model ? "model" : "home", this)) return nothing;
-    if (!is_model) load_part_later("model"); // most people open one
-    return this.route_.page === "model"
+    const isModel = this._route.page === "model";
+    if (!hasPart(isModel ? "model" : "home", this)) return nothing;
+    if (!isModel) loadPartLater("model"); // most people open one
+    return this._route.page === "model"
       ? keyed(
-          this.route_.model, // everything of a model page belongs to its one model
+          this._route.model, // everything of a model page belongs to its one model
           html`<strata-model-page
-            .api=${this.api_}
+            .api=${this._api}
             .me=${me}
-            .model_id=${this.route_.model}
-            .projects=${this.projects_}
-            @account=${this.on_account}
-            @role-changed=${this.refresh_me}
-            @signed-out=${this.signed_out}
+            .modelId=${this._route.model}
+            .projects=${this._projects}
+            @account=${this.onAccount}
+            @role-changed=${this.refreshMe}
+            @signed-out=${this.signedOut}
           ></strata-model-page>`,
         )
       : html`<strata-home-page
-          .api=${this.api_}
+          .api=${this._api}
           .me=${me}
-          .projects=${this.projects_}
-          .project=${this.route_.project}
+          .projects=${this._projects}
+          .project=${this._route.project}
           .curated=${this.curated}
           .into=${this.into}
-          .imports=${this.imports_}
-          @repeat-import=${this.repeat_import}
-          .imported=${this.imported_}
-          @account=${this.on_account}
-          @signed-out=${this.signed_out}
-          @choose-project=${({ detail }: CustomEvent<string>) => (this.chosen_project_ = detail)}
-          @projects-changed=${({ detail }: CustomEvent<string | null>) => void this.take_projects(detail)}
-          @import-files=${(event: CustomEvent<File[]>) => void this.import_files(without_folders(event.detail))}
+          .imports=${this._imports}
+          @repeat-import=${this.repeatImport}
+          .imported=${this._imported}
+          @account=${this.onAccount}
+          @signed-out=${this.signedOut}
+          @choose-project=${({ detail }: CustomEvent<string>) => (this._chosenProject = detail)}
+          @projects-changed=${({ detail }: CustomEvent<string | null>) => void this.takeProjects(detail)}
+          @import-files=${(event: CustomEvent<File[]>) => void this.importFiles(withoutFolders(event.detail))}
         ></strata-home-page>`;
   }
 
-  private join_page(me: Me | null): unknown {
-    if (!has_part("join", this)) return nothing;
-    const invitation = invitation_of(location.hash);
+  private joinPage(me: Me | null): unknown {
+    if (!hasPart("join", this)) return nothing;
+    const invitation = invitationOf(location.hash);
     return keyed(
       invitation,
       html`<strata-join-page
-        .api=${this.api_}
+        .api=${this._api}
         .invitation=${invitation}
         .me=${me}
-        @sign-out=${this.sign_out}
+        @sign-out=${this.signOut}
         @joined=${() => {
-          replace_address("/"); // the secret is used up, and none of the history's business
-          void this.check_session();
+          replaceAddress("/"); // the secret is used up, and none of the history's business
+          void this.checkSession();
         }}
       ></strata-join-page>`,
     );
@@ -275,111 +270,111 @@ export class StrataApp extends LitElement {
 
   private dialog(me: Me): unknown {
     const closed = (): void => {
-      this.dialog_ = null;
+      this._dialog = null;
     };
-    if (this.dialog_ && !has_part(this.dialog_, this)) return nothing;
-    if (this.dialog_ === "account") {
+    if (this._dialog && !hasPart(this._dialog, this)) return nothing;
+    if (this._dialog === "account") {
       return html`<strata-account-dialog
-        .api=${this.api_}
+        .api=${this._api}
         .me=${me}
-        @changed=${(event: CustomEvent<Me>) => void this.take_me(event.detail)}
+        @changed=${(event: CustomEvent<Me>) => void this.takeMe(event.detail)}
         @closed=${closed}
-        @signed-out=${this.signed_out}
+        @signed-out=${this.signedOut}
       ></strata-account-dialog>`;
     }
-    if (this.dialog_ === "people") {
-      return html`<strata-people-dialog .api=${this.api_} .me=${me} @closed=${closed} @signed-out=${this.signed_out}></strata-people-dialog>`;
+    if (this._dialog === "people") {
+      return html`<strata-people-dialog .api=${this._api} .me=${me} @closed=${closed} @signed-out=${this.signedOut}></strata-people-dialog>`;
     }
-    if (this.dialog_ === "kiosks") {
-      return html`<strata-kiosks-dialog .api=${this.api_} @closed=${closed} @signed-out=${this.signed_out}></strata-kiosks-dialog>`;
+    if (this._dialog === "kiosks") {
+      return html`<strata-kiosks-dialog .api=${this._api} @closed=${closed} @signed-out=${this.signedOut}></strata-kiosks-dialog>`;
     }
-    if (this.dialog_ === "preferences")
+    if (this._dialog === "preferences")
       return html`<strata-preferences-dialog @closed=${closed}></strata-preferences-dialog>`;
     return nothing;
   }
 
-  private get import_refusal(): string | null {
-    if (this.session_ !== "signed-in" || !this.me_) return texts.import.sign_in_first;
+  private get importRefusal(): string | null {
+    if (this._session !== "signed-in" || !this._me) return texts.import.sign_in_first;
     return this.into ? null : texts.import.not_allowed;
   }
 
   /** Where they may import scans. */
   private get curated(): readonly Project[] {
-    return this.projects_.filter(curates);
+    return this._projects.filter(curates);
   }
   /**
    * The project that scans are imported into, which is the one that is looked at; null: they may
    * not import.
    */
   private get into(): Project | null {
-    const by_slug = (slug: string): Project | undefined =>
+    const bySlug = (slug: string): Project | undefined =>
       this.curated.find((project) => project.slug === slug);
-    const { route_: route } = this;
-    if (route.page === "home" && route.project !== null) return by_slug(route.project) ?? null;
-    return by_slug(this.chosen_project_) ?? by_slug(kDefaultProject) ?? this.curated[0] ?? null;
+    const { _route: route } = this;
+    if (route.page === "home" && route.project !== null) return bySlug(route.project) ?? null;
+    return bySlug(this._chosenProject) ?? bySlug(kDefaultProject) ?? this.curated[0] ?? null;
   }
 
-  private async import_files(dropped: readonly DroppedFile[]): Promise<void> {
-    const scans = choose_scans(dropped);
-    if (this.route_.page !== "home" && scans.length > 0) {
+  private async importFiles(dropped: readonly DroppedFile[]): Promise<void> {
+    const scans = chooseScans(dropped);
+    if (this._route.page !== "home" && scans.length > 0) {
       notices.show("info", texts.import.started, "", { href: "/", label: texts.import.watch });
     }
-    await Promise.all(scans.map((scan) => this.import_scan(scan, scans.length === 1)));
+    await Promise.all(scans.map((scan) => this.importScan(scan, scans.length === 1)));
   }
 
-  private async import_scan(scan: Scan, alone: boolean): Promise<void> {
+  private async importScan(scan: Scan, alone: boolean): Promise<void> {
     const { into } = this;
-    if (into) await this.take_import(this.imports_.start(scan, into.slug), scan.name, alone);
+    if (into) await this.takeImport(this._imports.start(scan, into.slug), scan.name, alone);
   }
 
-  private readonly repeat_import = ({ detail }: CustomEvent<ImportEntry>): void => {
-    void this.take_import(
-      this.imports_.repeat(detail.key),
+  private readonly repeatImport = ({ detail }: CustomEvent<ImportEntry>): void => {
+    void this.takeImport(
+      this._imports.repeat(detail.key),
       detail.name,
-      this.imports_.entries.length === 1,
+      this._imports.entries.length === 1,
     );
   };
 
-  private async take_import(
+  private async takeImport(
     ending: Promise<ImportResult>,
     name: string,
     alone: boolean,
   ): Promise<void> {
     const { model, problem } = await ending;
-    this.imported_ += 1;
-    if (problem && this.route_.page !== "home") notices.problem(problem); // the home page lists it
+    this._imported += 1;
+    if (problem && this._route.page !== "home") notices.problem(problem); // the home page lists it
     if (model === null) return;
     // a person at work on another model is not carried off
-    const opens = alone && this.route_.page === "home";
-    const link = { href: path_of_model(model), label: texts.import.open };
+    const opens = alone && this._route.page === "home";
+    const link = { href: pathOfModel(model), label: texts.import.open };
     notices.show("success", texts.import.ready(name), "", opens ? null : link);
     if (opens) navigate(link.href);
   }
 
-  private readonly on_drag_enter = (event: DragEvent): void => {
-    if (!has_files(event)) return;
+  private readonly onDragEnter = (event: DragEvent): void => {
+    if (!hasFiles(event)) return;
     event.preventDefault();
-    this.drag_depth_ += 1;
-    this.dropping_ = this.import_refusal === null;
+    this._dragDepth += 1;
+    this._dropping = this.importRefusal === null;
   };
-  private readonly on_drag_over = (event: DragEvent): void => {
-    if (!has_files(event)) return;
+  private readonly onDragOver = (event: DragEvent): void => {
+    if (!hasFiles(event)) return;
     // something on the page may take the file itself
-    this.dropping_ = !event.defaultPrevented && this.import_refusal === null;
+    this._dropping = !event.defaultPrevented && this.importRefusal === null;
     event.preventDefault(); // else the browser opens the file in place of the page
   };
-  private readonly on_drag_leave = (): void => {
-    this.drag_depth_ = Math.max(0, this.drag_depth_ - 1);
-    if (this.drag_depth_ === 0) this.dropping_ = false;
+  private readonly onDragLeave = (): void => {
+    this._dragDepth = Math.max(0, this._dragDepth - 1);
+    if (this._dragDepth === 0) this._dropping = false;
   };
-  private readonly on_drop = (event: DragEvent): void => {
-    this.drag_depth_ = 0;
-    this.dropping_ = false;
-    if (!has_files(event) || event.defaultPrevented) return;
+  private readonly onDrop = (event: DragEvent): void => {
+    this._dragDepth = 0;
+    this._dropping = false;
+    if (!hasFiles(event) || event.defaultPrevented) return;
     event.preventDefault();
-    const refusal = this.import_refusal;
+    const refusal = this.importRefusal;
     if (refusal) notices.show("problem", refusal);
     else if (event.dataTransfer)
-      void dropped_files(event.dataTransfer).then((files) => this.import_files(files));
+      void droppedFiles(event.dataTransfer).then((files) => this.importFiles(files));
   };
 }

@@ -4,12 +4,12 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import type { StandardView } from "../math/camera";
 import { kChangingTools, type ToolName } from "../tools/tool";
-import { follow_session } from "../session/follow-session";
+import { followSession } from "../session/follow-session";
 import { icon } from "../ui/icons";
 import "../ui/menu";
 import type { OpenModelSession } from "./open-model-session";
 import { ScrollFade } from "../ui/scroll-fade";
-import { shared_styles } from "../ui/styles";
+import { sharedStyles } from "../ui/styles";
 import { texts } from "../texts";
 import type { StepName } from "../features/onboarding/onboarding-steps";
 
@@ -37,12 +37,12 @@ export class StrataToolRail extends LitElement {
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
     new ScrollFade(this);
   }
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: flex;
@@ -150,7 +150,7 @@ export class StrataToolRail extends LitElement {
   ];
 
   override willUpdate(): void {
-    this.toggleAttribute("paints", this.session.can_paint);
+    this.toggleAttribute("paints", this.session.canPaint);
   }
 
   override render(): TemplateResult {
@@ -165,13 +165,13 @@ export class StrataToolRail extends LitElement {
             aria-pressed=${session.tools.active === name}
             aria-label=${texts.tools[name]}
             title="${texts.tools[name]} (${key})"
-            @click=${() => session.choose_tool(name)}
+            @click=${() => session.chooseTool(name)}
           >
             ${icon(name)}
           </button>`,
     )}
       ${
-        session.can_paint
+        session.canPaint
           ? html`<div class="turns">
             <hr />
             <button
@@ -208,7 +208,7 @@ export class StrataToolRail extends LitElement {
       <strata-menu label=${words.view} glyph="cube" side="right">
         ${kViews.map(
           (view, index) =>
-            html`<button class="quiet" role="menuitem" @click=${() => session.view.standard_view(view)}>
+            html`<button class="quiet" role="menuitem" @click=${() => session.view.standardView(view)}>
               ${texts.views[view]}<kbd>${index + 1}</kbd>
             </button>`,
         )}
@@ -220,7 +220,7 @@ export class StrataToolRail extends LitElement {
   /** Lines and points have their tools where the layer's table has columns of them. */
   private shows(name: ToolName): boolean {
     const { session } = this;
-    if (kChangingTools.includes(name) && !session.can_paint) return false;
+    if (kChangingTools.includes(name) && !session.canPaint) return false;
     return (
       (name !== "line" && name !== "point") ||
       session.tools.active === name ||
@@ -235,7 +235,7 @@ export class StrataToolRail extends LitElement {
       class="quiet"
       role="menuitemradio"
       aria-checked=${chosen}
-      @click=${() => session.view.set_perspective(perspective)}
+      @click=${() => session.view.setPerspective(perspective)}
     >
       ${label}${chosen ? icon("check") : nothing}<kbd>${key}</kbd>
     </button>`;

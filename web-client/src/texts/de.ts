@@ -9,11 +9,11 @@
 //   comment Kommentar · reply Antwort · resolved erledigt · to lock sperren · to follow folgen · to look along mitschauen · project Projekt · guest Gast
 //   hatch Schraffur · orthophoto Orthofoto · reading Messpunkt · site (of a server) Server · invitation Einladung · token Token
 
-import { format_count } from "../core/locale";
+import { formatCount } from "../core/locale";
 import type { Texts } from "./shape";
 import { count, plural } from "./count";
 
-const what_changed = (created: number, changed: number, deleted: number): string =>
+const whatChanged = (created: number, changed: number, deleted: number): string =>
   [
     [created, "angelegt"],
     [changed, "geändert"],
@@ -87,8 +87,8 @@ export const texts = {
     incomplete_lead:
       "Bitte den ganzen Link, bis zum Ende, in die Adresszeile des Browsers kopieren.",
     to_sign_in: "Zur Anmeldung",
-    other_person: (signed_in, invited) =>
-      `In diesem Browser ist jemand anderes angemeldet: ${signed_in}. Der Link ist für ${invited}. Bitte hier zuerst abmelden, dann fortfahren.`,
+    other_person: (signedIn, invited) =>
+      `In diesem Browser ist jemand anderes angemeldet: ${signedIn}. Der Link ist für ${invited}. Bitte hier zuerst abmelden, dann fortfahren.`,
     sign_out: (name) => `${name} abmelden`,
   },
 
@@ -196,7 +196,7 @@ export const texts = {
     filter: "Personen suchen",
     filter_hint: "Name, Rolle oder Gruppe",
     count: (n) => count(n, "Person", "Personen"),
-    count_of: (n, all) => `${format_count(n)} von ${count(all, "Person", "Personen")}`,
+    count_of: (n, all) => `${formatCount(n)} von ${count(all, "Person", "Personen")}`,
     none_found: "So heißt niemand.",
     user: "Name",
     full_name: "Vollständiger Name",
@@ -274,7 +274,7 @@ export const texts = {
     delete_lead: (losing, people) =>
       (losing === 0
         ? "Niemand verliert dadurch etwas: was sie gibt, haben ihre Mitglieder auch auf andere Weise."
-        : `${count(losing, "Person", "Personen")} von ${format_count(people)} in der Gruppe ${plural(losing, "sieht", "sehen")} dann weniger Projekte oder ${plural(losing, "darf", "dürfen")} dort weniger.`) +
+        : `${count(losing, "Person", "Personen")} von ${formatCount(people)} in der Gruppe ${plural(losing, "sieht", "sehen")} dann weniger Projekte oder ${plural(losing, "darf", "dürfen")} dort weniger.`) +
       " Ihre Rollen in Projekten werden mit ihr gelöscht. Das lässt sich nicht rückgängig machen.",
   },
 
@@ -607,10 +607,10 @@ export const texts = {
     show_all: "Alle Begriffe zeigen",
     tree: "Begriffe",
     none_found: "So heißt kein Begriff.",
-    more_found: (n) => `und ${format_count(n)} weitere: mehr vom Wort schreiben`,
+    more_found: (n) => `und ${formatCount(n)} weitere: mehr vom Wort schreiben`,
     empty: "Die Liste hat noch keine Begriffe.",
     more: (n, all) =>
-      `Die ersten ${format_count(n)} von ${format_count(all)} Begriffen. Die anderen findet die Suche.`,
+      `Die ersten ${formatCount(n)} von ${formatCount(all)} Begriffen. Die anderen findet die Suche.`,
   },
 
   templates: {
@@ -891,7 +891,7 @@ export const texts = {
     widen: "Platz für mehr Datensätze …",
     widen_title: (layer) => `Platz für mehr Datensätze in „${layer}“?`,
     widen_lead: (highest) =>
-      `Sie nimmt Schlüssel bis ${format_count(highest)} auf. Danach nimmt sie alle Schlüssel auf und braucht mehr Speicher; was gemalt ist und seine Historie bleiben.`,
+      `Sie nimmt Schlüssel bis ${formatCount(highest)} auf. Danach nimmt sie alle Schlüssel auf und braucht mehr Speicher; was gemalt ist und seine Historie bleiben.`,
     widen_yes: "Platz schaffen",
     widened: "Die Ebene nimmt jetzt alle Schlüssel auf.",
     saved_default: "Was Sie sehen, ist jetzt die Vorgabe für alle.",
@@ -901,7 +901,7 @@ export const texts = {
     deleted_by_other: (name) => `Die Ebene „${name}“ wurde gelöscht.`,
     created: (name) => `Die Ebene „${name}“ ist bereit zum Malen.`,
     no_labels: "Nummerierte Klassen",
-    more_classes: (n) => `und ${format_count(n)} weitere`,
+    more_classes: (n) => `und ${formatCount(n)} weitere`,
     class_number: (n) => `Klasse ${n}`,
     record_number: (n) => `Datensatz ${n}`,
     no_records: "Jeder Datensatz hat eine eigene Farbe.",
@@ -1119,7 +1119,7 @@ export const texts = {
       attached: "Der Datensatz hat eine Datei dieses Namens",
       twice: "Derselbe Name kommt zweimal vor",
     },
-    more: (n) => `und ${format_count(n)} weitere`,
+    more: (n) => `und ${formatCount(n)} weitere`,
     send: (n) => (n === 0 ? "Senden" : `${files(n)} senden`),
     sending: (n, of) => `${Math.min(n, of)} von ${of} wird gesendet …`,
     sent: (n) => `${files(n)} bei den Datensätzen abgelegt.`,
@@ -1131,7 +1131,7 @@ export const texts = {
     how_on:
       "Klicken oder Tippen auf die letzte Stelle oder Enter beendet die Linie; Rücktaste nimmt eine Stelle zurück, Escape räumt alles weg.",
     how_anew: "Beendet. Das nächste Klicken oder Tippen beginnt eine andere Linie.",
-    most: (n) => `Das sind ${format_count(n)} Stellen; mehr können nicht gesetzt werden.`,
+    most: (n) => `Das sind ${formatCount(n)} Stellen; mehr können nicht gesetzt werden.`,
     set_in_middle: "Stelle in der Mitte",
     end: "Beenden",
     take_back: "Zurücknehmen",
@@ -1141,7 +1141,7 @@ export const texts = {
     straight: "Gerade",
     ends: "Erste bis letzte Stelle, gerade",
     along: "Entlang der Oberfläche",
-    along_parts: (n) => `Entlang der Oberfläche, in ${format_count(n)} Teilen`,
+    along_parts: (n) => `Entlang der Oberfläche, in ${formatCount(n)} Teilen`,
     no_way:
       "Die geraden Linien gehen durch das Objekt, und was ihnen am nächsten ist, ist kein Weg über seine Oberfläche. Das Modell drehen, bis alle Stellen zu sehen sind, dann „Gesehenem“ wählen.",
     rise: (axis) => `Höhenunterschied (${axis})`,
@@ -1152,7 +1152,7 @@ export const texts = {
     off_plane: (length) =>
       `Die Stellen liegen bis zu ${length} neben seiner Ebene; die Fläche ist die ihrer Projektion darauf.`,
     gaps: (n) =>
-      `Die Linie verlässt die Oberfläche ${n === 1 ? "einmal" : `${format_count(n)}-mal`}; was dazwischenliegt, zählt nicht.`,
+      `Die Linie verlässt die Oberfläche ${n === 1 ? "einmal" : `${formatCount(n)}-mal`}; was dazwischenliegt, zählt nicht.`,
     busy: "…",
     unconfirmed:
       "Längen und Flächen stimmen so weit wie die Einheit, die für die Datei angenommen wurde.",
@@ -1180,7 +1180,7 @@ export const texts = {
     lines: (n) => count(n, "Linie", "Linien"),
     points: (n) => count(n, "Punkt", "Punkte"),
     elsewhere: (what) => `${what} auf anderen Modellen`,
-    and_elsewhere: (n) => `${format_count(n)} auf anderen Modellen`,
+    and_elsewhere: (n) => `${formatCount(n)} auf anderen Modellen`,
     draw: "Zeichnen …",
     draw_hint: "Speichert den Datensatz und geht zum Modell, wo neue gezeichnet werden",
     remove: (what) => `${what} entfernen`,
@@ -1220,7 +1220,7 @@ export const texts = {
     none: "Es gibt noch keinen. Das Werkzeug für Kommentare (C) wählen und auf das Modell klicken.",
     none_viewer: "Es gibt noch keinen.",
     none_found: "So ist keiner.",
-    more: (n) => `${format_count(n)} weitere zeigen`,
+    more: (n) => `${formatCount(n)} weitere zeigen`,
     failed: "Die Kommentare ließen sich nicht lesen.",
     pin: (user, text, state) => [`Kommentar von ${user}`, state, text].filter(Boolean).join(": "),
     pin_draft: "Ihr Kommentar, der noch nicht gesendet ist",
@@ -1254,7 +1254,7 @@ export const texts = {
     delete_lead: "Sein Text ist dann für alle weg. Das lässt sich nicht rückgängig machen.",
     link: "Link zu diesem Kommentar",
     names: "Personen, die Sie nennen können",
-    too_long: (most) => `Ein Kommentar hat höchstens ${format_count(most)} Zeichen.`,
+    too_long: (most) => `Ein Kommentar hat höchstens ${formatCount(most)} Zeichen.`,
     missed: "Dort ist keine Oberfläche.",
     missing: "Diesen Kommentar gibt es nicht mehr.",
     said: (user, text) => `Neuer Kommentar von ${user}: ${text}`,
@@ -1276,11 +1276,11 @@ export const texts = {
     reject: "Ablehnen",
     accept_all: "Alles annehmen",
     reject_all: "Alles ablehnen",
-    accept_person: (name, n) => `Alles von ${name} annehmen (${format_count(n)})`,
+    accept_person: (name, n) => `Alles von ${name} annehmen (${formatCount(n)})`,
     reason: "Warum (das liest, wer es gemalt hat)",
     look: "Ansehen, wie es beim Malen zu sehen war",
     stroke: (what, name) => `${what}, ${name}`,
-    more: (n) => `${format_count(n)} weitere sind zu sehen, wenn über diese entschieden ist.`,
+    more: (n) => `${formatCount(n)} weitere sind zu sehen, wenn über diese entschieden ist.`,
     ops: {
       stroke: "Strich",
       fill: "Füllung",
@@ -1371,7 +1371,7 @@ export const texts = {
       other: "hat geändert:",
     },
     strokes: (n: number) => count(n, "Strich", "Striche"),
-    times: (n: number) => `${format_count(n)}-mal`,
+    times: (n: number) => `${formatCount(n)}-mal`,
     columns: (n: number) => count(n, "Spalte", "Spalten"),
     changed: {
       name: "Name",
@@ -1417,7 +1417,7 @@ export const texts = {
     more: "Mehr zur Tabelle",
     record: (key) => `Datensatz ${key}`,
     records: (n) => records(n),
-    records_of: (n, all) => `${format_count(n)} von ${count(all, "Datensatz", "Datensätzen")}`,
+    records_of: (n, all) => `${formatCount(n)} von ${count(all, "Datensatz", "Datensätzen")}`,
     empty: "Es gibt noch keinen Datensatz.",
     nothing_matches: "Kein Datensatz passt zum Filter.",
     on_model: "Am Modell",
@@ -1427,7 +1427,7 @@ export const texts = {
     fly: "Dorthin gehen, wo sie sind",
     nothing_here: "Keiner davon hat eine Fläche, eine Linie oder einen Punkt auf diesem Modell",
     painted_of: (n, all) =>
-      `${format_count(n)} von ${count(all, "Datensatz", "Datensätzen")} auf dieses Modell gemalt`,
+      `${formatCount(n)} von ${count(all, "Datensatz", "Datensätzen")} auf dieses Modell gemalt`,
     sort: (column) => `Nach ${column} ordnen; noch einmal kehrt die Reihenfolge um`,
     required: "Braucht einen Wert",
     yes: "ja",
@@ -1449,9 +1449,9 @@ export const texts = {
     undo: "Meine letzte Änderung an der Tabelle zurücknehmen",
     redo: "Wiederherstellen",
     undone: (created, changed, deleted) =>
-      `Zurückgenommen: ${what_changed(created, changed, deleted) || "eine Spalte"}.`,
+      `Zurückgenommen: ${whatChanged(created, changed, deleted) || "eine Spalte"}.`,
     redone: (created, changed, deleted) =>
-      `Wiederhergestellt: ${what_changed(created, changed, deleted) || "eine Spalte"}.`,
+      `Wiederhergestellt: ${whatChanged(created, changed, deleted) || "eine Spalte"}.`,
     key_is: (key) => `Schlüssel ${key}`,
     area_on: (area, layer) => `${area} auf „${layer}“`,
     not_painted_on: (layer) => `nicht auf „${layer}“ gemalt`,
@@ -1522,7 +1522,7 @@ export const texts = {
     csv_rows: "Zeilen",
     csv_import: "Importieren",
     csv_done: (created, changed) =>
-      `${records(created)} angelegt, ${format_count(changed)} geändert.`,
+      `${records(created)} angelegt, ${formatCount(changed)} geändert.`,
   },
 
   reports: {
@@ -1534,7 +1534,7 @@ export const texts = {
     good: "Alles passt. Es wurde noch nichts geschrieben.",
     same: "All das steht schon in der Tabelle.",
     wrong: (n) =>
-      `${plural(n, "Eines davon passt", `${format_count(n)} davon passen`)} nicht, daher wird nichts geschrieben. Bitte die Datei berichtigen und erneut versuchen.`,
+      `${plural(n, "Eines davon passt", `${formatCount(n)} davon passen`)} nicht, daher wird nichts geschrieben. Bitte die Datei berichtigen und erneut versuchen.`,
     line: "Zeile",
     term: "Begriff",
     column: "Spalte",
@@ -1567,7 +1567,7 @@ export const texts = {
       `„${file}“ ist keine Begriffsliste, die hier gelesen werden kann. Bitte CSV (.csv) oder SKOS als Turtle (.ttl), N-Triples (.nt) oder RDF/XML (.rdf) nehmen.`,
     import: "Importieren",
     done: (created, changed) =>
-      `${count(created, "Begriff", "Begriffe")} angelegt, ${format_count(changed)} geändert.`,
+      `${count(created, "Begriff", "Begriffe")} angelegt, ${formatCount(changed)} geändert.`,
     no_layer: (list) => `„${list}“ wurde angelegt, aber keine Ebene daraus`,
   },
 
@@ -1720,7 +1720,7 @@ export const texts = {
       "Noch ist keine gespeichert. Annotierende speichern Ansichten: was von einer Stelle aus zu sehen ist, mit Ebenen, Licht und Schnitt.",
     none_yet: "Noch ist keine Ansicht gespeichert.",
     failed: "Die Ansichten ließen sich nicht lesen.",
-    more: (n) => `${format_count(n)} weitere zeigen`,
+    more: (n) => `${formatCount(n)} weitere zeigen`,
     missing: "Diese Ansicht gibt es nicht mehr.",
     shown: (name) => `Ansicht „${name}“`,
     back: "Zurück zu dem, was ich sah",
@@ -1910,8 +1910,7 @@ export const texts = {
         "Die Ansicht dieser Station wurde gelöscht. Bitte eine andere wählen oder die Station entfernen.",
       title_missing: "Bitte der Station in der ersten Sprache einen Titel geben.",
     },
-    wrong_seconds: (least, most) =>
-      `Sekunden von ${format_count(least)} bis ${format_count(most)}.`,
+    wrong_seconds: (least, most) => `Sekunden von ${formatCount(least)} bis ${formatCount(most)}.`,
     conflict:
       "Jemand hat diese Führung inzwischen geändert. Von Ihrem ist nichts verloren: nochmals speichern ersetzt das andere dadurch.",
     take_theirs: "Stattdessen das andere zeigen",
@@ -1949,7 +1948,7 @@ export const texts = {
     days_hint: "ohne Ende",
     days_lead: "Ohne eine Zahl von Tagen gilt der Link, bis er widerrufen wird.",
     days_wrong: (least, most) =>
-      `Eine ganze Zahl von Tagen von ${format_count(least)} bis ${format_count(most)}, oder nichts.`,
+      `Eine ganze Zahl von Tagen von ${formatCount(least)} bis ${formatCount(most)}, oder nichts.`,
     make: "Link erzeugen",
     link: (name) => `Link für „${name}“`,
     link_lead:
@@ -2023,7 +2022,7 @@ export const texts = {
     empty: "In beiden Ebenen ist nichts gemalt.",
     sum: "Alle",
     cut: (n) =>
-      `Gezeigt werden die ersten ${format_count(n)} Zeilen und Spalten. Kopie und Dateien haben alle.`,
+      `Gezeigt werden die ersten ${formatCount(n)} Zeilen und Spalten. Kopie und Dateien haben alle.`,
   },
 
   column_filter: {
@@ -2042,9 +2041,9 @@ export const texts = {
     apply: "Filtern",
     search: "Werte suchen",
     no_value: "ohne Wert",
-    more: (n) => `${format_count(n)} weitere Werte: bitte suchen.`,
+    more: (n) => `${formatCount(n)} weitere Werte: bitte suchen.`,
     counted: (n, all) =>
-      `Gezählt in den ersten ${format_count(n)} von ${format_count(all)} Datensätzen.`,
+      `Gezählt in den ersten ${formatCount(n)} von ${formatCount(all)} Datensätzen.`,
     from: "Von",
     to: "Bis",
     contains: "Text",

@@ -1,9 +1,9 @@
 // English, the measure of the other languages: see index.ts.
 
-import { format_count } from "../core/locale";
+import { formatCount } from "../core/locale";
 import { count, plural } from "./count";
 
-const what_changed = (created: number, changed: number, deleted: number): string =>
+const whatChanged = (created: number, changed: number, deleted: number): string =>
   [
     [created, "made"],
     [changed, "changed"],
@@ -70,8 +70,8 @@ export const texts = {
     incomplete_title: "This link is not whole",
     incomplete_lead: "Copy it as a whole, up to its end, into the address of the browser.",
     to_sign_in: "To the sign-in",
-    other_person: (signed_in: string, invited: string) =>
-      `Somebody else is signed in at this browser: ${signed_in}. The link is for ${invited}. Sign out here first, then go on.`,
+    other_person: (signedIn: string, invited: string) =>
+      `Somebody else is signed in at this browser: ${signedIn}. The link is for ${invited}. Sign out here first, then go on.`,
     sign_out: (name: string) => `Sign ${name} out`,
   },
 
@@ -175,7 +175,7 @@ export const texts = {
     filter: "Find people",
     filter_hint: "Name, role or group",
     count: (n: number) => count(n, "person", "people"),
-    count_of: (n: number, all: number) => `${format_count(n)} of ${count(all, "person", "people")}`,
+    count_of: (n: number, all: number) => `${formatCount(n)} of ${count(all, "person", "people")}`,
     none_found: "Nobody is called that.",
     user: "Name",
     full_name: "Full name",
@@ -253,7 +253,7 @@ export const texts = {
     delete_lead: (losing: number, people: number) =>
       (losing === 0
         ? "Nobody loses anything by it: whatever it gives, its people have otherwise, too."
-        : `${count(losing, "person", "people")} of the ${format_count(people)} in it will see fewer projects, or may do less there.`) +
+        : `${count(losing, "person", "people")} of the ${formatCount(people)} in it will see fewer projects, or may do less there.`) +
       " Its roles in projects go with it. This cannot be undone.",
   },
 
@@ -585,10 +585,10 @@ export const texts = {
     show_all: "Show all terms",
     tree: "Terms",
     none_found: "No term is called that.",
-    more_found: (n: number) => `and ${format_count(n)} more: write more of the word`,
+    more_found: (n: number) => `and ${formatCount(n)} more: write more of the word`,
     empty: "The list has no terms yet.",
     more: (n: number, all: number) =>
-      `The first ${format_count(n)} of ${format_count(all)} terms. Search for the others.`,
+      `The first ${formatCount(n)} of ${formatCount(all)} terms. Search for the others.`,
   },
 
   templates: {
@@ -864,7 +864,7 @@ export const texts = {
     widen: "Room for more records…",
     widen_title: (layer: string) => `Room for more records in “${layer}”?`,
     widen_lead: (highest: number) =>
-      `It holds keys up to ${format_count(highest)}. Afterwards it holds all keys and takes more memory; what is painted and its history stay.`,
+      `It holds keys up to ${formatCount(highest)}. Afterwards it holds all keys and takes more memory; what is painted and its history stay.`,
     widen_yes: "Make room",
     widened: "The layer now holds all keys.",
     saved_default: "What you see is now the default for everyone.",
@@ -874,7 +874,7 @@ export const texts = {
     deleted_by_other: (name: string) => `The layer “${name}” was deleted.`,
     created: (name: string) => `Layer “${name}” is ready to paint.`,
     no_labels: "Numbered classes",
-    more_classes: (n: number) => `and ${format_count(n)} more`,
+    more_classes: (n: number) => `and ${formatCount(n)} more`,
     class_number: (n: number) => `Class ${n}`,
     record_number: (n: number) => `Record ${n}`,
     no_records: "Each record has a colour of its own.",
@@ -1087,7 +1087,7 @@ export const texts = {
       attached: "The record has a file of this name",
       twice: "The same name comes twice",
     },
-    more: (n: number) => `and ${format_count(n)} more`,
+    more: (n: number) => `and ${formatCount(n)} more`,
     send: (n: number) => (n === 0 ? "Send" : `Send ${count(n, "file", "files")}`),
     sending: (n: number, of: number) => `Sending ${Math.min(n, of)} of ${of}…`,
     sent: (n: number) => `${count(n, "file was", "files were")} put to their records.`,
@@ -1099,7 +1099,7 @@ export const texts = {
     how_on:
       "A click or tap on the last place, or Enter, ends the line; Backspace takes a place back, Escape clears all.",
     how_anew: "Ended. The next click or tap begins another line.",
-    most: (n: number) => `These are ${format_count(n)} places, and no more can be set.`,
+    most: (n: number) => `These are ${formatCount(n)} places, and no more can be set.`,
     set_in_middle: "Place in the middle",
     end: "End",
     take_back: "Take back",
@@ -1109,7 +1109,7 @@ export const texts = {
     straight: "Straight",
     ends: "First to last place, straight",
     along: "Along the surface",
-    along_parts: (n: number) => `Along the surface, in ${format_count(n)} parts`,
+    along_parts: (n: number) => `Along the surface, in ${formatCount(n)} parts`,
     no_way:
       "The straight lines pass through the object, so that what is nearest to them is no way over its surface. Turn the model until all places are seen, then choose “What is seen”.",
     rise: (axis: string) => `Height difference (${axis})`,
@@ -1120,7 +1120,7 @@ export const texts = {
     off_plane: (length: string) =>
       `The places lie up to ${length} off its plane; the area is that of their shadow on it.`,
     gaps: (n: number) =>
-      `The line leaves the surface ${n === 1 ? "once" : `${format_count(n)} times`}; what lies between is not counted.`,
+      `The line leaves the surface ${n === 1 ? "once" : `${formatCount(n)} times`}; what lies between is not counted.`,
     busy: "…",
     unconfirmed: "Lengths and areas are as right as the unit that its file was taken to have.",
     profile: "Profile",
@@ -1147,7 +1147,7 @@ export const texts = {
     lines: (n: number) => count(n, "line", "lines"),
     points: (n: number) => count(n, "point", "points"),
     elsewhere: (what: string) => `${what} on other models`,
-    and_elsewhere: (n: number) => `${format_count(n)} on other models`,
+    and_elsewhere: (n: number) => `${formatCount(n)} on other models`,
     draw: "Draw…",
     draw_hint: "Saves the record and goes to the model, where new ones are drawn",
     remove: (what: string) => `Take out ${what}`,
@@ -1186,7 +1186,7 @@ export const texts = {
     none: "There is none yet. Choose the comment tool (C) and click on the model.",
     none_viewer: "There is none yet.",
     none_found: "None is like that.",
-    more: (n: number) => `Show ${format_count(n)} more`,
+    more: (n: number) => `Show ${formatCount(n)} more`,
     failed: "The comments could not be read.",
     pin: (user: string, text: string, state: string) =>
       [`Comment by ${user}`, state, text].filter(Boolean).join(": "),
@@ -1221,7 +1221,7 @@ export const texts = {
     delete_lead: "Its text is gone for everybody. This cannot be undone.",
     link: "Link to this comment",
     names: "People whom you may name",
-    too_long: (most: number) => `A comment has at most ${format_count(most)} characters.`,
+    too_long: (most: number) => `A comment has at most ${formatCount(most)} characters.`,
     missed: "There is no surface there.",
     missing: "This comment is not here any more.",
     said: (user: string, text: string) => `New comment by ${user}: ${text}`,
@@ -1243,11 +1243,11 @@ export const texts = {
     reject: "Reject",
     accept_all: "Accept all",
     reject_all: "Reject all",
-    accept_person: (name: string, n: number) => `Accept all of ${name} (${format_count(n)})`,
+    accept_person: (name: string, n: number) => `Accept all of ${name} (${formatCount(n)})`,
     reason: "Why (the author reads it)",
     look: "Look at it as its author saw it",
     stroke: (what: string, name: string) => `${what}, ${name}`,
-    more: (n: number) => `${format_count(n)} more are listed when these are decided.`,
+    more: (n: number) => `${formatCount(n)} more are listed when these are decided.`,
     ops: {
       stroke: "stroke",
       fill: "fill",
@@ -1385,7 +1385,7 @@ export const texts = {
     record: (key: number) => `Record ${key}`,
     records: (n: number) => count(n, "record", "records"),
     records_of: (n: number, all: number) =>
-      `${format_count(n)} of ${count(all, "record", "records")}`,
+      `${formatCount(n)} of ${count(all, "record", "records")}`,
     empty: "There is no record yet.",
     nothing_matches: "No record matches the filter.",
     on_model: "On the model",
@@ -1395,7 +1395,7 @@ export const texts = {
     fly: "Go to where they are",
     nothing_here: "None of them has an area, a line or a point on this model",
     painted_of: (n: number, all: number) =>
-      `${format_count(n)} of ${count(all, "record", "records")} painted on this model`,
+      `${formatCount(n)} of ${count(all, "record", "records")} painted on this model`,
     sort: (column: string) => `Sort by ${column}; again turns the order round`,
     required: "Must have a value",
     yes: "yes",
@@ -1417,9 +1417,9 @@ export const texts = {
     undo: "Take back my last change of the table",
     redo: "Bring it back",
     undone: (created: number, changed: number, deleted: number) =>
-      `Taken back: ${what_changed(created, changed, deleted) || "a column"}.`,
+      `Taken back: ${whatChanged(created, changed, deleted) || "a column"}.`,
     redone: (created: number, changed: number, deleted: number) =>
-      `Brought back: ${what_changed(created, changed, deleted) || "a column"}.`,
+      `Brought back: ${whatChanged(created, changed, deleted) || "a column"}.`,
     key_is: (key: number) => `Key ${key}`,
     area_on: (area: string, layer: string) => `${area} on “${layer}”`,
     not_painted_on: (layer: string) => `not painted on “${layer}”`,
@@ -1489,7 +1489,7 @@ export const texts = {
     csv_rows: "Rows",
     csv_import: "Import",
     csv_done: (created: number, changed: number) =>
-      `${count(created, "record", "records")} made, ${format_count(changed)} changed.`,
+      `${count(created, "record", "records")} made, ${formatCount(changed)} changed.`,
   },
 
   reports: {
@@ -1501,7 +1501,7 @@ export const texts = {
     good: "All of it fits. Nothing has been written yet.",
     same: "The table holds all of that already.",
     wrong: (n: number) =>
-      `${plural(n, "One of them does", `${format_count(n)} of them do`)} not fit, so none will be written. Mend the file and try it again.`,
+      `${plural(n, "One of them does", `${formatCount(n)} of them do`)} not fit, so none will be written. Mend the file and try it again.`,
     line: "Line",
     term: "Term",
     column: "Column",
@@ -1534,7 +1534,7 @@ export const texts = {
       `“${file}” is no list of terms that can be read here. Take CSV (.csv) or SKOS as Turtle (.ttl), N-Triples (.nt) or RDF/XML (.rdf).`,
     import: "Import",
     done: (created: number, changed: number) =>
-      `${count(created, "term", "terms")} made, ${format_count(changed)} changed.`,
+      `${count(created, "term", "terms")} made, ${formatCount(changed)} changed.`,
     no_layer: (list: string) => `“${list}” was made, but no layer of it`,
   },
 
@@ -1685,7 +1685,7 @@ export const texts = {
       "None is kept yet. Annotators keep views: what is seen from one place, with its layers, light and section.",
     none_yet: "No view is kept yet.",
     failed: "The views could not be read.",
-    more: (n: number) => `Show ${format_count(n)} more`,
+    more: (n: number) => `Show ${formatCount(n)} more`,
     missing: "This view is not here any more.",
     shown: (name: string) => `View “${name}”`,
     back: "Back to what I saw",
@@ -1869,7 +1869,7 @@ export const texts = {
       title_missing: "Give the stop a title in the first language.",
     },
     wrong_seconds: (least: number, most: number) =>
-      `Seconds from ${format_count(least)} to ${format_count(most)}.`,
+      `Seconds from ${formatCount(least)} to ${formatCount(most)}.`,
     conflict:
       "Somebody changed this tour meanwhile. Nothing that you wrote is lost: save again to put yours in the place of theirs.",
     take_theirs: "Show theirs instead",
@@ -1907,7 +1907,7 @@ export const texts = {
     days_hint: "no end",
     days_lead: "Without a number of days the link is good until it is revoked.",
     days_wrong: (least: number, most: number) =>
-      `A whole number of days from ${format_count(least)} to ${format_count(most)}, or nothing.`,
+      `A whole number of days from ${formatCount(least)} to ${formatCount(most)}, or nothing.`,
     make: "Make link",
     link: (name: string) => `Link for “${name}”`,
     link_lead:
@@ -1980,7 +1980,7 @@ export const texts = {
     empty: "Nothing is painted in either layer.",
     sum: "All",
     cut: (n: number) =>
-      `The first ${format_count(n)} rows and columns are shown. Copy and files have all.`,
+      `The first ${formatCount(n)} rows and columns are shown. Copy and files have all.`,
   },
 
   column_filter: {
@@ -1999,9 +1999,9 @@ export const texts = {
     apply: "Filter",
     search: "Search values",
     no_value: "without a value",
-    more: (n: number) => `${format_count(n)} more values: search for them.`,
+    more: (n: number) => `${formatCount(n)} more values: search for them.`,
     counted: (n: number, all: number) =>
-      `Counted in the first ${format_count(n)} of ${format_count(all)} records.`,
+      `Counted in the first ${formatCount(n)} of ${formatCount(all)} records.`,
     from: "From",
     to: "To",
     contains: "Text",

@@ -10,15 +10,15 @@
 //   comment comentario · reply respuesta · resolved resuelto · to lock bloquear · to follow seguir · to look along mirar juntos · project proyecto · guest visita
 //   roughness rugosidad · hatch tramado · orthophoto ortofoto · reading lectura · site (of a server) servidor · invitation invitación
 
-import { format_count } from "../core/locale";
+import { formatCount } from "../core/locale";
 import type { Texts } from "./shape";
-import { count as count_of, plural } from "./count";
+import { count as countOf, plural } from "./count";
 
 /** Whole millions take "de": "1.000.000 de capas". */
 const count = (n: number, one: string, other: string): string =>
-  count_of(n, one, other, `de ${other}`);
+  countOf(n, one, other, `de ${other}`);
 
-const what_changed = (created: number, changed: number, deleted: number): string =>
+const whatChanged = (created: number, changed: number, deleted: number): string =>
   (
     [
       [created, "creado", "creados"],
@@ -92,8 +92,8 @@ export const texts = {
     incomplete_title: "Este enlace no está completo",
     incomplete_lead: "Cópielo entero, hasta el final, en la barra de direcciones del navegador.",
     to_sign_in: "Ir al inicio de sesión",
-    other_person: (signed_in, invited) =>
-      `Otra persona tiene la sesión abierta en este navegador: ${signed_in}. El enlace es para ${invited}. Cierre aquí primero la sesión y continúe.`,
+    other_person: (signedIn, invited) =>
+      `Otra persona tiene la sesión abierta en este navegador: ${signedIn}. El enlace es para ${invited}. Cierre aquí primero la sesión y continúe.`,
     sign_out: (name) => `Cerrar la sesión de ${name}`,
   },
 
@@ -198,7 +198,7 @@ export const texts = {
     filter: "Buscar personas",
     filter_hint: "Nombre, papel o grupo",
     count: (n) => count(n, "persona", "personas"),
-    count_of: (n, all) => `${format_count(n)} de ${count(all, "persona", "personas")}`,
+    count_of: (n, all) => `${formatCount(n)} de ${count(all, "persona", "personas")}`,
     none_found: "Nadie se llama así.",
     user: "Nombre",
     full_name: "Nombre completo",
@@ -276,7 +276,7 @@ export const texts = {
     delete_lead: (losing, people) =>
       (losing === 0
         ? "Nadie pierde nada con ello: lo que el grupo da, sus personas lo tienen también de otro modo."
-        : `${count(losing, "persona", "personas")} de ${format_count(people)} en el grupo ${plural(losing, "verá", "verán")} menos proyectos o ${plural(losing, "podrá", "podrán")} hacer menos en ellos.`) +
+        : `${count(losing, "persona", "personas")} de ${formatCount(people)} en el grupo ${plural(losing, "verá", "verán")} menos proyectos o ${plural(losing, "podrá", "podrán")} hacer menos en ellos.`) +
       " Sus papeles en proyectos se eliminan con él. Esto no se puede deshacer.",
   },
 
@@ -608,10 +608,10 @@ export const texts = {
     show_all: "Mostrar todos los términos",
     tree: "Términos",
     none_found: "Ningún término se llama así.",
-    more_found: (n) => `y ${format_count(n)} más: escriba más de la palabra`,
+    more_found: (n) => `y ${formatCount(n)} más: escriba más de la palabra`,
     empty: "La lista todavía no tiene términos.",
     more: (n, all) =>
-      `Los primeros ${format_count(n)} de ${count(all, "término", "términos")}. Busque los demás.`,
+      `Los primeros ${formatCount(n)} de ${count(all, "término", "términos")}. Busque los demás.`,
   },
 
   templates: {
@@ -888,7 +888,7 @@ export const texts = {
     widen: "Sitio para más registros…",
     widen_title: (layer) => `¿Sitio para más registros en «${layer}»?`,
     widen_lead: (highest) =>
-      `Admite claves hasta ${format_count(highest)}. Después admitirá todas las claves y ocupará más memoria; lo pintado y su historial quedan.`,
+      `Admite claves hasta ${formatCount(highest)}. Después admitirá todas las claves y ocupará más memoria; lo pintado y su historial quedan.`,
     widen_yes: "Hacer sitio",
     widened: "La capa admite ahora todas las claves.",
     saved_default: "Lo que ve es ahora la vista inicial para todos.",
@@ -898,7 +898,7 @@ export const texts = {
     deleted_by_other: (name) => `La capa «${name}» se eliminó.`,
     created: (name) => `La capa «${name}» está lista para pintar.`,
     no_labels: "Clases numeradas",
-    more_classes: (n) => `y ${format_count(n)} más`,
+    more_classes: (n) => `y ${formatCount(n)} más`,
     class_number: (n) => `Clase ${n}`,
     record_number: (n) => `Registro ${n}`,
     no_records: "Cada registro tiene un color propio.",
@@ -1119,7 +1119,7 @@ export const texts = {
       attached: "El registro tiene un archivo con este nombre",
       twice: "El mismo nombre aparece dos veces",
     },
-    more: (n) => `y ${format_count(n)} más`,
+    more: (n) => `y ${formatCount(n)} más`,
     send: (n) => (n === 0 ? "Enviar" : `Enviar ${files(n)}`),
     sending: (n, of) => `Enviando ${Math.min(n, of)} de ${of}…`,
     sent: (n) =>
@@ -1132,7 +1132,7 @@ export const texts = {
     how_on:
       "Un clic o toque en el último lugar, o Entrar, termina la línea; Retroceso quita un lugar, Escape lo borra todo.",
     how_anew: "Terminada. El clic o toque siguiente empieza otra línea.",
-    most: (n) => `Son ${format_count(n)} lugares y no se pueden poner más.`,
+    most: (n) => `Son ${formatCount(n)} lugares y no se pueden poner más.`,
     set_in_middle: "Lugar en el centro",
     end: "Terminar",
     take_back: "Quitar el último",
@@ -1142,7 +1142,7 @@ export const texts = {
     straight: "En línea recta",
     ends: "Del primero al último, en línea recta",
     along: "Por la superficie",
-    along_parts: (n) => `Por la superficie, en ${format_count(n)} partes`,
+    along_parts: (n) => `Por la superficie, en ${formatCount(n)} partes`,
     no_way:
       "Las líneas rectas atraviesan el objeto, y lo más próximo a ellas no es un camino por su superficie. Gire el modelo hasta que se vean todos los lugares y elija «Lo visto».",
     rise: (axis) => `Diferencia de altura (${axis})`,
@@ -1153,7 +1153,7 @@ export const texts = {
     off_plane: (length) =>
       `Los lugares se apartan hasta ${length} de su plano; el área es la de su proyección en él.`,
     gaps: (n) =>
-      `La línea sale de la superficie ${n === 1 ? "una vez" : `${format_count(n)} veces`}; lo que queda en medio no se cuenta.`,
+      `La línea sale de la superficie ${n === 1 ? "una vez" : `${formatCount(n)} veces`}; lo que queda en medio no se cuenta.`,
     busy: "…",
     unconfirmed:
       "Las longitudes y áreas son tan correctas como la unidad que se supuso para su archivo.",
@@ -1181,7 +1181,7 @@ export const texts = {
     lines: (n) => count(n, "línea", "líneas"),
     points: (n) => count(n, "punto", "puntos"),
     elsewhere: (what) => `${what} en otros modelos`,
-    and_elsewhere: (n) => `${format_count(n)} en otros modelos`,
+    and_elsewhere: (n) => `${formatCount(n)} en otros modelos`,
     draw: "Dibujar…",
     draw_hint: "Guarda el registro y va al modelo, donde se dibujan otros",
     remove: (what) => `Quitar ${what}`,
@@ -1220,7 +1220,7 @@ export const texts = {
     none: "Todavía no hay ninguno. Elija la herramienta de comentarios (C) y haga clic en el modelo.",
     none_viewer: "Todavía no hay ninguno.",
     none_found: "Ninguno es así.",
-    more: (n) => `Mostrar ${format_count(n)} más`,
+    more: (n) => `Mostrar ${formatCount(n)} más`,
     failed: "No se pudieron leer los comentarios.",
     pin: (user, text, state) => [`Comentario de ${user}`, state, text].filter(Boolean).join(": "),
     pin_draft: "Su comentario que todavía no se envió",
@@ -1254,7 +1254,7 @@ export const texts = {
     delete_lead: "Su texto desaparece para todos. Esto no se puede deshacer.",
     link: "Enlace a este comentario",
     names: "Personas que puede nombrar",
-    too_long: (most) => `Un comentario tiene como máximo ${format_count(most)} caracteres.`,
+    too_long: (most) => `Un comentario tiene como máximo ${formatCount(most)} caracteres.`,
     missed: "Allí no hay superficie.",
     missing: "Este comentario ya no está aquí.",
     said: (user, text) => `Comentario nuevo de ${user}: ${text}`,
@@ -1276,11 +1276,11 @@ export const texts = {
     reject: "Rechazar",
     accept_all: "Aceptar todo",
     reject_all: "Rechazar todo",
-    accept_person: (name, n) => `Aceptar todo de ${name} (${format_count(n)})`,
+    accept_person: (name, n) => `Aceptar todo de ${name} (${formatCount(n)})`,
     reason: "Por qué (lo leerá quien lo pintó)",
     look: "Verlo como lo vio quien lo pintó",
     stroke: (what, name) => `${what}, ${name}`,
-    more: (n) => `${format_count(n)} más se muestran cuando estos estén decididos.`,
+    more: (n) => `${formatCount(n)} más se muestran cuando estos estén decididos.`,
     ops: {
       stroke: "trazo",
       fill: "relleno",
@@ -1416,7 +1416,7 @@ export const texts = {
     more: "Más sobre la tabla",
     record: (key) => `Registro ${key}`,
     records: (n) => records(n),
-    records_of: (n, all) => `${format_count(n)} de ${records(all)}`,
+    records_of: (n, all) => `${formatCount(n)} de ${records(all)}`,
     empty: "Todavía no hay ningún registro.",
     nothing_matches: "Ningún registro cumple el filtro.",
     on_model: "En el modelo",
@@ -1426,7 +1426,7 @@ export const texts = {
     fly: "Ir adonde están",
     nothing_here: "Ninguno tiene un área, una línea ni un punto en este modelo",
     painted_of: (n, all) =>
-      `${format_count(n)} de ${records(all)} ${plural(n, "pintado", "pintados")} en este modelo`,
+      `${formatCount(n)} de ${records(all)} ${plural(n, "pintado", "pintados")} en este modelo`,
     sort: (column) => `Ordenar por ${column}; otra vez invierte el orden`,
     required: "Debe tener un valor",
     yes: "sí",
@@ -1448,9 +1448,9 @@ export const texts = {
     undo: "Deshacer mi último cambio de la tabla",
     redo: "Rehacerlo",
     undone: (created, changed, deleted) =>
-      `Deshecho: ${what_changed(created, changed, deleted) || "una columna"}.`,
+      `Deshecho: ${whatChanged(created, changed, deleted) || "una columna"}.`,
     redone: (created, changed, deleted) =>
-      `Rehecho: ${what_changed(created, changed, deleted) || "una columna"}.`,
+      `Rehecho: ${whatChanged(created, changed, deleted) || "una columna"}.`,
     key_is: (key) => `Clave ${key}`,
     area_on: (area, layer) => `${area} en «${layer}»`,
     not_painted_on: (layer) => `sin pintar en «${layer}»`,
@@ -1519,7 +1519,7 @@ export const texts = {
     csv_rows: "Filas",
     csv_import: "Importar",
     csv_done: (created, changed) =>
-      `${records(created)} ${plural(created, "creado", "creados")}, ${format_count(changed)} ${plural(changed, "cambiado", "cambiados")}.`,
+      `${records(created)} ${plural(created, "creado", "creados")}, ${formatCount(changed)} ${plural(changed, "cambiado", "cambiados")}.`,
   },
 
   reports: {
@@ -1531,7 +1531,7 @@ export const texts = {
     good: "Todo es correcto. Todavía no se ha escrito nada.",
     same: "La tabla ya contiene todo eso.",
     wrong: (n) =>
-      `${plural(n, "Uno de ellos no es correcto", `${format_count(n)} de ellos no son correctos`)}, así que no se escribe ninguno. Corrija el archivo e inténtelo de nuevo.`,
+      `${plural(n, "Uno de ellos no es correcto", `${formatCount(n)} de ellos no son correctos`)}, así que no se escribe ninguno. Corrija el archivo e inténtelo de nuevo.`,
     line: "Línea",
     term: "Término",
     column: "Columna",
@@ -1564,7 +1564,7 @@ export const texts = {
       `«${file}» no es una lista de términos que se pueda leer aquí. Use CSV (.csv) o SKOS en Turtle (.ttl), N-Triples (.nt) o RDF/XML (.rdf).`,
     import: "Importar",
     done: (created, changed) =>
-      `${count(created, "término", "términos")} ${plural(created, "creado", "creados")}, ${format_count(changed)} ${plural(changed, "cambiado", "cambiados")}.`,
+      `${count(created, "término", "términos")} ${plural(created, "creado", "creados")}, ${formatCount(changed)} ${plural(changed, "cambiado", "cambiados")}.`,
     no_layer: (list) => `«${list}» se creó, pero ninguna capa con ella`,
   },
 
@@ -1701,7 +1701,7 @@ export const texts = {
       box: "Conservar solo lo que está dentro de una caja",
     },
     section_of_view: (planes) =>
-      `Sección propia de la vista, de ${count_of(planes, "plano", "planos")}`,
+      `Sección propia de la vista, de ${countOf(planes, "plano", "planos")}`,
     section_remove: "Quitarla",
     cut_position: "Posición del corte",
     flip: "Conservar el otro lado",
@@ -1716,7 +1716,7 @@ export const texts = {
       "Aún no hay ninguna guardada. Quienes anotan guardan vistas: lo que se ve desde un lugar, con sus capas, luz y sección.",
     none_yet: "Aún no hay ninguna vista guardada.",
     failed: "No se pudieron leer las vistas.",
-    more: (n) => `Mostrar ${format_count(n)} más`,
+    more: (n) => `Mostrar ${formatCount(n)} más`,
     missing: "Esta vista ya no está.",
     shown: (name) => `Vista «${name}»`,
     back: "Volver a lo que veía",
@@ -1901,7 +1901,7 @@ export const texts = {
       view_missing: "La vista de esta parada fue eliminada. Elija otra o quite la parada.",
       title_missing: "Dé a la parada un título en el primer idioma.",
     },
-    wrong_seconds: (least, most) => `Segundos de ${format_count(least)} a ${format_count(most)}.`,
+    wrong_seconds: (least, most) => `Segundos de ${formatCount(least)} a ${formatCount(most)}.`,
     conflict:
       "Alguien cambió esta visita mientras tanto. No se pierde nada de lo que escribió: guarde otra vez para poner lo suyo en su lugar.",
     take_theirs: "Mostrar lo otro en su lugar",
@@ -1939,7 +1939,7 @@ export const texts = {
     days_hint: "sin fin",
     days_lead: "Sin un número de días el enlace vale hasta que se revoque.",
     days_wrong: (least, most) =>
-      `Un número entero de días de ${format_count(least)} a ${format_count(most)}, o nada.`,
+      `Un número entero de días de ${formatCount(least)} a ${formatCount(most)}, o nada.`,
     make: "Crear enlace",
     link: (name) => `Enlace para «${name}»`,
     link_lead:
@@ -2012,7 +2012,7 @@ export const texts = {
     empty: "No hay nada pintado en ninguna de las dos capas.",
     sum: "Todo",
     cut: (n) =>
-      `Se muestran las primeras ${format_count(n)} filas y columnas. La copia y los archivos las tienen todas.`,
+      `Se muestran las primeras ${formatCount(n)} filas y columnas. La copia y los archivos las tienen todas.`,
   },
 
   column_filter: {
@@ -2031,9 +2031,9 @@ export const texts = {
     apply: "Filtrar",
     search: "Buscar valores",
     no_value: "sin valor",
-    more: (n) => `${format_count(n)} valores más: búsquelos.`,
+    more: (n) => `${formatCount(n)} valores más: búsquelos.`,
     counted: (n, all) =>
-      `Contado en los primeros ${format_count(n)} de ${format_count(all)} registros.`,
+      `Contado en los primeros ${formatCount(n)} de ${formatCount(all)} registros.`,
     from: "Desde",
     to: "Hasta",
     contains: "Texto",

@@ -4,8 +4,8 @@
 // English is the measure: `Texts` (`shape.ts`) is made from it, so a translation that lacks a text, has one too
 // many or takes other arguments does not compile.
 
-import { set_locale, type PageLanguage } from "../core/locale";
-import { say_own_problems_in } from "../core/problems";
+import { setLocale, type PageLanguage } from "../core/locale";
+import { sayOwnProblemsIn } from "../core/problems";
 import type { Texts } from "./shape";
 
 /**
@@ -21,27 +21,27 @@ type Arity<T> = T extends (...args: infer Arguments) => unknown
 type Translation<Module extends { texts: Texts }> =
   Arity<Module["texts"]> extends Arity<Texts> ? () => Promise<Module> : never;
 
-const load_de: Translation<typeof import("./de")> = () => import("./de");
-const load_es: Translation<typeof import("./es")> = () => import("./es");
+const loadDe: Translation<typeof import("./de")> = () => import("./de");
+const loadEs: Translation<typeof import("./es")> = () => import("./es");
 const loads: Record<PageLanguage, () => Promise<{ texts: Texts }>> = {
   en: () => import("./en"),
-  de: load_de,
-  es: load_es,
+  de: loadDe,
+  es: loadEs,
 };
 
-/** Set by load_texts(), which comes before the import of everything that shows words. */
+/** Set by loadTexts(), which comes before the import of everything that shows words. */
 export let texts: Texts;
 
 /**
  * Loads the words of that language, and of no other. `chosen`: by the person, not by the languages
  * of their browser.
  */
-export async function load_texts(
+export async function loadTexts(
   language: PageLanguage,
   chosen: boolean,
   browser: readonly string[],
 ): Promise<void> {
-  set_locale(language, chosen, browser);
+  setLocale(language, chosen, browser);
   texts = (await loads[language]()).texts;
-  say_own_problems_in(texts.calls);
+  sayOwnProblemsIn(texts.calls);
 }

@@ -14,34 +14,34 @@ export interface Navigator {
 const kTapReach = 7; // window pixels that a hand with a mouse or pen trembles
 
 export abstract class DragTool {
-  private last_: PointerSample | null = null;
-  private start_: PointerSample | null = null; // null: it was dragged away from there
+  private _last: PointerSample | null = null;
+  private _start: PointerSample | null = null; // null: it was dragged away from there
 
   constructor(
-    protected readonly navigator_: Navigator,
+    protected readonly _navigator: Navigator,
     /** Window pixels from where it was pressed that are still a tap. */
-    private readonly tap_reach_: () => number = () => kTapReach,
+    private readonly _tapReach: () => number = () => kTapReach,
   ) {}
 
   activate(): void {}
   deactivate(): void {}
   down(sample: PointerSample): void {
-    this.last_ = this.start_ = sample;
+    this._last = this._start = sample;
   }
   move(samples: PointerSample[]): void {
     const now = samples[samples.length - 1];
-    if (!now || !this.last_) return;
-    if (this.start_ && Math.hypot(now.x - this.start_.x, now.y - this.start_.y) > this.tap_reach_())
-      this.start_ = null;
-    this.dragged(now.x - this.last_.x, now.y - this.last_.y);
-    this.last_ = now;
+    if (!now || !this._last) return;
+    if (this._start && Math.hypot(now.x - this._start.x, now.y - this._start.y) > this._tapReach())
+      this._start = null;
+    this.dragged(now.x - this._last.x, now.y - this._last.y);
+    this._last = now;
   }
   up(): void {
-    if (this.start_) this.navigator_.tap(this.start_);
+    if (this._start) this._navigator.tap(this._start);
     this.cancel();
   }
   cancel(): void {
-    this.last_ = this.start_ = null;
+    this._last = this._start = null;
   }
 
   protected abstract dragged(dx: number, dy: number): void;
@@ -50,13 +50,13 @@ export abstract class DragTool {
 export class OrbitTool extends DragTool implements Tool {
   readonly name = "orbit";
   protected dragged(dx: number, dy: number): void {
-    this.navigator_.orbit(dx, dy);
+    this._navigator.orbit(dx, dy);
   }
 }
 
 export class PanTool extends DragTool implements Tool {
   readonly name = "pan";
   protected dragged(dx: number, dy: number): void {
-    this.navigator_.pan(dx, dy);
+    this._navigator.pan(dx, dy);
   }
 }

@@ -8,27 +8,27 @@ import type { Outline, Tool } from "./tool";
 
 export interface OutlineHost {
   /** False when there is nothing to paint on; the host has then told the person why. */
-  begin_outline(): boolean;
+  beginOutline(): boolean;
   /** Of an area at least three points, of a line two. */
-  finish_outline(path: Point[]): void;
-  /** After `begin_outline` returned true, finished or given up. */
-  outline_ended(): void;
+  finishOutline(path: Point[]): void;
+  /** After `beginOutline` returned true, finished or given up. */
+  outlineEnded(): void;
   /** Window pixels per CSS pixel. */
   scale(): number;
-  outline_changed(): void;
+  outlineChanged(): void;
 }
 
 export const kMostPoints = 4096;
-export const kSnap_px = 11; // CSS pixels: so near a press counts as on a point
-const kSpacing_px = 2; // CSS pixels
+export const kSnapPx = 11; // CSS pixels: so near a press counts as on a point
+const kSpacingPx = 2; // CSS pixels
 
 export abstract class OutlineTool {
   protected points: Point[] = [];
-  private spacing_ = kSpacing_px;
+  private _spacing = kSpacingPx;
 
   constructor(
     protected readonly host: OutlineHost,
-    private readonly least_ = 3,
+    private readonly _least = 3,
     protected readonly most = kMostPoints,
   ) {}
 
@@ -40,45 +40,45 @@ export abstract class OutlineTool {
 
   activate(): void {}
   deactivate(): void {
-    this.give_up();
+    this.giveUp();
   }
 
   protected begin(at: PointerSample): boolean {
-    if (!this.host.begin_outline()) return false;
-    this.spacing_ = kSpacing_px;
+    if (!this.host.beginOutline()) return false;
+    this._spacing = kSpacingPx;
     this.points = [[at.x, at.y]];
-    this.host.outline_changed();
+    this.host.outlineChanged();
     return true;
   }
 
   /** Goes on to where the pointer was dragged. */
   protected follow(samples: PointerSample[]): void {
     for (const { x, y } of samples) {
-      const [last_x, last_y] = this.points[this.points.length - 1]!;
-      if (Math.hypot(x - last_x, y - last_y) < this.spacing_ * this.host.scale()) continue;
+      const [lastX, lastY] = this.points[this.points.length - 1]!;
+      if (Math.hypot(x - lastX, y - lastY) < this._spacing * this.host.scale()) continue;
       this.points.push([x, y]);
       if (this.points.length < this.most) continue;
       this.points = this.points.filter((_, index) => index % 2 === 0);
-      this.spacing_ *= 2;
+      this._spacing *= 2;
     }
-    this.host.outline_changed();
+    this.host.outlineChanged();
   }
 
   protected finish(): void {
     const path = this.points;
-    this.give_up();
-    if (path.length >= this.least_) this.host.finish_outline(path);
+    this.giveUp();
+    if (path.length >= this._least) this.host.finishOutline(path);
   }
 
-  protected is_at(sample: PointerSample, [x, y]: Point): boolean {
-    return Math.hypot(sample.x - x, sample.y - y) <= kSnap_px * this.host.scale();
+  protected isAt(sample: PointerSample, [x, y]: Point): boolean {
+    return Math.hypot(sample.x - x, sample.y - y) <= kSnapPx * this.host.scale();
   }
 
-  protected give_up(): void {
+  protected giveUp(): void {
     if (this.points.length === 0) return;
     this.points = [];
-    this.host.outline_ended();
-    this.host.outline_changed();
+    this.host.outlineEnded();
+    this.host.outlineChanged();
   }
 }
 
@@ -98,11 +98,11 @@ export class LassoTool extends OutlineTool implements Tool {
     this.finish();
   }
   cancel(): void {
-    this.give_up();
+    this.giveUp();
   }
   key(key: string): boolean {
     if (key !== "Escape" || this.points.length === 0) return false;
-    this.give_up();
+    this.giveUp();
     return true;
   }
 }
@@ -113,13 +113,13 @@ export abstract class PlacesTool extends OutlineTool {
 
   hover(sample: PointerSample | null): void {
     this.pointer = sample ? [sample.x, sample.y] : null;
-    if (this.points.length > 0) this.host.outline_changed();
+    if (this.points.length > 0) this.host.outlineChanged();
   }
 
   key(key: string): boolean {
     if (this.points.length === 0) return false;
-    if (key === "Escape") this.give_up();
-    else if (key === "Backspace" || key === "Delete") this.take_back(this.points.length - 1);
+    if (key === "Escape") this.giveUp();
+    else if (key === "Backspace" || key === "Delete") this.takeBack(this.points.length - 1);
     else if (key === "Enter") this.enter();
     else return false;
     return true;
@@ -129,20 +129,20 @@ export abstract class PlacesTool extends OutlineTool {
     this.finish();
   }
   /** To so many places. */
-  protected take_back(points: number): void {
+  protected takeBack(points: number): void {
     if (points < 1) {
-      this.give_up();
+      this.giveUp();
       return;
     }
     this.points.length = Math.min(points, this.points.length);
-    this.host.outline_changed();
+    this.host.outlineChanged();
   }
 }
 
 /** A press sets a corner; one on the first corner, a second one on the last, or Enter closes. */
 export class PolygonTool extends PlacesTool implements Tool {
   readonly name = "polygon";
-  private added_ = false; // by the press that is under way
+  private _added = false; // by the press that is under way
 
   override get outline(): Outline | null {
     if (this.points.length === 0) return null;
@@ -156,23 +156,22 @@ export class PolygonTool extends PlacesTool implements Tool {
   }
 
   down(sample: PointerSample): void {
-    this.added_ = false;
+    this._added = false;
     this.pointer = [sample.x, sample.y];
     if (this.points.length === 0) {
-      this.added_ = this.begin(sample);
+      this._added = this.begin(sample);
       return;
     }
     const closes =
-      this.is_at(sample, this.points[0]!) ||
-      this.is_at(sample, this.points[this.points.length - 1]!);
+      this.isAt(sample, this.points[0]!) || this.isAt(sample, this.points[this.points.length - 1]!);
     if (closes) {
       if (this.points.length >= 3) this.finish();
       return;
     }
     if (this.points.length === this.most) return;
     this.points.push([sample.x, sample.y]);
-    this.added_ = true;
-    this.host.outline_changed();
+    this._added = true;
+    this.host.outlineChanged();
   }
 
   move(samples: PointerSample[]): void {
@@ -183,8 +182,8 @@ export class PolygonTool extends PlacesTool implements Tool {
 
   /** A second finger came: its first one's press was none. */
   cancel(): void {
-    if (this.added_) this.take_back(this.points.length - 1);
-    this.added_ = false;
+    if (this._added) this.takeBack(this.points.length - 1);
+    this._added = false;
   }
 
   protected override enter(): void {

@@ -5,96 +5,96 @@ import type { Outline } from "./tool";
 import type { Tool, ToolName } from "./tool";
 
 export class ToolManager {
-  private readonly tools_ = new Map<ToolName, Tool>();
-  private active_: Tool;
-  private before_: Tool | null = null; // that another one is borrowed in place of
-  private dragging_ = false;
+  private readonly _tools = new Map<ToolName, Tool>();
+  private _active: Tool;
+  private _before: Tool | null = null; // that another one is borrowed in place of
+  private _dragging = false;
 
   constructor(
     tools: readonly Tool[],
     first: ToolName,
-    private readonly changed_: (name: ToolName) => void = () => {},
+    private readonly _changed: (name: ToolName) => void = () => {},
   ) {
-    for (const tool of tools) this.tools_.set(tool.name, tool);
-    this.active_ = this.find(first);
-    this.active_.activate();
+    for (const tool of tools) this._tools.set(tool.name, tool);
+    this._active = this.find(first);
+    this._active.activate();
   }
 
   get active(): ToolName {
-    return this.active_.name;
+    return this._active.name;
   }
 
   choose(name: ToolName): void {
-    this.give_back();
+    this.giveBack();
     const tool = this.find(name);
-    if (tool === this.active_) return;
+    if (tool === this._active) return;
     this.cancel();
-    this.active_.deactivate();
-    this.active_ = tool;
+    this._active.deactivate();
+    this._active = tool;
     tool.activate();
-    this.changed_(name);
+    this._changed(name);
   }
 
   /** For one thing in between: the chosen tool stays as it is meanwhile. */
   borrow(name: ToolName): void {
-    if (this.before_) return;
+    if (this._before) return;
     this.cancel();
-    this.before_ = this.active_;
-    this.active_ = this.find(name);
-    this.active_.activate();
-    this.changed_(name);
+    this._before = this._active;
+    this._active = this.find(name);
+    this._active.activate();
+    this._changed(name);
   }
 
   /** The chosen tool is in hand again. */
-  give_back(): void {
-    const { before_: before, active_: borrowed } = this;
+  giveBack(): void {
+    const { _before: before, _active: borrowed } = this;
     if (!before) return;
     this.cancel();
-    this.before_ = null;
-    this.active_ = before;
+    this._before = null;
+    this._active = before;
     borrowed.deactivate();
-    this.changed_(before.name);
+    this._changed(before.name);
   }
 
   get outline(): Outline | null {
-    return this.active_.outline ?? null;
+    return this._active.outline ?? null;
   }
 
   hover(sample: PointerSample | null): void {
-    if (!this.dragging_) this.active_.hover?.(sample);
+    if (!this._dragging) this._active.hover?.(sample);
   }
 
   key(key: string): boolean {
-    return this.active_.key?.(key) ?? false;
+    return this._active.key?.(key) ?? false;
   }
 
   /** Ends what is under way. */
   stop(): void {
     this.cancel();
-    this.give_back();
-    this.active_.deactivate();
+    this.giveBack();
+    this._active.deactivate();
   }
 
   down(sample: PointerSample): void {
-    this.dragging_ = true;
-    this.active_.down(sample);
+    this._dragging = true;
+    this._active.down(sample);
   }
   move(samples: PointerSample[]): void {
-    if (this.dragging_) this.active_.move(samples);
+    if (this._dragging) this._active.move(samples);
   }
   up(): void {
-    if (!this.dragging_) return;
-    this.dragging_ = false;
-    this.active_.up();
+    if (!this._dragging) return;
+    this._dragging = false;
+    this._active.up();
   }
   cancel(): void {
-    if (!this.dragging_) return;
-    this.dragging_ = false;
-    this.active_.cancel();
+    if (!this._dragging) return;
+    this._dragging = false;
+    this._active.cancel();
   }
 
   private find(name: ToolName): Tool {
-    const tool = this.tools_.get(name);
+    const tool = this._tools.get(name);
     if (!tool) throw new Error(`no tool named ${name}`);
     return tool;
   }

@@ -3,18 +3,18 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
-import { called, initials, name_with } from "../domain/people";
-import { may_administer, type Me } from "../core/types";
+import { called, initials, nameWith } from "../domain/people";
+import { mayAdminister, type Me } from "../core/types";
 import { icon } from "./icons";
 import "./menu";
 import { styled } from "./styled";
-import { shared_styles } from "./styles";
+import { sharedStyles } from "./styles";
 import { texts } from "../texts";
 
 export type AccountRequest = "account" | "people" | "kiosks" | "preferences" | "sign-out";
 
 /** To whatever element of the page takes it. */
-export const ask_account = (from: EventTarget, detail: AccountRequest): boolean =>
+export const askAccount = (from: EventTarget, detail: AccountRequest): boolean =>
   from.dispatchEvent(
     new CustomEvent<AccountRequest>("account", { detail, bubbles: true, composed: true }),
   );
@@ -26,7 +26,7 @@ export class StrataAccountMenu extends LitElement {
   @property({ type: Boolean }) kiosks = false;
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: inline-flex;
@@ -60,24 +60,24 @@ export class StrataAccountMenu extends LitElement {
     const { me } = this;
     const words = texts.account;
     const role = texts.roles[me.role];
-    return html`<strata-menu label=${name_with(words.menu(called(me)), initials(me))}>
+    return html`<strata-menu label=${nameWith(words.menu(called(me)), initials(me))}>
       <span class="face" slot="face" ${styled({ background: me.color })}>${initials(me)}</span>
       <div class="who"><b>${called(me)}</b><span>${me.full_name.trim() ? `${me.user} · ${role}` : role}</span></div>
       <hr />
-      <button class="quiet" role="menuitem" @click=${() => ask_account(this, "account")}>${icon("person")}${words.open}</button>
+      <button class="quiet" role="menuitem" @click=${() => askAccount(this, "account")}>${icon("person")}${words.open}</button>
       ${
-        may_administer(me.role)
-          ? html`<button class="quiet" role="menuitem" @click=${() => ask_account(this, "people")}>${icon("people")}${words.people}</button>`
+        mayAdminister(me.role)
+          ? html`<button class="quiet" role="menuitem" @click=${() => askAccount(this, "people")}>${icon("people")}${words.people}</button>`
           : nothing
       }
       ${
         this.kiosks
-          ? html`<button class="quiet" role="menuitem" @click=${() => ask_account(this, "kiosks")}>${icon("picture")}${texts.kiosks.open}</button>`
+          ? html`<button class="quiet" role="menuitem" @click=${() => askAccount(this, "kiosks")}>${icon("picture")}${texts.kiosks.open}</button>`
           : nothing
       }
-      <button class="quiet" role="menuitem" @click=${() => ask_account(this, "preferences")}>${icon("language")}${texts.settings.open}</button>
+      <button class="quiet" role="menuitem" @click=${() => askAccount(this, "preferences")}>${icon("language")}${texts.settings.open}</button>
       <hr />
-      <button class="quiet" role="menuitem" @click=${() => ask_account(this, "sign-out")}>${icon("leave")}${words.sign_out}</button>
+      <button class="quiet" role="menuitem" @click=${() => askAccount(this, "sign-out")}>${icon("leave")}${words.sign_out}</button>
     </strata-menu>`;
   }
 }

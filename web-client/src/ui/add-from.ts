@@ -3,7 +3,7 @@
 import { css, html, type TemplateResult } from "lit";
 import { icon } from "./icons";
 
-export const add_from_styles = css`
+export const addFromStyles = css`
   .add {
     display: flex;
     flex-wrap: wrap;
@@ -17,12 +17,12 @@ export const add_from_styles = css`
 `;
 
 /** `label`: of the choice, and on the button. */
-export function add_from(
+export function addFrom(
   label: string,
   options: readonly { value: string; name: string }[],
   add: (value: string) => void,
 ): TemplateResult {
-  const add_chosen = (event: Event): void => {
+  const addChosen = (event: Event): void => {
     const value = (event.currentTarget as HTMLElement).parentElement?.querySelector(
       "select",
     )?.value;
@@ -32,6 +32,6 @@ export function add_from(
     <select aria-label=${label}>
       ${options.map(({ value, name }) => html`<option value=${value}>${name}</option>`)}
     </select>
-    <button type="button" @click=${add_chosen}>${icon("plus")}${label}</button>
+    <button type="button" @click=${addChosen}>${icon("plus")}${label}</button>
   </div>`;
 }

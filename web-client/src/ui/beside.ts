@@ -35,29 +35,29 @@ export interface Box extends Size {
 /**
  * Top left of a box beside a bar, at the height (or width) of a thing in that bar: to its right,
  * left, below or above it, wherever it fits first. Where it fits nowhere it gets the larger room
- * below or above, and is `most_height` high at most.
+ * below or above, and is `mostHeight` high at most.
  */
-export function beside_bar(
+export function besideBar(
   thing: Box,
   bar: Box,
   box: Size,
   frame: Size,
   gap: number,
-): { left: number; top: number; most_height: number } {
+): { left: number; top: number; mostHeight: number } {
   const within = (at: number, size: number, most: number): number =>
     Math.max(gap, Math.min(at, most - size - gap));
   const top = within(thing.top + (thing.height - box.height) / 2, box.height, frame.height);
   const left = within(thing.left + (thing.width - box.width) / 2, box.width, frame.width);
-  const most_height = frame.height - 2 * gap;
-  const [right_end, bottom_end] = [bar.left + bar.width, bar.top + bar.height];
-  if (box.height <= most_height) {
-    if (right_end + box.width + 2 * gap <= frame.width)
-      return { left: right_end + gap, top, most_height };
+  const mostHeight = frame.height - 2 * gap;
+  const [rightEnd, bottomEnd] = [bar.left + bar.width, bar.top + bar.height];
+  if (box.height <= mostHeight) {
+    if (rightEnd + box.width + 2 * gap <= frame.width)
+      return { left: rightEnd + gap, top, mostHeight };
     if (bar.left - box.width - 2 * gap >= 0)
-      return { left: bar.left - box.width - gap, top, most_height };
+      return { left: bar.left - box.width - gap, top, mostHeight };
   }
-  const [above, below] = [bar.top - 2 * gap, frame.height - bottom_end - 2 * gap];
+  const [above, below] = [bar.top - 2 * gap, frame.height - bottomEnd - 2 * gap];
   if (below >= box.height || (below >= above && above < box.height))
-    return { left, top: bottom_end + gap, most_height: below };
-  return { left, top: Math.max(gap, bar.top - gap - box.height), most_height: above };
+    return { left, top: bottomEnd + gap, mostHeight: below };
+  return { left, top: Math.max(gap, bar.top - gap - box.height), mostHeight: above };
 }

@@ -3,7 +3,7 @@
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { icon } from "./icons";
-import { shared_styles } from "./styles";
+import { sharedStyles } from "./styles";
 import { texts } from "../texts";
 
 @customElement("strata-copy-field")
@@ -11,12 +11,12 @@ export class StrataCopyField extends LitElement {
   @property() label = "";
   @property() text = "";
   /** Takes the keyboard as it comes: it stands where a form was that is done. */
-  @property({ type: Boolean }) follows_form = false;
-  @state() private told_ = "";
-  @query("input") private input_!: HTMLInputElement;
+  @property({ attribute: "follows_form", type: Boolean }) followsForm = false;
+  @state() private _told = "";
+  @query("input") private _input!: HTMLInputElement;
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         position: relative; /* of what is hidden for eyes */
@@ -35,23 +35,23 @@ export class StrataCopyField extends LitElement {
   ];
 
   override firstUpdated(): void {
-    if (this.follows_form) this.input_.focus();
+    if (this.followsForm) this._input.focus();
   }
 
   override render(): TemplateResult {
-    return html`<input type="text" readonly aria-label=${this.label} .value=${this.text} @focus=${() => this.input_.select()} />
+    return html`<input type="text" readonly aria-label=${this.label} .value=${this.text} @focus=${() => this._input.select()} />
       <button type="button" @click=${() => void this.copy()}>
-        ${icon(this.told_ === texts.copy.copied ? "check" : "copy")}${this.told_ || texts.copy.button}
+        ${icon(this._told === texts.copy.copied ? "check" : "copy")}${this._told || texts.copy.button}
       </button>
-      <span class="visually-hidden" role="status">${this.told_}</span>`;
+      <span class="visually-hidden" role="status">${this._told}</span>`;
   }
 
   private async copy(): Promise<void> {
-    const copied = await copy_text(this.text, () => {
-      this.input_.select();
+    const copied = await copyText(this.text, () => {
+      this._input.select();
       return () => {}; // it stays selected for who copies by hand
     });
-    this.told_ = copied ? texts.copy.copied : texts.copy.by_hand;
+    this._told = copied ? texts.copy.copied : texts.copy.by_hand;
   }
 }
 
@@ -59,14 +59,14 @@ export class StrataCopyField extends LitElement {
  * Returns whether the browser took it. `select`: selects the text in the page, which also works
  * where the page came by plain HTTP; returns what lets go of it.
  */
-export async function copy_text(text: string, select: () => () => void): Promise<boolean> {
-  const by_selection = (): boolean => {
-    const let_go = select();
+export async function copyText(text: string, select: () => () => void): Promise<boolean> {
+  const bySelection = (): boolean => {
+    const letGo = select();
     const copied = document.execCommand("copy");
-    let_go();
+    letGo();
     return copied;
   };
   return navigator.clipboard
-    ? navigator.clipboard.writeText(text).then(() => true, by_selection)
-    : by_selection();
+    ? navigator.clipboard.writeText(text).then(() => true, bySelection)
+    : bySelection();
 }

@@ -4,28 +4,28 @@
 import { css, html, LitElement, nothing, ReactiveElement, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { icon } from "./icons";
-import { has_fingers } from "./pointers";
-import { shared_styles } from "./styles";
+import { hasFingers } from "./pointers";
+import { sharedStyles } from "./styles";
 import { texts } from "../texts";
 
-const open_dialogs = new Set<HTMLDialogElement>();
+const openDialogs = new Set<HTMLDialogElement>();
 
 /**
  * Keys that reach the page while a dialog is open, because nothing in it has the focus, are not for
  * the page.
  */
-export const modal_is_open = (): boolean => open_dialogs.size > 0;
+export const modalIsOpen = (): boolean => openDialogs.size > 0;
 
-const docked_dialogs = new Set<HTMLDialogElement>();
+const dockedDialogs = new Set<HTMLDialogElement>();
 
 /** A dialog stands beside the picture: the page goes on, but nothing else asks for attention. */
-export const docked_is_open = (): boolean => docked_dialogs.size > 0;
+export const dockedIsOpen = (): boolean => dockedDialogs.size > 0;
 
 @customElement("strata-dialog")
 export class StrataDialog extends LitElement {
   @property() heading = "";
   /** What the button says that leaves it as it is; empty: only the cross does. */
-  @property() way_out = "";
+  @property({ attribute: "way_out" }) wayOut = "";
   @property({ type: Boolean, reflect: true }) wide = false;
   /** For tables. */
   @property({ type: Boolean, reflect: true }) broad = false;
@@ -46,18 +46,18 @@ export class StrataDialog extends LitElement {
    * Asked before a person closes it by Escape, its cross or beside it; null: it closes. close()
    * does not ask.
    */
-  @property({ attribute: false }) may_close: (() => Promise<boolean>) | null = null;
-  @state() private acts_ = false; // has buttons of its own
-  private asking_ = false;
-  private closes_ = false; // what closes it was asked, or need not ask
-  private used_ = false; // by keys or the pointer
+  @property({ attribute: false }) mayClose: (() => Promise<boolean>) | null = null;
+  @state() private _acts = false; // has buttons of its own
+  private _asking = false;
+  private _closes = false; // what closes it was asked, or need not ask
+  private _used = false; // by keys or the pointer
 
-  @query("dialog") private dialog_!: HTMLDialogElement;
-  @query(".content") private content_!: HTMLElement;
-  @query(".way-out") private way_out_!: HTMLButtonElement | null;
+  @query("dialog") private _dialog!: HTMLDialogElement;
+  @query(".content") private _content!: HTMLElement;
+  @query(".way-out") private _wayOut!: HTMLButtonElement | null;
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       dialog {
         width: min(28.75rem, calc(100vw - 1.5rem));
@@ -171,11 +171,11 @@ export class StrataDialog extends LitElement {
 
   override firstUpdated(): void {
     if (this.docked) {
-      this.dialog_.show();
-      docked_dialogs.add(this.dialog_);
+      this._dialog.show();
+      dockedDialogs.add(this._dialog);
     } else {
-      this.dialog_.showModal();
-      open_dialogs.add(this.dialog_);
+      this._dialog.showModal();
+      openDialogs.add(this._dialog);
     }
     void this.begin();
   }
@@ -187,43 +187,43 @@ export class StrataDialog extends LitElement {
   private async begin(): Promise<void> {
     const asks = this.querySelector<HTMLElement>("[autofocus]");
     if (asks) return asks.focus();
-    const first = (this.prose ? this.content_ : await first_stop(this.content_)) ?? this.way_out_;
-    if (this.used_ || !this.dialog_.open) return;
-    if (first === this.content_) this.content_.classList.add("begun");
-    (first && !opens_keyboard(first) ? first : this.dialog_).focus();
+    const first = (this.prose ? this._content : await firstStop(this._content)) ?? this._wayOut;
+    if (this._used || !this._dialog.open) return;
+    if (first === this._content) this._content.classList.add("begun");
+    (first && !opensKeyboard(first) ? first : this._dialog).focus();
   }
 
   /** What it had to ask the server for has come. */
-  private on_content(): void {
-    if (!this.used_ && this.dialog_.open) void this.begin();
+  private onContent(): void {
+    if (!this._used && this._dialog.open) void this.begin();
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    open_dialogs.delete(this.dialog_);
-    docked_dialogs.delete(this.dialog_);
+    openDialogs.delete(this._dialog);
+    dockedDialogs.delete(this._dialog);
   }
 
   /** Closes and tells: the owner removes the element on "closed". */
   close(): void {
-    this.closes_ = true;
-    this.dialog_.close();
+    this._closes = true;
+    this._dialog.close();
   }
 
   /** As a person closes it. */
   async leave(): Promise<void> {
-    if (this.asking_) return;
-    this.asking_ = true;
+    if (this._asking) return;
+    this._asking = true;
     try {
-      if (!this.may_close || (await this.may_close())) this.close();
+      if (!this.mayClose || (await this.mayClose())) this.close();
     } finally {
-      this.asking_ = false;
+      this._asking = false;
     }
   }
 
   override render(): TemplateResult {
-    const used = (): void => void (this.used_ = true);
-    const on_key = (event: KeyboardEvent): void => {
+    const used = (): void => void (this._used = true);
+    const onKey = (event: KeyboardEvent): void => {
       used();
       // of others the browser takes care
       if (!this.docked || event.key !== "Escape" || event.defaultPrevented) return;
@@ -235,10 +235,10 @@ export class StrataDialog extends LitElement {
       aria-labelledby="heading"
       tabindex="-1"
       autofocus
-      @cancel=${this.on_cancel}
-      @close=${this.on_close}
-      @click=${this.on_click}
-      @keydown=${on_key}
+      @cancel=${this.onCancel}
+      @close=${this.onClose}
+      @click=${this.onClick}
+      @keydown=${onKey}
       @pointerdown=${used}
       @input=${used}
     >
@@ -253,42 +253,42 @@ export class StrataDialog extends LitElement {
         tabindex=${this.prose ? 0 : nothing}
         role=${this.prose ? "region" : nothing}
         aria-labelledby=${this.prose ? "heading" : nothing}
-        @blur=${() => this.content_.classList.remove("begun")}
+        @blur=${() => this._content.classList.remove("begun")}
       >
-        <slot @slotchange=${this.on_content}></slot>
+        <slot @slotchange=${this.onContent}></slot>
       </div>
-      <footer class=${this.way_out || this.acts_ ? "" : "empty"}>
+      <footer class=${this.wayOut || this._acts ? "" : "empty"}>
         <slot name="told"></slot>
-        ${this.way_out ? html`<button class="way-out" @click=${() => void this.leave()}>${this.way_out}</button>` : nothing}
-        <slot name="actions" @slotchange=${this.on_actions}></slot>
+        ${this.wayOut ? html`<button class="way-out" @click=${() => void this.leave()}>${this.wayOut}</button>` : nothing}
+        <slot name="actions" @slotchange=${this.onActions}></slot>
       </footer>
     </dialog>`;
   }
 
-  private on_actions(event: Event): void {
-    this.acts_ = (event.target as HTMLSlotElement).assignedElements().length > 0;
+  private onActions(event: Event): void {
+    this._acts = (event.target as HTMLSlotElement).assignedElements().length > 0;
   }
 
-  private on_cancel(event: Event): void {
+  private onCancel(event: Event): void {
     // a file field, too, tells that nothing was chosen
-    if (!this.may_close || event.target !== this.dialog_) return;
+    if (!this.mayClose || event.target !== this._dialog) return;
     event.preventDefault();
     void this.leave();
   }
 
-  private on_close(): void {
-    if (this.may_close && !this.closes_) {
-      this.dialog_.showModal(); // browsers close it at a second Escape whatever the page says
+  private onClose(): void {
+    if (this.mayClose && !this._closes) {
+      this._dialog.showModal(); // browsers close it at a second Escape whatever the page says
       void this.leave();
       return;
     }
-    open_dialogs.delete(this.dialog_);
-    docked_dialogs.delete(this.dialog_);
+    openDialogs.delete(this._dialog);
+    dockedDialogs.delete(this._dialog);
     this.dispatchEvent(new CustomEvent("closed"));
   }
 
-  private on_click(event: MouseEvent): void {
-    if (event.target === this.dialog_ && !this.docked) void this.leave(); // the backdrop
+  private onClick(event: MouseEvent): void {
+    if (event.target === this._dialog && !this.docked) void this.leave(); // the backdrop
   }
 }
 
@@ -297,27 +297,27 @@ const kStops = "a[href], button, input, select, textarea, summary, [tabindex]";
 /**
  * The first control that the Tab key reaches in it, within elements of their own and slots, too.
  */
-async function first_stop(root: Element): Promise<HTMLElement | null> {
-  const is_stop =
+async function firstStop(root: Element): Promise<HTMLElement | null> {
+  const isStop =
     root instanceof HTMLElement &&
     root.matches(kStops) &&
     root.tabIndex >= 0 &&
     !root.matches(":disabled") &&
     root.checkVisibility();
-  if (is_stop) return root;
+  if (isStop) return root;
   if (root instanceof ReactiveElement) await root.updateComplete;
   for (const each of root instanceof HTMLSlotElement
     ? root.assignedElements()
     : (root.shadowRoot ?? root).children) {
-    const found = await first_stop(each);
+    const found = await firstStop(each);
     if (found) return found;
   }
   return null;
 }
 
 /** On touch screens fields bring up a keyboard that covers half of the dialog. */
-const opens_keyboard = (element: HTMLElement): boolean =>
-  has_fingers() && element.matches("input[type=text], input[type=password], textarea");
+const opensKeyboard = (element: HTMLElement): boolean =>
+  hasFingers() && element.matches("input[type=text], input[type=password], textarea");
 
 /** A question with two answers; asked by ask(). */
 @customElement("strata-question")
@@ -328,10 +328,10 @@ class StrataQuestion extends LitElement {
   @property({ type: Boolean }) danger = false;
   answer: (yes: boolean) => void = () => {};
 
-  static override styles = shared_styles;
+  static override styles = sharedStyles;
 
-  @query("strata-dialog") private dialog_!: StrataDialog;
-  private answered_ = false;
+  @query("strata-dialog") private _dialog!: StrataDialog;
+  private _answered = false;
 
   override render(): TemplateResult {
     return html`<strata-dialog heading=${this.heading} way_out=${texts.cancel} @closed=${() => this.finish()}>
@@ -340,8 +340,8 @@ class StrataQuestion extends LitElement {
         slot="actions"
         class=${this.danger ? "danger" : "primary"}
         @click=${() => {
-          this.answered_ = true;
-          this.dialog_.close();
+          this._answered = true;
+          this._dialog.close();
         }}
       >
         ${this.yes}
@@ -350,7 +350,7 @@ class StrataQuestion extends LitElement {
   }
 
   private finish(): void {
-    this.answer(this.answered_);
+    this.answer(this._answered);
     this.remove();
   }
 }
@@ -368,7 +368,7 @@ export function ask(question: {
   });
 }
 
-/** A question for one line of text; asked by ask_text(). */
+/** A question for one line of text; asked by askText(). */
 @customElement("strata-text-question")
 class StrataTextQuestion extends LitElement {
   @property() heading = "";
@@ -377,15 +377,15 @@ class StrataTextQuestion extends LitElement {
   @property() yes = "";
   answer: (text: string | null) => void = () => {};
 
-  static override styles = shared_styles;
+  static override styles = sharedStyles;
 
-  @query("strata-dialog") private dialog_!: StrataDialog;
-  @query("input") private input_!: HTMLInputElement;
-  private answered_: string | null = null;
+  @query("strata-dialog") private _dialog!: StrataDialog;
+  @query("input") private _input!: HTMLInputElement;
+  private _answered: string | null = null;
 
   override render(): TemplateResult {
     return html`<strata-dialog heading=${this.heading} way_out=${texts.cancel} @closed=${() => this.finish()}>
-      <form id="question" @submit=${this.on_submit}>
+      <form id="question" @submit=${this.onSubmit}>
         <label class="field">
           <span>${this.label}</span>
           <input type="text" required maxlength="200" .value=${this.text} autofocus />
@@ -395,20 +395,20 @@ class StrataTextQuestion extends LitElement {
     </strata-dialog>`;
   }
 
-  private on_submit(event: Event): void {
+  private onSubmit(event: Event): void {
     event.preventDefault();
-    this.answered_ = this.input_.value.trim() || null;
-    this.dialog_.close();
+    this._answered = this._input.value.trim() || null;
+    this._dialog.close();
   }
 
   private finish(): void {
-    this.answer(this.answered_);
+    this.answer(this._answered);
     this.remove();
   }
 }
 
 /** The text; null: none was given. */
-export function ask_text(question: {
+export function askText(question: {
   heading: string;
   label: string;
   text: string;

@@ -10,11 +10,11 @@ export class DragOrder<Id extends number | string> implements ReactiveController
 
   /** `move`: from an index to one in the list without it. */
   constructor(
-    private readonly host_: ReactiveControllerHost,
-    private readonly shown_: () => readonly Id[],
-    private readonly move_: (id: Id, to: number) => void,
+    private readonly _host: ReactiveControllerHost,
+    private readonly _shown: () => readonly Id[],
+    private readonly _move: (id: Id, to: number) => void,
   ) {
-    host_.addController(this);
+    _host.addController(this);
   }
 
   hostDisconnected(): void {
@@ -33,25 +33,25 @@ export class DragOrder<Id extends number | string> implements ReactiveController
     if (row) event.dataTransfer?.setDragImage(row, 12, 18);
   }
 
-  over_row(event: DragEvent, index: number): void {
+  overRow(event: DragEvent, index: number): void {
     if (this.dragged === null) return;
     event.preventDefault();
     const box = (event.currentTarget as HTMLElement).getBoundingClientRect();
     this.put(this.dragged, event.clientY < box.top + box.height / 2 ? index : index + 1);
   }
 
-  readonly over_list = (event: DragEvent): void => {
+  readonly overList = (event: DragEvent): void => {
     if (this.dragged !== null) event.preventDefault();
   };
 
   readonly drop = (event: DragEvent): void => {
     const { dragged, before } = this;
     this.end();
-    const from = dragged === null ? -1 : this.shown_().indexOf(dragged);
+    const from = dragged === null ? -1 : this._shown().indexOf(dragged);
     if (dragged === null || before === null || from < 0) return;
     event.preventDefault();
     const to = before > from ? before - 1 : before;
-    if (to !== from) this.move_(dragged, to);
+    if (to !== from) this._move(dragged, to);
   };
 
   readonly end = (): void => this.put(null, null);
@@ -59,6 +59,6 @@ export class DragOrder<Id extends number | string> implements ReactiveController
   private put(dragged: Id | null, before: number | null): void {
     if (dragged === this.dragged && before === this.before) return;
     [this.dragged, this.before] = [dragged, before];
-    this.host_.requestUpdate();
+    this._host.requestUpdate();
   }
 }

@@ -10,40 +10,40 @@ export interface DroppedFile {
 
 const kMostFiles = 2000;
 
-export const without_folders = (files: readonly File[]): DroppedFile[] =>
+export const withoutFolders = (files: readonly File[]): DroppedFile[] =>
   files.map((file) => ({ file, path: file.webkitRelativePath || file.name }));
 
-export const has_files = (event: DragEvent): boolean =>
+export const hasFiles = (event: DragEvent): boolean =>
   event.dataTransfer?.types.includes("Files") ?? false;
 
 /** Must be called while the event is handled: what it carries is gone afterwards. */
-export function dropped_files(data: DataTransfer): Promise<DroppedFile[]> {
+export function droppedFiles(data: DataTransfer): Promise<DroppedFile[]> {
   const entries = [...data.items].map((item) => item.webkitGetAsEntry?.() ?? null);
   if (!entries.some((entry) => entry?.isDirectory))
-    return Promise.resolve(without_folders([...data.files]));
-  return all_files(entries.filter((entry) => entry !== null));
+    return Promise.resolve(withoutFolders([...data.files]));
+  return allFiles(entries.filter((entry) => entry !== null));
 }
 
-async function all_files(entries: FileSystemEntry[]): Promise<DroppedFile[]> {
+async function allFiles(entries: FileSystemEntry[]): Promise<DroppedFile[]> {
   const found: DroppedFile[] = [];
   const waiting = [...entries];
   for (let entry = waiting.shift(); entry && found.length < kMostFiles; entry = waiting.shift()) {
     if (entry.name.startsWith(".")) continue; // what systems hide among a person's files
-    if (entry.isDirectory) waiting.push(...(await entries_in(entry as FileSystemDirectoryEntry)));
+    if (entry.isDirectory) waiting.push(...(await entriesIn(entry as FileSystemDirectoryEntry)));
     else
       found.push({
-        file: await file_of(entry as FileSystemFileEntry),
+        file: await fileOf(entry as FileSystemFileEntry),
         path: entry.fullPath.replace(/^\//, ""),
       });
   }
   return found;
 }
 
-const file_of = (entry: FileSystemFileEntry): Promise<File> =>
+const fileOf = (entry: FileSystemFileEntry): Promise<File> =>
   new Promise((resolve, reject) => entry.file(resolve, reject));
 
 /** A reader gives a part at a time, and nothing at the end. */
-async function entries_in(folder: FileSystemDirectoryEntry): Promise<FileSystemEntry[]> {
+async function entriesIn(folder: FileSystemDirectoryEntry): Promise<FileSystemEntry[]> {
   const reader = folder.createReader();
   const all: FileSystemEntry[] = [];
   for (;;) {
@@ -57,51 +57,51 @@ async function entries_in(folder: FileSystemDirectoryEntry): Promise<FileSystemE
 
 /** Makes an element a place for files. Of places within each other the innermost takes them. */
 export class FileDrop implements ReactiveController {
-  private over_ = false;
+  private _over = false;
 
   /** `may`: whether it takes any now; files that it does not take are for what is around it. */
   constructor(
-    private readonly host_: ReactiveControllerHost & EventTarget,
-    private readonly take_: (files: File[]) => void,
-    private readonly may_: () => boolean = () => true,
+    private readonly _host: ReactiveControllerHost & EventTarget,
+    private readonly _take: (files: File[]) => void,
+    private readonly _may: () => boolean = () => true,
   ) {
-    host_.addController(this);
-    host_.addEventListener("dragover", (event) => this.on_over(event as DragEvent));
-    host_.addEventListener("dragleave", () => this.set_over(false));
-    host_.addEventListener("drop", (event) => this.on_drop(event as DragEvent));
+    _host.addController(this);
+    _host.addEventListener("dragover", (event) => this.onOver(event as DragEvent));
+    _host.addEventListener("dragleave", () => this.setOver(false));
+    _host.addEventListener("drop", (event) => this.onDrop(event as DragEvent));
   }
 
   /** Files are held over it. */
   get over(): boolean {
-    return this.over_;
+    return this._over;
   }
 
   hostDisconnected(): void {
-    this.over_ = false;
+    this._over = false;
   }
 
-  private set_over(over: boolean): void {
-    if (over === this.over_) return;
-    this.over_ = over;
-    this.host_.requestUpdate();
+  private setOver(over: boolean): void {
+    if (over === this._over) return;
+    this._over = over;
+    this._host.requestUpdate();
   }
 
-  private is_for_it(event: DragEvent): boolean {
-    return has_files(event) && !event.defaultPrevented && this.may_();
+  private isForIt(event: DragEvent): boolean {
+    return hasFiles(event) && !event.defaultPrevented && this._may();
   }
 
-  private on_over(event: DragEvent): void {
-    const takes = this.is_for_it(event);
+  private onOver(event: DragEvent): void {
+    const takes = this.isForIt(event);
     if (takes) event.preventDefault();
-    this.set_over(takes);
+    this.setOver(takes);
   }
 
-  private on_drop(event: DragEvent): void {
-    this.set_over(false);
-    if (!this.is_for_it(event)) return;
+  private onDrop(event: DragEvent): void {
+    this.setOver(false);
+    if (!this.isForIt(event)) return;
     event.preventDefault();
-    void dropped_files(event.dataTransfer!).then((dropped) =>
-      this.take_(dropped.map(({ file }) => file)),
+    void droppedFiles(event.dataTransfer!).then((dropped) =>
+      this._take(dropped.map(({ file }) => file)),
     );
   }
 }

@@ -3,10 +3,10 @@
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
-import { format_list } from "../core/locale";
+import { formatList } from "../core/locale";
 import { FileDrop } from "./drop";
 import { icon } from "./icons";
-import { shared_styles } from "./styles";
+import { sharedStyles } from "./styles";
 import { texts } from "../texts";
 
 const words = texts.file_choice;
@@ -22,11 +22,11 @@ export class StrataFileChoice extends LitElement {
   @property({ type: Boolean }) disabled = false;
   /** That were taken so far. */
   @property({ attribute: false }) names: readonly string[] = [];
-  @query("input") private input_!: HTMLInputElement;
-  private readonly drop_ = new FileDrop(this, (files) => this.take(files));
+  @query("input") private _input!: HTMLInputElement;
+  private readonly _drop = new FileDrop(this, (files) => this.take(files));
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: block;
@@ -63,9 +63,9 @@ export class StrataFileChoice extends LitElement {
     return html`<div
       role="group"
       aria-label=${label}
-      class=${this.drop_.over ? "over" : ""}
+      class=${this._drop.over ? "over" : ""}
     >
-      <button type="button" ?disabled=${disabled} @click=${() => this.input_.click()}>${icon("upload")}${choose}</button>
+      <button type="button" ?disabled=${disabled} @click=${() => this._input.click()}>${icon("upload")}${choose}</button>
       <input
         type="file"
         tabindex="-1"
@@ -73,9 +73,9 @@ export class StrataFileChoice extends LitElement {
         accept=${this.accept}
         ?multiple=${multiple}
         ?disabled=${disabled}
-        @change=${this.on_chosen}
+        @change=${this.onChosen}
       />
-      <span class=${names.length > 0 ? "" : "hint"} role="status">${names.length > 0 ? format_list(names) : drop}</span>
+      <span class=${names.length > 0 ? "" : "hint"} role="status">${names.length > 0 ? formatList(names) : drop}</span>
     </div>`;
   }
 
@@ -85,9 +85,9 @@ export class StrataFileChoice extends LitElement {
     if (taken.length > 0) this.dispatchEvent(new CustomEvent<File[]>("files", { detail: taken }));
   }
 
-  private readonly on_chosen = (): void => {
-    const files = [...(this.input_.files ?? [])];
-    this.input_.value = ""; // so that the same one, mended, can be chosen again
+  private readonly onChosen = (): void => {
+    const files = [...(this._input.files ?? [])];
+    this._input.value = ""; // so that the same one, mended, can be chosen again
     this.take(files);
   };
 }

@@ -1,11 +1,11 @@
 // Words are larger in the windows of walls (page.css). What is laid out around them in pixels grows
 // with them.
 
-const kUsualSize_px = 16;
+const kUsualSizePx = 16;
 
 /** How much larger than usual. */
 export const growth = (): number =>
-  parseFloat(getComputedStyle(document.documentElement).fontSize) / kUsualSize_px;
+  parseFloat(getComputedStyle(document.documentElement).fontSize) / kUsualSizePx;
 
 /** A length in pixels where words have their usual size, as CSS has it when it grows with them. */
-export const growing = (length_px: number): string => `${length_px / kUsualSize_px}rem`;
+export const growing = (lengthPx: number): string => `${lengthPx / kUsualSizePx}rem`;

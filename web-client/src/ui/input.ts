@@ -16,11 +16,11 @@ export interface PointerSample {
 
 export interface GestureHandler {
   /** The tool's drag: left button, pen, or one finger. */
-  tool_down(sample: PointerSample): void;
-  tool_move(samples: PointerSample[]): void;
-  tool_up(): void;
+  toolDown(sample: PointerSample): void;
+  toolMove(samples: PointerSample[]): void;
+  toolUp(): void;
   /** A second finger came, or the system took the pointer away. What the tool did so far stands. */
-  tool_cancel(): void;
+  toolCancel(): void;
   orbit(dx: number, dy: number): void;
   pan(dx: number, dy: number): void;
   /** factor < 1 comes nearer; (x, y) stays in place. */
@@ -29,9 +29,9 @@ export interface GestureHandler {
   twist(angle: number): void;
   hover(sample: PointerSample | null): void;
   /** A mouse is there with nothing pressed; null: no longer, or something else points. */
-  free_mouse(sample: PointerSample | null): void;
+  freeMouse(sample: PointerSample | null): void;
   /** Where a pen is in use it alone has this tool, and one finger turns instead. */
-  tool_is_for_pen(): boolean;
+  toolIsForPen(): boolean;
 }
 
 type Drag = "tool" | "orbit" | "pan";
@@ -39,83 +39,83 @@ type Drag = "tool" | "orbit" | "pan";
 // A finger's tool starts once it has moved or rested so much: two fingers that land together then
 // paint no dab. A second one that comes later ends the stroke, which stays and can be undone.
 const kTouchSlop = 6; // CSS pixels
-const kTouchDelay_ms = 140;
-const kPenLinger_ms = 400; // between two strokes a pen leaves, and the hand that holds it stays
+const kTouchDelayMs = 140;
+const kPenLingerMs = 400; // between two strokes a pen leaves, and the hand that holds it stays
 // a pen in range tells of itself all the time; one that does not has gone without a word
-const kPenSilence_ms = 3000;
+const kPenSilenceMs = 3000;
 const kWheelStep = 0.0016; // per pixel of scrolling
 
 export class StageInput {
   /** Held space turns the tool button into orbit. */
-  orbit_held = false;
+  orbitHeld = false;
 
-  private readonly pointers_ = new Map<number, PointerSample>(); // CSS pixels within the element
-  private drag_: { kind: Drag; pointer: number; last: PointerSample } | null = null;
-  private waiting_touch_: {
+  private readonly _pointers = new Map<number, PointerSample>(); // CSS pixels within the element
+  private _drag: { kind: Drag; pointer: number; last: PointerSample } | null = null;
+  private _waitingTouch: {
     pointer: number;
     start: PointerSample;
     timer: ReturnType<typeof setTimeout>;
   } | null = null;
-  private pinch_: { distance: number; angle: number; middle: PointerSample } | null = null;
-  private pen_near_ = false; // or was just now
-  private pen_timer_: ReturnType<typeof setTimeout> | null = null;
-  private pen_used_ = false;
-  private readonly fingers_ = new Set<number>(); // of pointers_
+  private _pinch: { distance: number; angle: number; middle: PointerSample } | null = null;
+  private _penNear = false; // or was just now
+  private _penTimer: ReturnType<typeof setTimeout> | null = null;
+  private _penUsed = false;
+  private readonly _fingers = new Set<number>(); // of _pointers
   // touches that are not listened to, until they are lifted
-  private readonly palms_ = new Set<number>();
-  private readonly listeners_: [string, (event: never) => void, AddEventListenerOptions?][] = [];
+  private readonly _palms = new Set<number>();
+  private readonly _listeners: [string, (event: never) => void, AddEventListenerOptions?][] = [];
 
   constructor(
-    private readonly element_: HTMLElement,
-    private readonly handler_: GestureHandler,
+    private readonly _element: HTMLElement,
+    private readonly _handler: GestureHandler,
     /** Window pixels per CSS pixel. */
-    private readonly scale_: () => number,
+    private readonly _scale: () => number,
   ) {
-    this.listen("pointerdown", (event: PointerEvent) => this.on_down(event));
-    this.listen("pointermove", (event: PointerEvent) => this.on_move(event));
-    this.listen("pointerup", (event: PointerEvent) => this.on_up(event, false));
-    this.listen("pointercancel", (event: PointerEvent) => this.on_up(event, true));
+    this.listen("pointerdown", (event: PointerEvent) => this.onDown(event));
+    this.listen("pointermove", (event: PointerEvent) => this.onMove(event));
+    this.listen("pointerup", (event: PointerEvent) => this.onUp(event, false));
+    this.listen("pointercancel", (event: PointerEvent) => this.onUp(event, true));
     this.listen("pointerleave", (event: PointerEvent) => {
-      if (event.pointerType !== "touch" && !this.drag_) this.handler_.hover(null);
-      this.handler_.free_mouse(null);
-      if (event.pointerType === "pen") this.pen_is_near(kPenLinger_ms);
+      if (event.pointerType !== "touch" && !this._drag) this._handler.hover(null);
+      this._handler.freeMouse(null);
+      if (event.pointerType === "pen") this.penIsNear(kPenLingerMs);
     });
-    this.listen("wheel", (event: WheelEvent) => this.on_wheel(event), { passive: false });
+    this.listen("wheel", (event: WheelEvent) => this.onWheel(event), { passive: false });
     this.listen("contextmenu", (event: Event) => event.preventDefault());
     this.listen("dragstart", (event: Event) => event.preventDefault());
   }
 
   detach(): void {
-    for (const [name, listener] of this.listeners_)
-      this.element_.removeEventListener(name, listener as EventListener);
-    this.forget_waiting_touch();
-    if (this.pen_timer_) clearTimeout(this.pen_timer_);
+    for (const [name, listener] of this._listeners)
+      this._element.removeEventListener(name, listener as EventListener);
+    this.forgetWaitingTouch();
+    if (this._penTimer) clearTimeout(this._penTimer);
   }
 
-  /** `for_ms`: unless it is heard of again; null: until then. */
-  private pen_is_near(for_ms: number | null): void {
-    if (this.pen_timer_) clearTimeout(this.pen_timer_);
-    this.pen_timer_ = for_ms === null ? null : setTimeout(() => (this.pen_near_ = false), for_ms);
-    if (this.pen_near_) return;
-    this.pen_near_ = true;
-    this.drop_fingers();
+  /** `forMs`: unless it is heard of again; null: until then. */
+  private penIsNear(forMs: number | null): void {
+    if (this._penTimer) clearTimeout(this._penTimer);
+    this._penTimer = forMs === null ? null : setTimeout(() => (this._penNear = false), forMs);
+    if (this._penNear) return;
+    this._penNear = true;
+    this.dropFingers();
   }
 
   /** They were the hand that brought the pen. What they did so far stands. */
-  private drop_fingers(): void {
-    if (this.fingers_.size === 0) return;
-    this.forget_waiting_touch();
-    if (this.drag_ && this.fingers_.has(this.drag_.pointer)) {
-      if (this.drag_.kind === "tool") this.handler_.tool_cancel();
-      this.drag_ = null;
+  private dropFingers(): void {
+    if (this._fingers.size === 0) return;
+    this.forgetWaitingTouch();
+    if (this._drag && this._fingers.has(this._drag.pointer)) {
+      if (this._drag.kind === "tool") this._handler.toolCancel();
+      this._drag = null;
     }
-    this.pinch_ = null;
-    for (const finger of this.fingers_) {
-      this.pointers_.delete(finger);
-      this.palms_.add(finger);
+    this._pinch = null;
+    for (const finger of this._fingers) {
+      this._pointers.delete(finger);
+      this._palms.add(finger);
     }
-    this.fingers_.clear();
-    this.handler_.hover(null);
+    this._fingers.clear();
+    this._handler.hover(null);
   }
 
   private listen<E extends Event>(
@@ -123,139 +123,139 @@ export class StageInput {
     listener: (event: E) => void,
     options?: AddEventListenerOptions,
   ): void {
-    this.element_.addEventListener(name, listener as EventListener, options);
-    this.listeners_.push([name, listener, options]);
+    this._element.addEventListener(name, listener as EventListener, options);
+    this._listeners.push([name, listener, options]);
   }
 
-  private css_position(event: { clientX: number; clientY: number }): PointerSample {
-    const box = this.element_.getBoundingClientRect();
+  private cssPosition(event: { clientX: number; clientY: number }): PointerSample {
+    const box = this._element.getBoundingClientRect();
     return { x: event.clientX - box.left, y: event.clientY - box.top };
   }
 
-  private to_window(css: PointerSample): PointerSample {
-    const scale = this.scale_();
+  private toWindow(css: PointerSample): PointerSample {
+    const scale = this._scale();
     return { x: css.x * scale, y: css.y * scale };
   }
 
   /** Where it is, and how strongly a pen is pressed on. */
   private pressed(event: PointerEvent): PointerSample {
-    const at = this.to_window(this.css_position(event));
+    const at = this.toWindow(this.cssPosition(event));
     return event.pointerType === "pen" ? { ...at, pressure: event.pressure } : at;
   }
 
-  private on_down(event: PointerEvent): void {
+  private onDown(event: PointerEvent): void {
     if (event.pointerType === "pen") {
-      this.pen_used_ = true;
-      this.pen_is_near(null);
+      this._penUsed = true;
+      this.penIsNear(null);
     }
-    if (event.pointerType === "touch" && this.pen_near_) {
-      this.palms_.add(event.pointerId);
+    if (event.pointerType === "touch" && this._penNear) {
+      this._palms.add(event.pointerId);
       return;
     }
-    const at = this.css_position(event);
-    this.element_.setPointerCapture(event.pointerId);
-    this.pointers_.set(event.pointerId, at);
-    this.handler_.free_mouse(null);
+    const at = this.cssPosition(event);
+    this._element.setPointerCapture(event.pointerId);
+    this._pointers.set(event.pointerId, at);
+    this._handler.freeMouse(null);
     if (event.pointerType === "touch") {
-      this.fingers_.add(event.pointerId);
-      this.on_touch_down(event.pointerId, at);
+      this._fingers.add(event.pointerId);
+      this.onTouchDown(event.pointerId, at);
       return;
     }
-    if (this.drag_) return;
+    if (this._drag) return;
     event.preventDefault();
-    this.element_.focus({ preventScroll: true });
-    const kind = drag_of(event, this.orbit_held);
+    this._element.focus({ preventScroll: true });
+    const kind = dragOf(event, this.orbitHeld);
     if (!kind) return;
-    this.drag_ = { kind, pointer: event.pointerId, last: at };
-    if (kind === "tool") this.handler_.tool_down(this.pressed(event));
+    this._drag = { kind, pointer: event.pointerId, last: at };
+    if (kind === "tool") this._handler.toolDown(this.pressed(event));
   }
 
-  private on_touch_down(pointer: number, at: PointerSample): void {
-    if (this.pointers_.size === 1) {
-      const timer = setTimeout(() => this.start_touch_tool(), kTouchDelay_ms);
-      this.waiting_touch_ = { pointer, start: at, timer };
+  private onTouchDown(pointer: number, at: PointerSample): void {
+    if (this._pointers.size === 1) {
+      const timer = setTimeout(() => this.startTouchTool(), kTouchDelayMs);
+      this._waitingTouch = { pointer, start: at, timer };
       return;
     }
-    this.forget_waiting_touch();
-    if (this.drag_?.kind === "tool") this.handler_.tool_cancel();
-    this.drag_ = null;
-    this.pinch_ = this.pinch_now();
-    this.handler_.hover(null);
+    this.forgetWaitingTouch();
+    if (this._drag?.kind === "tool") this._handler.toolCancel();
+    this._drag = null;
+    this._pinch = this.pinchNow();
+    this._handler.hover(null);
   }
 
-  private start_touch_tool(): void {
-    const waiting = this.waiting_touch_;
+  private startTouchTool(): void {
+    const waiting = this._waitingTouch;
     if (!waiting) return;
-    this.forget_waiting_touch();
-    const kind = this.pen_used_ && this.handler_.tool_is_for_pen() ? "orbit" : "tool";
-    this.drag_ = { kind, pointer: waiting.pointer, last: waiting.start };
-    if (kind === "tool") this.handler_.tool_down(this.to_window(waiting.start));
+    this.forgetWaitingTouch();
+    const kind = this._penUsed && this._handler.toolIsForPen() ? "orbit" : "tool";
+    this._drag = { kind, pointer: waiting.pointer, last: waiting.start };
+    if (kind === "tool") this._handler.toolDown(this.toWindow(waiting.start));
   }
 
-  private forget_waiting_touch(): void {
-    if (this.waiting_touch_) clearTimeout(this.waiting_touch_.timer);
-    this.waiting_touch_ = null;
+  private forgetWaitingTouch(): void {
+    if (this._waitingTouch) clearTimeout(this._waitingTouch.timer);
+    this._waitingTouch = null;
   }
 
-  private on_move(event: PointerEvent): void {
-    if (this.palms_.has(event.pointerId)) return;
+  private onMove(event: PointerEvent): void {
+    if (this._palms.has(event.pointerId)) return;
     if (event.pointerType === "pen")
-      this.pen_is_near(this.pointers_.has(event.pointerId) ? null : kPenSilence_ms);
-    const at = this.css_position(event);
-    if (this.pointers_.has(event.pointerId)) this.pointers_.set(event.pointerId, at);
-    if (this.pinch_) {
-      this.on_pinch();
+      this.penIsNear(this._pointers.has(event.pointerId) ? null : kPenSilenceMs);
+    const at = this.cssPosition(event);
+    if (this._pointers.has(event.pointerId)) this._pointers.set(event.pointerId, at);
+    if (this._pinch) {
+      this.onPinch();
       return;
     }
-    if (event.pointerType !== "touch") this.handler_.hover(this.to_window(at));
-    this.handler_.free_mouse(
-      event.pointerType === "mouse" && event.buttons === 0 ? this.to_window(at) : null,
+    if (event.pointerType !== "touch") this._handler.hover(this.toWindow(at));
+    this._handler.freeMouse(
+      event.pointerType === "mouse" && event.buttons === 0 ? this.toWindow(at) : null,
     );
-    const waiting = this.waiting_touch_;
+    const waiting = this._waitingTouch;
     if (waiting?.pointer === event.pointerId) {
       if (Math.hypot(at.x - waiting.start.x, at.y - waiting.start.y) < kTouchSlop) return;
-      this.start_touch_tool();
+      this.startTouchTool();
     }
-    const drag = this.drag_;
+    const drag = this._drag;
     if (drag?.pointer !== event.pointerId) return;
-    const scale = this.scale_();
+    const scale = this._scale();
     const [dx, dy] = [(at.x - drag.last.x) * scale, (at.y - drag.last.y) * scale];
     drag.last = at;
-    if (drag.kind === "orbit") this.handler_.orbit(dx, dy);
-    else if (drag.kind === "pan") this.handler_.pan(dx, dy);
+    if (drag.kind === "orbit") this._handler.orbit(dx, dy);
+    else if (drag.kind === "pan") this._handler.pan(dx, dy);
     else {
       const events = event.getCoalescedEvents?.() ?? [];
       const samples = (events.length > 0 ? events : [event]).map((each) => this.pressed(each));
-      if (event.pointerType === "touch") this.handler_.hover(this.to_window(at));
-      this.handler_.tool_move(samples);
+      if (event.pointerType === "touch") this._handler.hover(this.toWindow(at));
+      this._handler.toolMove(samples);
     }
   }
 
-  private on_up(event: PointerEvent, cancelled: boolean): void {
-    if (this.palms_.delete(event.pointerId)) return;
-    if (event.pointerType === "pen") this.pen_is_near(kPenSilence_ms);
-    this.fingers_.delete(event.pointerId);
-    if (!this.pointers_.delete(event.pointerId)) return;
-    if (this.pinch_) {
-      this.pinch_ = this.pointers_.size >= 2 ? this.pinch_now() : null;
+  private onUp(event: PointerEvent, cancelled: boolean): void {
+    if (this._palms.delete(event.pointerId)) return;
+    if (event.pointerType === "pen") this.penIsNear(kPenSilenceMs);
+    this._fingers.delete(event.pointerId);
+    if (!this._pointers.delete(event.pointerId)) return;
+    if (this._pinch) {
+      this._pinch = this._pointers.size >= 2 ? this.pinchNow() : null;
       return;
     }
-    if (this.waiting_touch_?.pointer === event.pointerId) {
-      if (cancelled) this.forget_waiting_touch();
-      else this.start_touch_tool(); // a tap: the tool's dab
+    if (this._waitingTouch?.pointer === event.pointerId) {
+      if (cancelled) this.forgetWaitingTouch();
+      else this.startTouchTool(); // a tap: the tool's dab
     }
-    if (this.drag_?.pointer !== event.pointerId) return;
-    const { kind } = this.drag_;
-    this.drag_ = null;
+    if (this._drag?.pointer !== event.pointerId) return;
+    const { kind } = this._drag;
+    this._drag = null;
     if (kind === "tool") {
-      if (cancelled) this.handler_.tool_cancel();
-      else this.handler_.tool_up();
+      if (cancelled) this._handler.toolCancel();
+      else this._handler.toolUp();
     }
-    if (event.pointerType === "touch") this.handler_.hover(null);
+    if (event.pointerType === "touch") this._handler.hover(null);
   }
 
-  private pinch_now(): { distance: number; angle: number; middle: PointerSample } | null {
-    const [a, b] = [...this.pointers_.values()];
+  private pinchNow(): { distance: number; angle: number; middle: PointerSample } | null {
+    const [a, b] = [...this._pointers.values()];
     if (!a || !b) return null;
     return {
       distance: Math.max(1, Math.hypot(b.x - a.x, b.y - a.y)),
@@ -264,33 +264,33 @@ export class StageInput {
     };
   }
 
-  private on_pinch(): void {
-    const before = this.pinch_;
-    const now = this.pinch_now();
+  private onPinch(): void {
+    const before = this._pinch;
+    const now = this.pinchNow();
     if (!before || !now) return;
-    this.pinch_ = now;
-    const scale = this.scale_();
-    this.handler_.pan(
+    this._pinch = now;
+    const scale = this._scale();
+    this._handler.pan(
       (now.middle.x - before.middle.x) * scale,
       (now.middle.y - before.middle.y) * scale,
     );
-    this.handler_.zoom(before.distance / now.distance, now.middle.x * scale, now.middle.y * scale);
+    this._handler.zoom(before.distance / now.distance, now.middle.x * scale, now.middle.y * scale);
     const turn = now.angle - before.angle;
-    this.handler_.twist(Math.atan2(Math.sin(turn), Math.cos(turn)));
+    this._handler.twist(Math.atan2(Math.sin(turn), Math.cos(turn)));
   }
 
-  private on_wheel(event: WheelEvent): void {
+  private onWheel(event: WheelEvent): void {
     event.preventDefault();
-    const at = this.to_window(this.css_position(event));
+    const at = this.toWindow(this.cssPosition(event));
     const pixels = event.deltaY * (event.deltaMode === 1 ? 33 : event.deltaMode === 2 ? 400 : 1);
-    const pinch_boost = event.ctrlKey ? 6 : 1; // a touchpad's pinch comes as small ctrl-wheel steps
-    const step = Math.max(-240, Math.min(240, pixels * pinch_boost));
-    this.handler_.zoom(Math.exp(step * kWheelStep), at.x, at.y);
+    const pinchBoost = event.ctrlKey ? 6 : 1; // a touchpad's pinch comes as small ctrl-wheel steps
+    const step = Math.max(-240, Math.min(240, pixels * pinchBoost));
+    this._handler.zoom(Math.exp(step * kWheelStep), at.x, at.y);
   }
 }
 
-function drag_of(event: PointerEvent, orbit_held: boolean): Drag | null {
-  if (event.button === 0) return orbit_held ? "orbit" : "tool";
+function dragOf(event: PointerEvent, orbitHeld: boolean): Drag | null {
+  if (event.button === 0) return orbitHeld ? "orbit" : "tool";
   if (event.button === 1) return "pan";
   if (event.button === 2) return event.shiftKey ? "pan" : "orbit";
   return null;

@@ -6,7 +6,7 @@
  * Whether the event's innermost target takes typed text or has its own use for keys, or lies in
  * something open.
  */
-export function is_for_field(event: KeyboardEvent): boolean {
+export function isForField(event: KeyboardEvent): boolean {
   const path = event.composedPath(); // across shadow roots, which closest() does not leave
   const [target] = path;
   if (!(target instanceof HTMLElement)) return false;
@@ -19,13 +19,13 @@ export function is_for_field(event: KeyboardEvent): boolean {
 }
 
 /** Where an arrow key leads from the choice `at` of `count`; null for other keys. */
-export function arrow_step(key: string, at: number, count: number): number | null {
+export function arrowStep(key: string, at: number, count: number): number | null {
   const step = { ArrowDown: 1, ArrowRight: 1, ArrowUp: -1, ArrowLeft: -1 }[key];
   return step === undefined || count === 0 ? null : (at + step + count) % count;
 }
 
 /** The innermost element that takes keys; null: none in particular. */
-export function has_keyboard(): HTMLElement | null {
+export function hasKeyboard(): HTMLElement | null {
   let active = document.activeElement;
   while (active?.shadowRoot?.activeElement) active = active.shadowRoot.activeElement;
   return active instanceof HTMLElement && active !== document.body ? active : null;

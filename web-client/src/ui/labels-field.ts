@@ -3,24 +3,24 @@
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import {
-  descriptions_of,
+  descriptionsOf,
   kCommonLanguages,
-  labels_of,
-  name_of_language,
-  rows_of,
-  well_written_tag,
+  labelsOf,
+  nameOfLanguage,
+  rowsOf,
+  wellWrittenTag,
   type LabelRow,
 } from "../core/languages";
-import { compare_words } from "../core/locale";
+import { compareWords } from "../core/locale";
 import type { Labels } from "../core/protocol.gen";
 import { icon } from "./icons";
-import { shared_styles } from "./styles";
+import { sharedStyles } from "./styles";
 import { texts } from "../texts";
 
 const words = texts.labels;
 const offered = kCommonLanguages
-  .map((tag) => ({ tag, name: name_of_language(tag) }))
-  .sort((a, b) => compare_words(a.name, b.name));
+  .map((tag) => ({ tag, name: nameOfLanguage(tag) }))
+  .sort((a, b) => compareWords(a.name, b.name));
 
 @customElement("strata-labels-field")
 export class StrataLabelsField extends LitElement {
@@ -28,12 +28,12 @@ export class StrataLabelsField extends LitElement {
   @property({ attribute: false }) labels: Labels = {};
   /** Of things that have a description in each language, too. */
   @property({ attribute: false }) descriptions: Labels | null = null;
-  @state() private rows_: LabelRow[] = [];
-  @state() private problem_ = "";
-  @state() private wrong_: number[] = []; // rows that the problem is about
+  @state() private _rows: LabelRow[] = [];
+  @state() private _problem = "";
+  @state() private _wrong: number[] = []; // rows that the problem is about
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host,
       .rows {
@@ -61,20 +61,20 @@ export class StrataLabelsField extends LitElement {
 
   override willUpdate(changed: PropertyValues<this>): void {
     if (changed.has("labels") || changed.has("descriptions"))
-      this.rows_ = rows_of(this.labels, this.descriptions ?? {});
+      this._rows = rowsOf(this.labels, this.descriptions ?? {});
   }
 
   override render(): TemplateResult {
     return html`<span class="caption" id="caption">${words.title}</span>
-      <div class="rows" role="group" aria-labelledby="caption" ?hidden=${this.rows_.length === 0}>${this.rows_.map((row, index) => this.row(row, index))}</div>
-      ${this.problem_ ? html`<span class="error" id="problem" role="alert">${this.problem_}</span>` : nothing}
+      <div class="rows" role="group" aria-labelledby="caption" ?hidden=${this._rows.length === 0}>${this._rows.map((row, index) => this.row(row, index))}</div>
+      ${this._problem ? html`<span class="error" id="problem" role="alert">${this._problem}</span>` : nothing}
       <button type="button" class="add" @click=${() => void this.add()}>${icon("plus")}${words.add}</button>
       <datalist id="languages">${offered.map(({ tag, name }) => html`<option value=${tag} label=${name}></option>`)}</datalist>`;
   }
 
   private row({ language, label, description = "" }: LabelRow, index: number): TemplateResult {
-    const name = name_of_language(language);
-    const wrong = this.wrong_.includes(index);
+    const name = nameOfLanguage(language);
+    const wrong = this._wrong.includes(index);
     return html`<div>
       <input
         type="text"
@@ -90,7 +90,7 @@ export class StrataLabelsField extends LitElement {
         title=${name}
         .value=${language}
         @input=${(event: Event) => this.change(index, { language: (event.target as HTMLInputElement).value })}
-        @change=${() => this.change(index, { language: well_written_tag(this.rows_[index]!.language.trim()) ?? this.rows_[index]!.language.trim() })}
+        @change=${() => this.change(index, { language: wellWrittenTag(this._rows[index]!.language.trim()) ?? this._rows[index]!.language.trim() })}
       />
       <input
         type="text"
@@ -101,7 +101,7 @@ export class StrataLabelsField extends LitElement {
         .value=${label}
         @input=${(event: Event) => this.change(index, { label: (event.target as HTMLInputElement).value })}
       />
-      <button type="button" class="icon quiet" aria-label=${words.remove(name || language)} title=${words.remove(name || language)} @click=${() => this.remove_row(index)}>
+      <button type="button" class="icon quiet" aria-label=${words.remove(name || language)} title=${words.remove(name || language)} @click=${() => this.removeRow(index)}>
         ${icon("close")}
       </button>
       ${
@@ -121,14 +121,14 @@ export class StrataLabelsField extends LitElement {
   }
 
   /** Of what read() takes. */
-  get written_descriptions(): Labels {
-    return descriptions_of(this.rows_);
+  get writtenDescriptions(): Labels {
+    return descriptionsOf(this._rows);
   }
 
   /** Null: something is wrong with a row, and said there. */
   read(): Labels | null {
     this.tell("", []);
-    const read = labels_of(this.rows_);
+    const read = labelsOf(this._rows);
     if ("labels" in read) return read.labels;
     this.tell(words[read.wrong], [read.row]);
     return null;
@@ -141,36 +141,36 @@ export class StrataLabelsField extends LitElement {
   refuse(problem: string): void {
     this.tell(
       problem,
-      this.rows_.flatMap(({ language, label }, index) =>
-        label.trim() !== "" && !well_written_tag(language.trim()) ? index : [],
+      this._rows.flatMap(({ language, label }, index) =>
+        label.trim() !== "" && !wellWrittenTag(language.trim()) ? index : [],
       ),
     );
   }
 
   private tell(problem: string, rows: number[]): void {
-    this.problem_ = problem;
-    this.wrong_ = rows;
+    this._problem = problem;
+    this._wrong = rows;
     const [first] = rows;
-    if (first !== undefined) this.language_input(first)?.focus();
+    if (first !== undefined) this.languageInput(first)?.focus();
   }
 
-  private language_input(row: number): HTMLInputElement | null {
+  private languageInput(row: number): HTMLInputElement | null {
     return this.renderRoot.querySelectorAll<HTMLInputElement>("input.language")[row] ?? null;
   }
 
   private change(index: number, change: Partial<LabelRow>): void {
-    if (this.wrong_.includes(index)) this.tell("", []);
-    this.rows_ = this.rows_.map((row, at) => (at === index ? { ...row, ...change } : row));
+    if (this._wrong.includes(index)) this.tell("", []);
+    this._rows = this._rows.map((row, at) => (at === index ? { ...row, ...change } : row));
   }
 
-  private remove_row(index: number): void {
+  private removeRow(index: number): void {
     this.tell("", []);
-    this.rows_ = this.rows_.filter((_, at) => at !== index);
+    this._rows = this._rows.filter((_, at) => at !== index);
   }
 
   private async add(): Promise<void> {
-    this.rows_ = [...this.rows_, { language: "", label: "" }];
+    this._rows = [...this._rows, { language: "", label: "" }];
     await this.updateComplete;
-    this.language_input(this.rows_.length - 1)?.focus();
+    this.languageInput(this._rows.length - 1)?.focus();
   }
 }

@@ -3,9 +3,9 @@
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
-import { angles_of, direction_of, on_pad, pad_point, type PadPoint } from "../math/light";
+import { anglesOf, directionOf, onPad, padPoint, type PadPoint } from "../math/light";
 import type { Point3 } from "../core/protocol.gen";
-import { shared_styles } from "./styles";
+import { sharedStyles } from "./styles";
 import { styled } from "./styled";
 import { texts } from "../texts";
 
@@ -20,10 +20,10 @@ const kKeys: Record<string, [number, number]> = {
 @customElement("strata-light-pad")
 export class StrataLightPad extends LitElement {
   @property({ attribute: false }) direction: Point3 = [0, 0, 1];
-  @query(".pad") private pad_!: HTMLElement;
+  @query(".pad") private _pad!: HTMLElement;
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: grid;
@@ -79,8 +79,8 @@ export class StrataLightPad extends LitElement {
   ];
 
   override render(): TemplateResult {
-    const point = pad_point(this.direction);
-    const { from, above } = angles_of(point);
+    const point = padPoint(this.direction);
+    const { from, above } = anglesOf(point);
     const place = { "--x": `${50 + 50 * point.x}%`, "--y": `${50 - 50 * point.y}%` };
     return html`<div
         class="pad"
@@ -92,8 +92,8 @@ export class StrataLightPad extends LitElement {
         aria-valuenow=${from}
         aria-valuetext=${texts.view.light_from(from, above)}
         ${styled(place)}
-        @pointerdown=${this.on_down}
-        @keydown=${this.on_key}
+        @pointerdown=${this.onDown}
+        @keydown=${this.onKey}
       >
         <span class="handle"></span>
       </div>
@@ -101,12 +101,12 @@ export class StrataLightPad extends LitElement {
   }
 
   private choose(point: PadPoint): void {
-    this.direction = direction_of(point);
+    this.direction = directionOf(point);
     this.dispatchEvent(new CustomEvent<Point3>("direction", { detail: this.direction }));
   }
 
-  private on_down(event: PointerEvent): void {
-    const pad = this.pad_;
+  private onDown(event: PointerEvent): void {
+    const pad = this._pad;
     pad.setPointerCapture(event.pointerId);
     const move = (moved: PointerEvent): void => {
       const box = pad.getBoundingClientRect();
@@ -126,12 +126,12 @@ export class StrataLightPad extends LitElement {
     move(event);
   }
 
-  private on_key(event: KeyboardEvent): void {
+  private onKey(event: KeyboardEvent): void {
     const step = kKeys[event.key];
     if (!step) return;
     event.preventDefault();
     event.stopPropagation();
-    const { x, y } = pad_point(this.direction);
-    this.choose(on_pad({ x: x + step[0] * kKeyStep, y: y + step[1] * kKeyStep }));
+    const { x, y } = padPoint(this.direction);
+    this.choose(onPad({ x: x + step[0] * kKeyStep, y: y + step[1] * kKeyStep }));
   }
 }

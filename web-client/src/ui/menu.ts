@@ -4,7 +4,7 @@
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
 import { icon, type IconName } from "./icons";
-import { shared_styles } from "./styles";
+import { sharedStyles } from "./styles";
 
 @customElement("strata-menu")
 export class StrataMenu extends LitElement {
@@ -16,11 +16,11 @@ export class StrataMenu extends LitElement {
   @property({ type: Boolean, reflect: true }) wide = false;
   @property() side: "below" | "right" = "below";
 
-  @query("button") private button_!: HTMLButtonElement;
-  @query(".list") private list_!: HTMLElement;
+  @query("button") private _button!: HTMLButtonElement;
+  @query(".list") private _list!: HTMLElement;
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: inline-block;
@@ -79,39 +79,39 @@ export class StrataMenu extends LitElement {
       >
         <slot name="face">${icon(this.glyph)}</slot>
       </button>
-      <div class="list" popover="auto" role="menu" @click=${this.closing_} @keydown=${this.on_key} @beforetoggle=${this.on_before_toggle} @toggle=${this.on_toggle}>
+      <div class="list" popover="auto" role="menu" @click=${this._closing} @keydown=${this.onKey} @beforetoggle=${this.onBeforeToggle} @toggle=${this.onToggle}>
         <slot @click=${(event: Event) => event.stopPropagation()}></slot>
       </div>`;
   }
 
   private open(event: Event): void {
     event.stopPropagation();
-    this.list_.showPopover();
+    this._list.showPopover();
     this.place();
     addEventListener("resize", this.place);
-    this.grown_.observe(this.list_);
+    this._grown.observe(this._list);
   }
 
   private readonly place = (): void => {
-    const anchor = this.button_.getBoundingClientRect();
-    const box = this.list_.getBoundingClientRect();
+    const anchor = this._button.getBoundingClientRect();
+    const box = this._list.getBoundingClientRect();
     const margin = 8;
     const left = this.side === "right" ? anchor.right + 6 : anchor.right - box.width;
     const top = this.side === "right" ? anchor.top : anchor.bottom + 4;
-    this.list_.style.left = `${Math.max(margin, Math.min(left, innerWidth - box.width - margin))}px`;
-    this.list_.style.top = `${Math.max(margin, Math.min(top, innerHeight - box.height - margin))}px`;
+    this._list.style.left = `${Math.max(margin, Math.min(left, innerWidth - box.width - margin))}px`;
+    this._list.style.top = `${Math.max(margin, Math.min(top, innerHeight - box.height - margin))}px`;
   };
 
   /**
    * Commands come and go while it is open: in a narrower window it takes up what stood beside it.
    */
-  private readonly grown_ = new ResizeObserver(this.place);
+  private readonly _grown = new ResizeObserver(this.place);
 
   /**
    * Before the command hears of it: a dialog that it opens gives the focus back to this menu's
    * button, which has it by then.
    */
-  private readonly closing_ = { handleEvent: (): void => this.list_.hidePopover(), capture: true };
+  private readonly _closing = { handleEvent: (): void => this._list.hidePopover(), capture: true };
 
   private items(): HTMLButtonElement[] {
     return [...this.querySelectorAll("button")].filter((button) => !button.disabled);
@@ -121,12 +121,12 @@ export class StrataMenu extends LitElement {
    * The browser does not give the focus back from slotted buttons, which are no descendants of the
    * list.
    */
-  private on_before_toggle(event: ToggleEvent): void {
+  private onBeforeToggle(event: ToggleEvent): void {
     if (event.newState === "closed" && this.items().some((item) => item.matches(":focus")))
-      this.button_.focus();
+      this._button.focus();
   }
 
-  private on_toggle(event: ToggleEvent): void {
+  private onToggle(event: ToggleEvent): void {
     if (event.newState === "open") this.items()[0]?.focus();
     else this.stay();
   }
@@ -138,10 +138,10 @@ export class StrataMenu extends LitElement {
 
   private stay(): void {
     removeEventListener("resize", this.place);
-    this.grown_.disconnect();
+    this._grown.disconnect();
   }
 
-  private on_key(event: KeyboardEvent): void {
+  private onKey(event: KeyboardEvent): void {
     const items = this.items();
     const at = items.indexOf(
       document.activeElement?.shadowRoot?.activeElement as HTMLButtonElement,

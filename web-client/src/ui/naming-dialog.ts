@@ -2,10 +2,10 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError, new_id } from "../net/api";
+import { ApiError, newId } from "../net/api";
 import "./dialog";
 import type { StrataDialog } from "./dialog";
-import { form_styles, shared_styles } from "./styles";
+import { formStyles, sharedStyles } from "./styles";
 import { texts } from "../texts";
 
 export interface Called {
@@ -29,7 +29,7 @@ export interface NamingWords {
   text_hint?: string;
 }
 
-const option_field = ({ label, hint, checked }: NamingOption): TemplateResult =>
+const optionField = ({ label, hint, checked }: NamingOption): TemplateResult =>
   html`<label class="check"><input type="checkbox" aria-describedby="option-hint" .defaultChecked=${checked} />${label}</label>
     <p class="hint" id="option-hint">${hint}</p>`;
 
@@ -54,18 +54,18 @@ export class StrataNamingDialog extends LitElement {
     key: string,
     checked: boolean,
   ) => Promise<string>;
-  @state() private problem_ = "";
-  @state() private busy_ = false;
-  @query("strata-dialog") private dialog_!: StrataDialog;
-  @query("form") private form_!: HTMLFormElement;
-  @query("input") private name_!: HTMLInputElement;
-  @query("textarea") private text_!: HTMLTextAreaElement;
-  @query("input[type=checkbox]") private option_!: HTMLInputElement | null;
-  private key_ = new_id();
+  @state() private _problem = "";
+  @state() private _busy = false;
+  @query("strata-dialog") private _dialog!: StrataDialog;
+  @query("form") private _form!: HTMLFormElement;
+  @query("input") private _name!: HTMLInputElement;
+  @query("textarea") private _text!: HTMLTextAreaElement;
+  @query("input[type=checkbox]") private _option!: HTMLInputElement | null;
+  private _key = newId();
 
   static override styles = [
-    shared_styles,
-    form_styles,
+    sharedStyles,
+    formStyles,
     css`
       textarea {
         min-height: 96px;
@@ -77,7 +77,7 @@ export class StrataNamingDialog extends LitElement {
     const { words, called } = this;
     return html`<strata-dialog ?aside=${this.aside} heading=${this.heading} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       ${this.lead ? html`<p class="hint">${this.lead}</p>` : nothing}
-      <form @submit=${this.on_submit} @input=${this.on_input}>
+      <form @submit=${this.onSubmit} @input=${this.onInput}>
         <label class="field">
           <span>${words.name}</span>
           <input type="text" required maxlength="200" autocomplete="off" autofocus .defaultValue=${called?.name ?? ""} placeholder=${called ? "" : words.name_hint} />
@@ -86,39 +86,39 @@ export class StrataNamingDialog extends LitElement {
           <span>${words.text}</span>
           <textarea maxlength="10000" .defaultValue=${called?.text ?? ""} placeholder=${words.text_hint ?? ""}></textarea>
         </label>
-        ${this.option ? option_field(this.option) : nothing}
+        ${this.option ? optionField(this.option) : nothing}
       </form>
-      <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
-      <button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => this.form_.requestSubmit()}>${this.yes}</button>
+      <p class="error" role="alert" ?hidden=${!this._problem}>${this._problem}</p>
+      <button slot="actions" class="primary" ?disabled=${this._busy} @click=${() => this._form.requestSubmit()}>${this.yes}</button>
     </strata-dialog>`;
   }
 
-  private readonly on_input = (): void => {
-    this.key_ = new_id();
-    this.problem_ = "";
+  private readonly onInput = (): void => {
+    this._key = newId();
+    this._problem = "";
   };
 
-  private readonly on_submit = (event: Event): void => {
+  private readonly onSubmit = (event: Event): void => {
     event.preventDefault();
-    const called = { name: this.name_.value.trim(), text: this.text_.value.trim() };
+    const called = { name: this._name.value.trim(), text: this._text.value.trim() };
     if (called.name === "") {
-      this.problem_ = this.words.name_empty;
-      this.name_.focus();
-    } else if (!this.busy_) {
+      this._problem = this.words.name_empty;
+      this._name.focus();
+    } else if (!this._busy) {
       void this.attempt(called);
     }
   };
 
   private async attempt(called: Called): Promise<void> {
-    this.busy_ = true;
+    this._busy = true;
     try {
-      this.problem_ = await this.save(called, this.key_, this.option_?.checked ?? false);
-      if (this.problem_ === "") this.dialog_.close();
+      this._problem = await this.save(called, this._key, this._option?.checked ?? false);
+      if (this._problem === "") this._dialog.close();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.problem_ = error.message;
+      this._problem = error.message;
     } finally {
-      this.busy_ = false;
+      this._busy = false;
     }
   }
 }

@@ -19,37 +19,37 @@ export type NoticeLink = { label: string } & ({ href: string } | { act: () => vo
 
 type Listener = (notices: readonly Notice[]) => void;
 
-const kShown_ms: Record<NoticeKind, number> = { info: 5000, success: 4000, problem: 12_000 };
-const kShownToAct_ms = 12_000;
+const kShownMs: Record<NoticeKind, number> = { info: 5000, success: 4000, problem: 12_000 };
+const kShownToActMs = 12_000;
 const kMostNotices = 4;
 
 class Notices {
-  private notices_: Notice[] = [];
-  private next_id_ = 1;
-  private readonly listeners_ = new Set<Listener>();
+  private _notices: Notice[] = [];
+  private _nextId = 1;
+  private readonly _listeners = new Set<Listener>();
 
   subscribe(listener: Listener): () => void {
-    this.listeners_.add(listener);
-    listener(this.notices_);
-    return () => this.listeners_.delete(listener);
+    this._listeners.add(listener);
+    listener(this._notices);
+    return () => this._listeners.delete(listener);
   }
 
   /** Returns its id. */
   show(kind: NoticeKind, title: string, detail = "", link: NoticeLink | null = null): number {
     // what one may do stays
-    const same = this.notices_.find(
+    const same = this._notices.find(
       (notice) =>
         notice.title === title &&
         notice.detail === detail &&
         !(notice.link && "act" in notice.link),
     );
     if (same) this.dismiss(same.id);
-    const notice = { id: this.next_id_++, kind, title, detail, link };
-    this.notices_ = [...this.notices_, notice].slice(-kMostNotices);
+    const notice = { id: this._nextId++, kind, title, detail, link };
+    this._notices = [...this._notices, notice].slice(-kMostNotices);
     this.tell();
     setTimeout(
       () => this.dismiss(notice.id),
-      link && "act" in link ? kShownToAct_ms : kShown_ms[kind],
+      link && "act" in link ? kShownToActMs : kShownMs[kind],
     );
     return notice.id;
   }
@@ -64,14 +64,14 @@ class Notices {
   }
 
   dismiss(id: number): void {
-    const kept = this.notices_.filter((notice) => notice.id !== id);
-    if (kept.length === this.notices_.length) return;
-    this.notices_ = kept;
+    const kept = this._notices.filter((notice) => notice.id !== id);
+    if (kept.length === this._notices.length) return;
+    this._notices = kept;
     this.tell();
   }
 
   private tell(): void {
-    for (const listener of this.listeners_) listener(this.notices_);
+    for (const listener of this._listeners) listener(this._notices);
   }
 }
 

@@ -4,7 +4,7 @@
 
 import { html, noChange, type TemplateResult } from "lit";
 import { ifDefined } from "lit/directives/if-defined.js";
-import { read_number, typed_number } from "../core/locale";
+import { readNumber, typedNumber } from "../core/locale";
 
 export interface NumberInput {
   /** A text: as it was typed. NaN leaves what is in the field. */
@@ -19,15 +19,15 @@ export interface NumberInput {
   max?: number;
   wrong?: boolean;
   disabled?: boolean;
-  /** With what is in the field, to be read by read_number(). */
+  /** With what is in the field, to be read by readNumber(). */
   typed?(text: string): void;
   /** Once it is left, or Enter is pressed. */
   changed?(text: string, input: HTMLInputElement): void;
 }
 
-export function number_input(field: NumberInput): TemplateResult {
+export function numberInput(field: NumberInput): TemplateResult {
   const { value, typed, changed } = field;
-  const input_of = (event: Event): HTMLInputElement => event.target as HTMLInputElement;
+  const inputOf = (event: Event): HTMLInputElement => event.target as HTMLInputElement;
   return html`<input
     type="text"
     inputmode="decimal"
@@ -38,21 +38,21 @@ export function number_input(field: NumberInput): TemplateResult {
     placeholder=${ifDefined(field.placeholder)}
     aria-invalid=${field.wrong ? "true" : "false"}
     ?disabled=${field.disabled ?? false}
-    .value=${typeof value === "string" ? value : Number.isNaN(value) ? noChange : typed_number(value)}
-    @input=${(event: Event) => typed?.(input_of(event).value)}
-    @change=${(event: Event) => changed?.(input_of(event).value, input_of(event))}
-    @keydown=${(event: KeyboardEvent) => on_step(event, field)}
+    .value=${typeof value === "string" ? value : Number.isNaN(value) ? noChange : typedNumber(value)}
+    @input=${(event: Event) => typed?.(inputOf(event).value)}
+    @change=${(event: Event) => changed?.(inputOf(event).value, inputOf(event))}
+    @keydown=${(event: KeyboardEvent) => onStep(event, field)}
   />`;
 }
 
 /** The arrow keys count up and down by one. */
-function on_step(event: KeyboardEvent, { min = -Infinity, max = Infinity }: NumberInput): void {
+function onStep(event: KeyboardEvent, { min = -Infinity, max = Infinity }: NumberInput): void {
   const step = event.key === "ArrowUp" ? 1 : event.key === "ArrowDown" ? -1 : 0;
   const input = event.target as HTMLInputElement;
-  const now = read_number(input.value);
+  const now = readNumber(input.value);
   if (step === 0 || Number.isNaN(now)) return;
   event.preventDefault();
-  input.value = typed_number(Number(Math.min(max, Math.max(min, now + step)).toPrecision(12)));
+  input.value = typedNumber(Number(Math.min(max, Math.max(min, now + step)).toPrecision(12)));
   for (const type of ["input", "change"])
     input.dispatchEvent(new Event(type, { bubbles: true, composed: true }));
 }

@@ -5,9 +5,9 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { moved } from "../domain/tours";
-import { add_from, add_from_styles } from "./add-from";
+import { addFrom, addFromStyles } from "./add-from";
 import { icon, type IconName } from "./icons";
-import { shared_styles } from "./styles";
+import { sharedStyles } from "./styles";
 import { texts } from "../texts";
 
 export interface OrderedThing {
@@ -22,7 +22,7 @@ const words = texts.ordered_choice;
 export class StrataOrderedChoice extends LitElement {
   @property() label = "";
   /** On the button. */
-  @property() add_label = "";
+  @property({ attribute: "add_label" }) addLabel = "";
   @property({ attribute: false }) things: readonly OrderedThing[] = [];
   @property({ attribute: false }) chosen: readonly string[] = [];
   @property({ type: Number }) most = Infinity;
@@ -32,8 +32,8 @@ export class StrataOrderedChoice extends LitElement {
   @property({ attribute: false }) more: ((value: string) => unknown) | null = null;
 
   static override styles = [
-    shared_styles,
-    add_from_styles,
+    sharedStyles,
+    addFromStyles,
     css`
       :host {
         display: grid;
@@ -115,7 +115,7 @@ export class StrataOrderedChoice extends LitElement {
     }
       ${
         others.length > 0 && chosen.length < this.most
-          ? add_from(this.add_label, others, (value) => this.put([...chosen, value]))
+          ? addFrom(this.addLabel, others, (value) => this.put([...chosen, value]))
           : nothing
       }`;
   }

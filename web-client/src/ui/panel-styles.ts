@@ -3,7 +3,7 @@
 import { css } from "lit";
 
 /** Lines in a panel, each a button of three columns: whose it is, what, and when. */
-export const panel_line_styles = css`
+export const panelLineStyles = css`
   ul {
     display: grid;
     gap: 2px;
@@ -29,7 +29,7 @@ export const panel_line_styles = css`
 `;
 
 /** Heading of a list within a panel, with its buttons. */
-export const list_head_styles = css`
+export const listHeadStyles = css`
   :host {
     display: grid;
     grid-template-columns: minmax(0, 1fr);
@@ -55,7 +55,7 @@ export const list_head_styles = css`
 `;
 
 /** Rows of such a list: a button with a name, as wide as the panel, and its menu. */
-export const list_row_styles = css`
+export const listRowStyles = css`
   ul {
     margin-left: -0.5rem;
   }

@@ -4,7 +4,7 @@ import { css, html, type TemplateResult } from "lit";
 import { initials, type Named } from "../domain/people";
 import { styled } from "./styled";
 
-export const person_mark_styles = css`
+export const personMarkStyles = css`
   .person-mark {
     display: inline-grid;
     place-items: center;
@@ -20,5 +20,5 @@ export const person_mark_styles = css`
   }
 `;
 
-export const person_mark = (person: Named): TemplateResult =>
+export const personMark = (person: Named): TemplateResult =>
   html`<span class="person-mark" aria-hidden="true" ${styled({ background: person.color ?? null })}>${initials(person)}</span>`;

@@ -13,31 +13,31 @@ export const kThemes = ["system", "light", "dark", "contrast"] as const;
 export type Theme = (typeof kThemes)[number];
 
 /** Null: as the browser. */
-export function chosen_language(): PageLanguage | null {
+export function chosenLanguage(): PageLanguage | null {
   const kept = localStorage.getItem(kLanguageKey);
   return kPageLanguages.find((language) => language === kept) ?? null;
 }
 
 /** Counts from the next time the page is loaded. */
-export function keep_language(language: PageLanguage | null): void {
+export function keepLanguage(language: PageLanguage | null): void {
   if (language === null) localStorage.removeItem(kLanguageKey);
   else localStorage.setItem(kLanguageKey, language);
 }
 
-export function chosen_theme(): Theme {
+export function chosenTheme(): Theme {
   const kept = localStorage.getItem(kThemeKey);
   return kThemes.find((theme) => theme === kept) ?? "system";
 }
 
 /** Is seen at once. */
-export function keep_theme(theme: Theme): void {
+export function keepTheme(theme: Theme): void {
   if (theme === "system") localStorage.removeItem(kThemeKey);
   else localStorage.setItem(kThemeKey, theme);
-  show_theme();
+  showTheme();
 }
 
 /** The one that holds: who asks their system for more contrast gets it, also from a dark one. */
-export const theme_of = (
+export const themeOf = (
   chosen: Theme,
   system: { dark: boolean; contrast: boolean },
 ): Exclude<Theme, "system"> =>
@@ -46,22 +46,22 @@ export const theme_of = (
 const dark = "(prefers-color-scheme: dark)";
 const contrast = "(prefers-contrast: more)";
 
-function show_theme(): void {
+function showTheme(): void {
   const system = { dark: matchMedia(dark).matches, contrast: matchMedia(contrast).matches };
-  document.documentElement.dataset["theme"] = theme_of(chosen_theme(), system);
+  document.documentElement.dataset["theme"] = themeOf(chosenTheme(), system);
   for (const listener of listeners) listener();
 }
 
 const listeners = new Set<() => void>();
 
 /** Calls it whenever another theme is shown; returns what ends that. */
-export function on_theme(listener: () => void): () => void {
+export function onTheme(listener: () => void): () => void {
   listeners.add(listener);
   return () => listeners.delete(listener);
 }
 
 /** What the theme has behind the model; null: as the server has it. */
-export function stage_background(): Background | null {
+export function stageBackground(): Background | null {
   const style = getComputedStyle(document.documentElement);
   const [top, bottom] = [
     style.getPropertyValue("--stage-top").trim(),
@@ -71,16 +71,16 @@ export function stage_background(): Background | null {
 }
 
 /** Shows the theme, and follows the system from then on. */
-export function follow_theme(): void {
-  for (const query of [dark, contrast]) matchMedia(query).addEventListener("change", show_theme);
-  show_theme();
+export function followTheme(): void {
+  for (const query of [dark, contrast]) matchMedia(query).addEventListener("change", showTheme);
+  showTheme();
 }
 
-const kept_tour = (): Kept<boolean> => new Kept(() => localStorage, kTourKey, false);
-const tour_of_page = kept_tour();
+const keptTour = (): Kept<boolean> => new Kept(() => localStorage, kTourKey, false);
+const tourOfPage = keptTour();
 
 /** Skipped or seen to its end, here or in another window. */
-export const tour_is_over = (): boolean => tour_of_page.value || kept_tour().value;
-export function keep_tour_over(): void {
-  tour_of_page.value = true;
+export const tourIsOver = (): boolean => tourOfPage.value || keptTour().value;
+export function keepTourOver(): void {
+  tourOfPage.value = true;
 }

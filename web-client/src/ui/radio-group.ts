@@ -1,7 +1,7 @@
 // One choice among several, as buttons: one stop of the Tab key, and the arrow keys choose.
 
 import { html, type TemplateResult } from "lit";
-import { arrow_step } from "./keyboard";
+import { arrowStep } from "./keyboard";
 
 export interface RadioChoice<T> {
   value: T;
@@ -18,7 +18,7 @@ export interface RadioGroup<T> {
   choose(value: T): void;
 }
 
-export function radio_group<T>({
+export function radioGroup<T>({
   label,
   class: style,
   choices,
@@ -44,13 +44,13 @@ export function radio_group<T>({
       </button>`,
   );
   return typeof label === "string"
-    ? html`<div class=${style} role="radiogroup" aria-label=${label} @keydown=${on_radio_key}>${buttons}</div>`
-    : html`<div class=${style} role="radiogroup" aria-labelledby=${label.id} @keydown=${on_radio_key}>${buttons}</div>`;
+    ? html`<div class=${style} role="radiogroup" aria-label=${label} @keydown=${onRadioKey}>${buttons}</div>`
+    : html`<div class=${style} role="radiogroup" aria-labelledby=${label.id} @keydown=${onRadioKey}>${buttons}</div>`;
 }
 
-function on_radio_key(event: KeyboardEvent): void {
+function onRadioKey(event: KeyboardEvent): void {
   const buttons = [...(event.currentTarget as HTMLElement).querySelectorAll("button")];
-  const next = arrow_step(
+  const next = arrowStep(
     event.key,
     buttons.indexOf(event.target as HTMLButtonElement),
     buttons.length,

@@ -7,7 +7,7 @@ export type Route =
 
 const kHome: Route = { page: "home", project: null };
 
-export function route_of(path: string): Route {
+export function routeOf(path: string): Route {
   if (/^\/join\/?$/.test(path)) return { page: "join" };
   const found = /^\/(models|projects)\/([^/?#]+)\/?$/.exec(path);
   if (!found) return kHome;
@@ -20,22 +20,22 @@ export function route_of(path: string): Route {
 }
 
 /** For a screen in an exhibition, which loads nothing of this page. */
-export const is_kiosk = (path: string): boolean => path.startsWith("/kiosk/");
+export const isKiosk = (path: string): boolean => path.startsWith("/kiosk/");
 
-export const path_now = (): string => location.pathname;
-const address_now = (): string => location.pathname + location.search + location.hash;
-export const path_of_project = (slug: string): string => `/projects/${encodeURIComponent(slug)}`;
-export const path_of_model = (id: number | string): string => `/models/${encodeURIComponent(id)}`;
+export const pathNow = (): string => location.pathname;
+const addressNow = (): string => location.pathname + location.search + location.hash;
+export const pathOfProject = (slug: string): string => `/projects/${encodeURIComponent(slug)}`;
+export const pathOfModel = (id: number | string): string => `/models/${encodeURIComponent(id)}`;
 
 /** The comment that an address leads to. */
-export function comment_of(hash: string): number | null {
+export function commentOf(hash: string): number | null {
   const found = /^#comment=([1-9]\d{0,15})$/.exec(hash);
   return found ? Number(found[1]) : null;
 }
-export const hash_of_comment = (id: number): string => `#comment=${id}`;
+export const hashOfComment = (id: number): string => `#comment=${id}`;
 
 /** The named view that an address leads to: its slug or id. */
-export function view_of(hash: string): string | null {
+export function viewOf(hash: string): string | null {
   const found = /^#view=([^&]{1,400})$/.exec(hash);
   try {
     return found ? decodeURIComponent(found[1]!) : null;
@@ -43,7 +43,7 @@ export function view_of(hash: string): string | null {
     return null;
   }
 }
-export const hash_of_view = (slug: string): string => `#view=${encodeURIComponent(slug)}`;
+export const hashOfView = (slug: string): string => `#view=${encodeURIComponent(slug)}`;
 
 type Question = () => Promise<boolean>;
 
@@ -53,44 +53,44 @@ let held: Question | null = null;
 let asking = false;
 
 function arrive(): void {
-  shown = address_now();
+  shown = addressNow();
   listeners.forEach((each) => each());
 }
 
 /** The address tells what is looked at; nobody has to go there. */
-export function put_hash(hash: string): void {
+export function putHash(hash: string): void {
   if (hash === location.hash) return;
   history.replaceState(history.state, "", `${location.pathname}${location.search}${hash}`);
-  shown = address_now();
+  shown = addressNow();
 }
 
-export function on_navigate(listener: () => void): void {
+export function onNavigate(listener: () => void): void {
   if (listeners.size === 0) {
-    shown = address_now();
-    addEventListener("popstate", on_history);
+    shown = addressNow();
+    addEventListener("popstate", onHistory);
   }
   listeners.add(listener);
 }
 
 /**
- * `may_leave`: asked before the page shows something else, by which what is written there would be
+ * `mayLeave`: asked before the page shows something else, by which what is written there would be
  * lost. Returns what lets go of it.
  */
-export function hold_page(may_leave: Question): () => void {
-  held = may_leave;
+export function holdPage(mayLeave: Question): () => void {
+  held = mayLeave;
   return () => {
-    if (held === may_leave) held = null;
+    if (held === mayLeave) held = null;
   };
 }
 
 /** For what takes the page away without going anywhere. */
-export const may_leave_page = async (): Promise<boolean> => held === null || held();
+export const mayLeavePage = async (): Promise<boolean> => held === null || held();
 
 async function leave(go: () => void): Promise<void> {
   if (asking) return;
   asking = true;
   try {
-    if (!(await may_leave_page())) return;
+    if (!(await mayLeavePage())) return;
     held = null; // it is lost already
     go();
   } finally {
@@ -98,13 +98,13 @@ async function leave(go: () => void): Promise<void> {
   }
 }
 
-const without_place = (address: string): string => address.split(/[?#]/)[0]!;
-const is_held_from = (path: string): boolean =>
-  held !== null && without_place(path) !== without_place(shown);
+const withoutPlace = (address: string): string => address.split(/[?#]/)[0]!;
+const isHeldFrom = (path: string): boolean =>
+  held !== null && withoutPlace(path) !== withoutPlace(shown);
 
 /** Forward and back: the browser went there before it told. */
-function on_history(): void {
-  if (!is_held_from(location.pathname)) return arrive();
+function onHistory(): void {
+  if (!isHeldFrom(location.pathname)) return arrive();
   history.pushState(null, "", shown);
   void leave(() => history.back());
 }
@@ -114,12 +114,12 @@ export function navigate(path: string): void {
     history.pushState(null, "", path);
     arrive();
   };
-  if (is_held_from(path)) void leave(go);
+  if (isHeldFrom(path)) void leave(go);
   else go();
 }
 
 /** Goes there, and nothing leads back to the address before. */
-export function replace_address(path: string): void {
+export function replaceAddress(path: string): void {
   history.replaceState(null, "", path);
   arrive();
 }

@@ -2,16 +2,16 @@
 
 import type { LitElement, ReactiveController } from "lit";
 
-const kReached_px = 2; // nearer to an end it is there: browsers round
+const kReachedPx = 2; // nearer to an end it is there: browsers round
 
 /** Ends beyond which there is more, of what has `all` and shows `seen` of it from `at` on. */
-export const hidden_ends = (
+export const hiddenEnds = (
   at: number,
   seen: number,
   all: number,
 ): { before: boolean; after: boolean } => ({
-  before: at > kReached_px,
-  after: all - seen - at > kReached_px,
+  before: at > kReachedPx,
+  after: all - seen - at > kReachedPx,
 });
 
 /**
@@ -19,19 +19,19 @@ export const hidden_ends = (
  * `more-after`: what they look like is its own.
  */
 export class ScrollFade implements ReactiveController {
-  private readonly sized_ = new ResizeObserver(() => this.mark());
+  private readonly _sized = new ResizeObserver(() => this.mark());
 
-  constructor(private readonly host_: LitElement) {
-    host_.addController(this);
+  constructor(private readonly _host: LitElement) {
+    _host.addController(this);
   }
 
   hostConnected(): void {
-    this.host_.addEventListener("scroll", this.mark, { passive: true });
-    this.sized_.observe(this.host_);
+    this._host.addEventListener("scroll", this.mark, { passive: true });
+    this._sized.observe(this._host);
   }
   hostDisconnected(): void {
-    this.host_.removeEventListener("scroll", this.mark);
-    this.sized_.disconnect();
+    this._host.removeEventListener("scroll", this.mark);
+    this._sized.disconnect();
   }
   /** Buttons may have come or gone. */
   hostUpdated(): void {
@@ -39,9 +39,9 @@ export class ScrollFade implements ReactiveController {
   }
 
   private readonly mark = (): void => {
-    const { scrollLeft, clientWidth, scrollWidth } = this.host_;
-    const { before, after } = hidden_ends(scrollLeft, clientWidth, scrollWidth);
-    this.host_.toggleAttribute("more-before", before);
-    this.host_.toggleAttribute("more-after", after);
+    const { scrollLeft, clientWidth, scrollWidth } = this._host;
+    const { before, after } = hiddenEnds(scrollLeft, clientWidth, scrollWidth);
+    this._host.toggleAttribute("more-before", before);
+    this._host.toggleAttribute("more-after", after);
   };
 }

@@ -8,26 +8,26 @@ export type Begin<T> = (progress: (share: number) => void) => Upload<T>;
 
 /**
  * One at a time: a new one takes the place of the one before. What is under way when the element
- * leaves is given up where `gives_up` says so.
+ * leaves is given up where `givesUp` says so.
  */
 export class Sending implements ReactiveController {
   busy = false;
   share: number | null = null; // of the bytes; null: not known
   problem = "";
-  gives_up = true;
-  private upload_: Upload<unknown> | null = null;
+  givesUp = true;
+  private _upload: Upload<unknown> | null = null;
 
-  constructor(private readonly host_: ReactiveControllerHost) {
-    host_.addController(this);
+  constructor(private readonly _host: ReactiveControllerHost) {
+    _host.addController(this);
   }
 
   hostDisconnected(): void {
-    if (this.gives_up) this.cancel();
+    if (this.givesUp) this.cancel();
   }
 
   cancel(): void {
-    this.upload_?.cancel();
-    this.upload_ = null;
+    this._upload?.cancel();
+    this._upload = null;
     this.put({ busy: false, share: null });
   }
 
@@ -40,7 +40,7 @@ export class Sending implements ReactiveController {
     this.cancel();
     this.put({ busy: true, problem: "" });
     const upload = begin((share) => this.put({ share }));
-    this.upload_ = upload;
+    this._upload = upload;
     try {
       return await upload.done;
     } catch (error) {
@@ -51,12 +51,12 @@ export class Sending implements ReactiveController {
         });
       return null;
     } finally {
-      if (this.upload_ === upload) this.put({ busy: false });
+      if (this._upload === upload) this.put({ busy: false });
     }
   }
 
   private put(change: Partial<Pick<Sending, "busy" | "share" | "problem">>): void {
     Object.assign(this, change);
-    this.host_.requestUpdate();
+    this._host.requestUpdate();
   }
 }

@@ -3,7 +3,7 @@
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { logo } from "./icons";
-import { shared_styles } from "./styles";
+import { sharedStyles } from "./styles";
 
 @customElement("strata-blank")
 export class StrataBlank extends LitElement {
@@ -11,7 +11,7 @@ export class StrataBlank extends LitElement {
   @property() lead = "";
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: grid;

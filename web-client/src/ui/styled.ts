@@ -7,7 +7,7 @@ import { directive, Directive, PartType, type PartInfo } from "lit/directive.js"
 type Properties = Readonly<Record<string, string | number | null | undefined>>;
 
 class StyledDirective extends Directive {
-  private known_ = new Set<string>();
+  private _known = new Set<string>();
 
   constructor(part: PartInfo) {
     super(part);
@@ -21,8 +21,8 @@ class StyledDirective extends Directive {
 
   override update(part: ElementPart, [properties]: [Properties]): symbol {
     const { style } = part.element as HTMLElement;
-    for (const name of this.known_) if (!(name in properties)) style.removeProperty(name);
-    this.known_ = new Set(Object.keys(properties));
+    for (const name of this._known) if (!(name in properties)) style.removeProperty(name);
+    this._known = new Set(Object.keys(properties));
     for (const [name, value] of Object.entries(properties)) {
       if (value === null || value === undefined) style.removeProperty(name);
       else style.setProperty(name, String(value));

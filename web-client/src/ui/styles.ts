@@ -2,7 +2,7 @@
 
 import { css } from "lit";
 
-export const shared_styles = css`
+export const sharedStyles = css`
   :host {
     box-sizing: border-box;
   }
@@ -298,7 +298,7 @@ export const shared_styles = css`
 `;
 
 /** Fields of a dialog, one below the other. */
-export const form_styles = css`
+export const formStyles = css`
   form {
     display: grid;
     gap: 0.875rem;
@@ -309,7 +309,7 @@ export const form_styles = css`
  * A form inside a dialog that makes a link, and the link, which is shown once. How many fields are
  * beside each other is the dialog's.
  */
-export const link_making_styles = css`
+export const linkMakingStyles = css`
   form,
   .made {
     display: grid;
@@ -336,7 +336,7 @@ export const link_making_styles = css`
 `;
 
 /** Fields of a dialog, two beside each other. */
-export const choices_styles = css`
+export const choicesStyles = css`
   .choices {
     display: grid;
     grid-template-columns: 1fr 1fr;
@@ -352,7 +352,7 @@ export const choices_styles = css`
  * A number with its unit inside the field, however long the unit is: the field is drawn around
  * both.
  */
-export const number_field_styles = css`
+export const numberFieldStyles = css`
   .number {
     display: flex;
     align-items: center;
@@ -408,7 +408,7 @@ export const number_field_styles = css`
 `;
 
 /** A list whose rows are dragged to another place (`DragOrder`). */
-export const drag_styles = css`
+export const dragStyles = css`
   li {
     position: relative;
   }
@@ -436,7 +436,7 @@ export const drag_styles = css`
 `;
 
 /** A word or two about what stands beside it. */
-export const chip_styles = css`
+export const chipStyles = css`
   .chip {
     padding: 1px 0.5rem;
     border-radius: 99px;
@@ -449,7 +449,7 @@ export const chip_styles = css`
 `;
 
 /** A dialog that sends files: what they hold, the numbers of their place, how far it is. */
-export const files_styles = css`
+export const filesStyles = css`
   .part {
     display: grid;
     gap: 0.375rem;

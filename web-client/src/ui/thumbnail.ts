@@ -7,9 +7,9 @@ import type { Api } from "../net/api";
 import { OrbitCamera } from "../math/camera";
 import type { View } from "../core/protocol.gen";
 import type { Model } from "../core/types";
-import { shared_styles } from "./styles";
+import { sharedStyles } from "./styles";
 import { texts } from "../texts";
-import { when_seen } from "./when-seen";
+import { whenSeen } from "./when-seen";
 
 const kWidth = 640;
 const kHeight = 480;
@@ -31,13 +31,13 @@ export class StrataThumbnail extends LitElement {
   view: View | null = null;
   /** Small, and with this direction up in place of the model's own. */
   @property() up: Model["up"] | null = null;
-  @state() private state_: "waiting" | "drawn" | "failed" = "waiting";
-  @query("canvas") private canvas_!: HTMLCanvasElement;
-  private wanted_: AbortController | null = null; // ends the wait for its picture, or the request
-  private settled_ = false; // drawn, or failed
+  @state() private _state: "waiting" | "drawn" | "failed" = "waiting";
+  @query("canvas") private _canvas!: HTMLCanvasElement;
+  private _wanted: AbortController | null = null; // ends the wait for its picture, or the request
+  private _settled = false; // drawn, or failed
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: block;
@@ -70,25 +70,25 @@ export class StrataThumbnail extends LitElement {
   /** Elements that a list moves to another place leave the page for a moment. */
   override connectedCallback(): void {
     super.connectedCallback();
-    if (this.wanted_ && !this.settled_) this.want();
+    if (this._wanted && !this._settled) this.want();
   }
 
   protected override updated(changed: PropertyValues): void {
-    if (!this.wanted_ || changed.has("view")) this.want();
+    if (!this._wanted || changed.has("view")) this.want();
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.wanted_?.abort();
+    this._wanted?.abort();
   }
 
   private want(): void {
-    this.wanted_?.abort();
-    this.settled_ = false;
-    const { signal } = (this.wanted_ = new AbortController());
+    this._wanted?.abort();
+    this._settled = false;
+    const { signal } = (this._wanted = new AbortController());
     signal.addEventListener(
       "abort",
-      when_seen(this, () => (busy = busy.then(() => this.load(signal)))),
+      whenSeen(this, () => (busy = busy.then(() => this.load(signal)))),
     );
   }
 
@@ -96,30 +96,30 @@ export class StrataThumbnail extends LitElement {
     if (signal.aborted) return;
     try {
       const bitmap = await createImageBitmap(await this.picture(signal));
-      this.canvas_.width = bitmap.width;
-      this.canvas_.height = bitmap.height;
-      this.canvas_.getContext("2d")?.drawImage(bitmap, 0, 0);
+      this._canvas.width = bitmap.width;
+      this._canvas.height = bitmap.height;
+      this._canvas.getContext("2d")?.drawImage(bitmap, 0, 0);
       bitmap.close();
-      this.state_ = "drawn";
+      this._state = "drawn";
     } catch {
       if (signal.aborted) return; // nobody waits for it any more
-      this.state_ = "failed"; // the card says so; the model itself may still open
+      this._state = "failed"; // the card says so; the model itself may still open
     }
-    if (!signal.aborted) this.settled_ = true;
+    if (!signal.aborted) this._settled = true;
   }
 
   private picture(signal: AbortSignal): Promise<Blob> {
-    if (this.view) return this.api.view_picture(this.model.id, this.view.id, kViewSide, signal);
+    if (this.view) return this.api.viewPicture(this.model.id, this.view.id, kViewSide, signal);
     const camera = new OrbitCamera();
-    camera.set_model(this.model.bounds, this.up ?? this.model.up);
+    camera.setModel(this.model.bounds, this.up ?? this.model.up);
     if (this.up) camera.resize(kSmallWidth, kSmallHeight);
     else camera.resize(kWidth, kHeight);
-    camera.first_view();
+    camera.firstView();
     return this.api.frame(this.model.id, camera.message(), signal);
   }
 
   override render(): TemplateResult {
-    return html`<canvas class=${this.state_} width="4" height="3" aria-hidden="true"></canvas>
-      ${this.state_ === "failed" && !this.view ? html`<p>${texts.home.no_picture}</p>` : nothing}`;
+    return html`<canvas class=${this._state} width="4" height="3" aria-hidden="true"></canvas>
+      ${this._state === "failed" && !this.view ? html`<p>${texts.home.no_picture}</p>` : nothing}`;
   }
 }

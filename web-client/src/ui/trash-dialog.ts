@@ -1,21 +1,21 @@
 // <strata-bin-dialog>: what was deleted in a project, to restore or to delete for ever. Opened by
-// open_bin().
+// openBin().
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../net/api";
-import { format_bytes } from "../domain/measure";
+import { formatBytes } from "../domain/measure";
 import { called } from "../domain/people";
 import type { BinEntry, BinList, Project } from "../core/protocol.gen";
 import type { Model } from "../core/types";
-import { told_restored, type BinApi } from "./trash";
+import { toldRestored, type BinApi } from "./trash";
 import { ask } from "./dialog";
 import { icon, type IconName } from "./icons";
 import { notices } from "./notices";
-import { shared_styles } from "./styles";
+import { sharedStyles } from "./styles";
 import { texts } from "../texts";
-import { told_ago, told_date } from "../domain/times";
+import { toldAgo, toldDate } from "../domain/times";
 
 const words = texts.bin;
 const kAtOnce = 100;
@@ -29,15 +29,15 @@ const kIcons: Record<BinEntry["kind"], IconName> = {
 export class StrataBinDialog extends LitElement {
   @property({ attribute: false }) api!: BinApi;
   @property({ attribute: false }) project!: Pick<Project, "slug" | "name">;
-  answer: (is_changed: boolean) => void = () => {};
+  answer: (isChanged: boolean) => void = () => {};
 
-  @state() private bin_: BinList | null = null;
-  @state() private note_: { kind: "error" | "done"; text: string } | null = null;
-  @state() private busy_ = false;
-  private changed_ = false;
+  @state() private _bin: BinList | null = null;
+  @state() private _note: { kind: "error" | "done"; text: string } | null = null;
+  @state() private _busy = false;
+  private _changed = false;
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       ul {
         display: grid;
@@ -100,7 +100,7 @@ export class StrataBinDialog extends LitElement {
   }
 
   override render(): TemplateResult {
-    const { bin_: bin, note_: note } = this;
+    const { _bin: bin, _note: note } = this;
     return html`<strata-dialog broad heading=${words.title_of(this.project.name)} way_out=${texts.close} @closed=${() => this.finish()}>
       ${bin ? html`<p class="hint">${bin.days === 0 ? words.not_kept_lead : words.lead(bin.days)}</p>` : nothing}
       <p class=${note?.kind ?? "done"} role=${note?.kind === "error" ? "alert" : "status"} tabindex="-1" ?hidden=${!note}>${note?.text}</p>
@@ -122,19 +122,21 @@ export class StrataBinDialog extends LitElement {
           (entry) => this.row(entry),
         )}
       </ul>
-      ${entries.length < total ? html`<button class="more" ?disabled=${this.busy_} @click=${() => void this.attempt(() => this.read_more())}>${words.more}</button>` : nothing}`;
+      ${entries.length < total ? html`<button class="more" ?disabled=${this._busy} @click=${() => void this.attempt(() => this.readMore())}>${words.more}</button>` : nothing}`;
   }
 
   private row(entry: BinEntry): TemplateResult {
-    const { kind, name, user, full_name, deleted, erased, bytes } = entry;
+    const { kind, name, user, full_name: fullName, deleted, erased, bytes } = entry;
     const where = entry.model_name ?? entry.table_name;
     const facts = [
       words.deleted_when(
-        told_ago(deleted),
-        user === undefined ? undefined : called({ user, ...(full_name ? { full_name } : {}) }),
+        toldAgo(deleted),
+        user === undefined
+          ? undefined
+          : called({ user, ...(fullName ? { full_name: fullName } : {}) }),
       ),
-      words.erased_on(told_date(erased)),
-      bytes === undefined ? "" : format_bytes(bytes),
+      words.erased_on(toldDate(erased)),
+      bytes === undefined ? "" : formatBytes(bytes),
     ];
     return html`<li data-entry=${entry.id}>
       ${icon(kIcons[kind])}
@@ -144,31 +146,31 @@ export class StrataBinDialog extends LitElement {
         <span class="hint">${facts.filter(Boolean).join(" · ")}</span>
       </div>
       <div class="buttons">
-        <button ?disabled=${this.busy_} aria-label=${words.restore_of(name)} @click=${() => void this.restore(entry)}>${icon("undo")}${words.restore}</button>
+        <button ?disabled=${this._busy} aria-label=${words.restore_of(name)} @click=${() => void this.restore(entry)}>${icon("undo")}${words.restore}</button>
         ${
           kind === "record"
             ? nothing
-            : html`<button class="icon quiet" ?disabled=${this.busy_} aria-label=${words.erase_of(name)} title=${words.erase} @click=${() => void this.erase(entry)}>${icon("trash")}</button>`
+            : html`<button class="icon quiet" ?disabled=${this._busy} aria-label=${words.erase_of(name)} title=${words.erase} @click=${() => void this.erase(entry)}>${icon("trash")}</button>`
         }
       </div>
     </li>`;
   }
 
   private async read(): Promise<void> {
-    this.bin_ = await this.api.bin(this.project.slug, { limit: kAtOnce, offset: 0 });
+    this._bin = await this.api.bin(this.project.slug, { limit: kAtOnce, offset: 0 });
   }
 
-  private async read_more(): Promise<void> {
-    const known = this.bin_?.entries ?? [];
+  private async readMore(): Promise<void> {
+    const known = this._bin?.entries ?? [];
     const next = await this.api.bin(this.project.slug, { limit: kAtOnce, offset: known.length });
     const ids = new Set(known.map(({ id }) => id)); // something came to the Bin meanwhile
-    this.bin_ = { ...next, entries: [...known, ...next.entries.filter(({ id }) => !ids.has(id))] };
+    this._bin = { ...next, entries: [...known, ...next.entries.filter(({ id }) => !ids.has(id))] };
   }
 
   private restore(entry: BinEntry): Promise<void> {
     return this.attempt(async () => {
-      const restored = await this.api.restore_from_bin(this.project.slug, entry.id);
-      this.take_out(entry, told_restored(restored));
+      const restored = await this.api.restoreFromBin(this.project.slug, entry.id);
+      this.takeOut(entry, toldRestored(restored));
     });
   }
 
@@ -183,50 +185,50 @@ export class StrataBinDialog extends LitElement {
     )
       return;
     await this.attempt(async () => {
-      await this.api.erase_from_bin(this.project.slug, entry.id);
-      this.take_out(entry, words.erased(entry.name));
+      await this.api.eraseFromBin(this.project.slug, entry.id);
+      this.takeOut(entry, words.erased(entry.name));
     });
   }
 
   /** Who went through the list by keys goes on at what was done. */
-  private take_out({ id }: BinEntry, text: string): void {
-    if (this.bin_)
-      this.bin_ = {
-        ...this.bin_,
-        entries: this.bin_.entries.filter((each) => each.id !== id),
-        total: this.bin_.total - 1,
+  private takeOut({ id }: BinEntry, text: string): void {
+    if (this._bin)
+      this._bin = {
+        ...this._bin,
+        entries: this._bin.entries.filter((each) => each.id !== id),
+        total: this._bin.total - 1,
       };
-    this.changed_ = true;
-    this.note_ = { kind: "done", text };
+    this._changed = true;
+    this._note = { kind: "done", text };
     void this.updateComplete.then(() =>
       this.renderRoot.querySelector<HTMLElement>("p[tabindex]")?.focus(),
     );
   }
 
   private async attempt(task: () => Promise<void>): Promise<void> {
-    if (this.busy_) return;
-    this.busy_ = true;
-    this.note_ = null;
+    if (this._busy) return;
+    this._busy = true;
+    this._note = null;
     try {
       await task();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.note_ = { kind: "error", text: error.message };
+      this._note = { kind: "error", text: error.message };
       // somebody else was faster
-      if (error.status === 404 && this.bin_) await this.read().catch(() => {});
+      if (error.status === 404 && this._bin) await this.read().catch(() => {});
     } finally {
-      this.busy_ = false;
+      this._busy = false;
     }
   }
 
   private finish(): void {
-    this.answer(this.changed_);
+    this.answer(this._changed);
     this.remove();
   }
 }
 
 /** Whether something was restored or deleted for ever. */
-export function open_bin(api: BinApi, project: Pick<Project, "slug" | "name">): Promise<boolean> {
+export function openBin(api: BinApi, project: Pick<Project, "slug" | "name">): Promise<boolean> {
   return new Promise((resolve) => {
     const element = new StrataBinDialog();
     Object.assign(element, { api, project, answer: resolve });
@@ -235,7 +237,7 @@ export function open_bin(api: BinApi, project: Pick<Project, "slug" | "name">): 
 }
 
 /** That of the open model's project. */
-export async function open_bin_of({
+export async function openBinOf({
   api,
   model,
 }: {
@@ -244,7 +246,7 @@ export async function open_bin_of({
 }): Promise<void> {
   if (!model) return;
   try {
-    await open_bin(api, (await api.project(model.project)).value);
+    await openBin(api, (await api.project(model.project)).value);
   } catch (error) {
     notices.error(error);
   }

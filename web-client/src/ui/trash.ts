@@ -6,7 +6,7 @@ import { ask } from "./dialog";
 import { notices } from "./notices";
 import { texts } from "../texts";
 
-export type BinApi = Pick<Api, "bin" | "restore_from_bin" | "erase_from_bin">;
+export type BinApi = Pick<Api, "bin" | "restoreFromBin" | "eraseFromBin">;
 
 export interface Deletable {
   kind: BinKind;
@@ -19,7 +19,7 @@ export interface Deletable {
  * Whether to go on, told what can be undone: for how long things stay in the Bin is the server's to
  * say.
  */
-export async function ask_to_bin(
+export async function askToBin(
   api: BinApi,
   { name, project }: Deletable,
   words: { title: (name: string) => string; lead: string },
@@ -39,17 +39,17 @@ export async function ask_to_bin(
   });
 }
 
-/** Says that it was deleted, with a button that brings it back. `came_back`: once it did. */
-export function tell_binned(
+/** Says that it was deleted, with a button that brings it back. `cameBack`: once it did. */
+export function tellBinned(
   api: BinApi,
   gone: Deletable,
-  came_back: (restored: BinRestored) => void = () => {},
+  cameBack: (restored: BinRestored) => void = () => {},
 ): void {
   const undo = async (): Promise<void> => {
     try {
-      const restored = await api.restore_from_bin(gone.project, gone.entry);
-      notices.show("success", told_restored(restored));
-      came_back(restored);
+      const restored = await api.restoreFromBin(gone.project, gone.entry);
+      notices.show("success", toldRestored(restored));
+      cameBack(restored);
     } catch (error) {
       notices.error(error);
     }
@@ -60,7 +60,7 @@ export function tell_binned(
   });
 }
 
-export const told_restored = ({ name, slug, former_slug }: BinRestored): string =>
-  slug === undefined || former_slug === undefined
+export const toldRestored = ({ name, slug, former_slug: formerSlug }: BinRestored): string =>
+  slug === undefined || formerSlug === undefined
     ? texts.bin.restored(name)
-    : texts.bin.restored_as(name, former_slug, slug);
+    : texts.bin.restored_as(name, formerSlug, slug);

@@ -4,21 +4,21 @@
 import { html, nothing, type TemplateResult } from "lit";
 import type { Visibility } from "../core/protocol.gen";
 import { icon, type IconName } from "./icons";
-import { radio_group } from "./radio-group";
+import { radioGroup } from "./radio-group";
 import { texts } from "../texts";
 
 export const kVisibilities: readonly Visibility[] = ["public", "team", "private"];
 const kIcons: Record<Visibility, IconName> = { public: "eye", team: "people", private: "shield" };
 
 /** With what is chosen said in plain words below. */
-export function visibility_choice(
+export function visibilityChoice(
   chosen: Visibility,
   choose: (visibility: Visibility) => void,
 ): TemplateResult {
   const words = texts.visibility;
   return html`<div class="visibility">
     <p class="caption" id="visibility">${words.question}</p>
-    ${radio_group<Visibility>({
+    ${radioGroup<Visibility>({
       label: { id: "visibility" },
       class: "segments",
       choices: kVisibilities.map((value) => ({
@@ -33,7 +33,7 @@ export function visibility_choice(
 }
 
 /** Nothing for what everybody sees. */
-export function visibility_badge(visibility: Visibility): TemplateResult | typeof nothing {
+export function visibilityBadge(visibility: Visibility): TemplateResult | typeof nothing {
   if (visibility === "public") return nothing;
   const says = texts.visibility.says[visibility];
   return html`<span class="seen-by" role="img" aria-label=${says} title=${says}>${icon(kIcons[visibility])}</span>`;

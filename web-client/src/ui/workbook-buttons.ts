@@ -2,26 +2,26 @@
 // a file.
 
 import { html, type TemplateResult } from "lit";
-import { csv_separator, page_locale } from "../core/locale";
+import { csvSeparator, pageLocale } from "../core/locale";
 import type { SheetQuery } from "../net/api";
-import { copy_text } from "./copy-field";
+import { copyText } from "./copy-field";
 import { icon } from "./icons";
 import { notices } from "./notices";
 import { texts } from "../texts";
 
-export const sheet_query = (f: SheetQuery["f"]): SheetQuery => ({
+export const sheetQuery = (f: SheetQuery["f"]): SheetQuery => ({
   f,
-  lang: page_locale(),
-  separator: csv_separator(),
+  lang: pageLocale(),
+  separator: csvSeparator(),
 });
 
 /** `rows`: of texts. Cells that hold tabs or lines would fall apart where they are pasted. */
-export const as_pasted = (rows: readonly (readonly string[])[]): string =>
+export const asPasted = (rows: readonly (readonly string[])[]): string =>
   rows.map((row) => row.map((cell) => cell.replaceAll(/[\t\r\n]+/g, " ")).join("\t")).join("\n");
 
 async function copy(rows: readonly (readonly string[])[], holder: HTMLElement): Promise<void> {
-  const text = as_pasted(rows);
-  const copied = await copy_text(text, () => {
+  const text = asPasted(rows);
+  const copied = await copyText(text, () => {
     const field = document.createElement("textarea");
     field.value = text;
     field.style.position = "fixed";
@@ -36,7 +36,7 @@ async function copy(rows: readonly (readonly string[])[], holder: HTMLElement): 
   );
 }
 
-export function sheet_buttons(of: {
+export function sheetButtons(of: {
   what: string;
   rows: () => readonly (readonly string[])[];
   save: (f: SheetQuery["f"]) => void;

@@ -1,30 +1,30 @@
 import { describe, expect, it } from "vitest";
 
-import { Api, ApiError, name_of_file, new_id, problem_of_text } from "../../src/net/api";
+import { Api, ApiError, nameOfFile, newId, problemOfText } from "../../src/net/api";
 import {
-  detail_choices,
-  format_area,
-  format_length,
-  format_number,
-  format_size,
-  likely_scale,
-  scale_bar,
+  detailChoices,
+  formatArea,
+  formatLength,
+  formatNumber,
+  formatSize,
+  likelyScale,
+  scaleBar,
   ticks,
 } from "../../src/domain/measure";
 import {
-  class_palette,
-  color_of,
-  css_gradient,
-  measurement_palette,
-  presence_palette,
-  purpose_of,
-  same_palette,
+  classPalette,
+  colorOf,
+  cssGradient,
+  measurementPalette,
+  presencePalette,
+  purposeOf,
+  samePalette,
 } from "../../src/domain/palette";
-import { complete_palette } from "../../src/core/types";
+import { completePalette } from "../../src/core/types";
 
 describe("numbers as people write them", () => {
   it("lengths take the unit that suits them", () => {
-    const lengths = [0.0000021, 0.0002, 0.0008, 0.0123, 0.5, 3.14159, 1234].map(format_length);
+    const lengths = [0.0000021, 0.0002, 0.0008, 0.0123, 0.5, 3.14159, 1234].map(formatLength);
     expect(lengths).toEqual([
       "2.1 µm",
       "0.2 mm",
@@ -36,7 +36,7 @@ describe("numbers as people write them", () => {
     ]);
   });
   it("areas do, too", () => {
-    expect([0, 2.5e-6, 0.0123, 2.5].map(format_area)).toEqual([
+    expect([0, 2.5e-6, 0.0123, 2.5].map(formatArea)).toEqual([
       "0 mm²",
       "2.5 mm²",
       "123 cm²",
@@ -44,12 +44,12 @@ describe("numbers as people write them", () => {
     ]);
   });
   it("a size is three numbers and one unit", () => {
-    expect(format_size([0.1052, 0.099, 0.0908])).toBe("105 × 99 × 90.8 mm");
-    expect(format_size([4.2, 1.05, 0.3])).toBe("420 × 105 × 30 cm");
-    expect(format_size([105, 99, 91])).toBe("105 × 99 × 91 m");
+    expect(formatSize([0.1052, 0.099, 0.0908])).toBe("105 × 99 × 90.8 mm");
+    expect(formatSize([4.2, 1.05, 0.3])).toBe("420 × 105 × 30 cm");
+    expect(formatSize([105, 99, 91])).toBe("105 × 99 × 91 m");
   });
   it("numbers have three digits and no exponent for everyday sizes", () => {
-    expect([0, 0.012345, 1234.5, -7.006, Number.NaN].map((n) => format_number(n))).toEqual([
+    expect([0, 0.012345, 1234.5, -7.006, Number.NaN].map((n) => formatNumber(n))).toEqual([
       "0",
       "0.0123",
       "1,235",
@@ -58,11 +58,11 @@ describe("numbers as people write them", () => {
     ]);
   });
   it("a scale bar is round and not longer than asked", () => {
-    for (const metres_per_px of [3.3e-7, 0.00042, 0.013, 7.7]) {
-      const bar = scale_bar(metres_per_px, 150);
+    for (const metresPerPx of [3.3e-7, 0.00042, 0.013, 7.7]) {
+      const bar = scaleBar(metresPerPx, 150);
       expect(bar.px).toBeLessThanOrEqual(150);
       expect(bar.px).toBeGreaterThan(59);
-      expect(bar.px * metres_per_px).toBeCloseTo(bar.metres, 9);
+      expect(bar.px * metresPerPx).toBeCloseTo(bar.metres, 9);
       expect(bar.metres.toExponential(6)).toMatch(/^[125]\.0+e/);
     }
   });
@@ -87,32 +87,32 @@ describe("numbers as people write them", () => {
       up: "z",
       proposal,
     } as const;
-    expect(likely_scale(model)).toEqual({ unit: "mm", up: "y" });
-    expect(likely_scale({ ...model, unit: "cm", unit_assumed: false })).toEqual({
+    expect(likelyScale(model)).toEqual({ unit: "mm", up: "y" });
+    expect(likelyScale({ ...model, unit: "cm", unit_assumed: false })).toEqual({
       unit: "cm",
       up: "y",
     });
-    expect(likely_scale({ ...model, up: "-x" })).toEqual({ unit: "mm", up: "-x" });
-    expect(likely_scale({ ...model, scale_verified: true })).toEqual({ unit: "m", up: "z" });
-    expect(likely_scale({ ...model, proposal: undefined })).toEqual({ unit: "m", up: "z" });
+    expect(likelyScale({ ...model, up: "-x" })).toEqual({ unit: "mm", up: "-x" });
+    expect(likelyScale({ ...model, scale_verified: true })).toEqual({ unit: "m", up: "z" });
+    expect(likelyScale({ ...model, proposal: undefined })).toEqual({ unit: "m", up: "z" });
   });
   it("the smallest detail halves with each doubling of the layer", () => {
-    const choices = detail_choices({ lowest_resolution: 2048, texel_area_max_m2: 6.4e-7 });
+    const choices = detailChoices({ lowest_resolution: 2048, texel_area_max_m2: 6.4e-7 });
     expect(choices.map((choice) => choice.resolution)).toEqual([2048, 4096, 8192]);
-    expect(choices.map((choice) => format_length(choice.detail_m))).toEqual([
+    expect(choices.map((choice) => formatLength(choice.detailM))).toEqual([
       "0.8 mm",
       "0.4 mm",
       "0.2 mm",
     ]);
   });
   it("the smallest detail is what was measured at that resolution, where it was", () => {
-    const texel_sizes = [{ resolution: 4096, area_mean_m2: 1e-7, area_max_m2: 2.5e-7 }];
-    const choices = detail_choices({
+    const texelSizes = [{ resolution: 4096, area_mean_m2: 1e-7, area_max_m2: 2.5e-7 }];
+    const choices = detailChoices({
       lowest_resolution: 2048,
       texel_area_max_m2: 6.4e-7,
-      texel_sizes,
+      texel_sizes: texelSizes,
     });
-    expect(choices.map((choice) => format_length(choice.detail_m))).toEqual([
+    expect(choices.map((choice) => formatLength(choice.detailM))).toEqual([
       "0.8 mm",
       "0.5 mm",
       "0.2 mm",
@@ -120,33 +120,33 @@ describe("numbers as people write them", () => {
   });
 });
 
-const classes_without_points = complete_palette({ mode: "categorical" });
+const classesWithoutPoints = completePalette({ mode: "categorical" });
 
 describe("palettes", () => {
   it("a linear palette blends, a stepped one holds the point below, both keep to their limits", () => {
-    const linear = complete_palette({
+    const linear = completePalette({
       mode: "linear",
       points: [
         { at: 0, color: "#000000ff" },
         { at: 10, color: "#ff800000" },
       ],
     });
-    expect(color_of(linear, 5)).toBe("#80400080");
-    expect(color_of(linear, -3)).toBe("#000000ff");
-    expect(color_of(linear, 99)).toBe("#ff800000");
-    expect(color_of({ ...linear, mode: "step" }, 9.9)).toBe("#000000ff");
+    expect(colorOf(linear, 5)).toBe("#80400080");
+    expect(colorOf(linear, -3)).toBe("#000000ff");
+    expect(colorOf(linear, 99)).toBe("#ff800000");
+    expect(colorOf({ ...linear, mode: "step" }, 9.9)).toBe("#000000ff");
   });
   it("a class that the palette does not list has the colour that the server makes", () => {
-    const classes = class_palette([
+    const classes = classPalette([
       { at: 2, label: "b", color: "#0000ffff" },
       { at: 1, label: "a", color: "#ff0000ff" },
     ]);
     expect(classes.points.map((point) => point.at)).toEqual([1, 2]);
-    expect(color_of(classes, 2)).toBe("#0000ffff");
+    expect(colorOf(classes, 2)).toBe("#0000ffff");
     const colors = [0, 1, 2, 7, 300, 70_000, 4_294_967_295].map((key) =>
-      color_of(classes_without_points, key),
+      colorOf(classesWithoutPoints, key),
     );
-    // of generated_color() in server/core/palette.cpp
+    // of generatedColor() in server/core/palette.cpp
     expect(colors).toEqual([
       "#d96262ff",
       "#3c6ad9ff",
@@ -158,22 +158,22 @@ describe("palettes", () => {
     ]);
   });
   it("the purpose of a layer is read from its palette", () => {
-    const purpose = (palette: Parameters<typeof complete_palette>[0]) =>
-      purpose_of({ kind: "numeric", palette: complete_palette(palette) });
-    expect(purpose(presence_palette("Cracks", "#d55e00ff"))).toBe("presence");
-    expect(purpose(measurement_palette(0, 1))).toBe("measurement");
-    expect(purpose(measurement_palette(0, 1, "step"))).toBe("measurement");
+    const purpose = (palette: Parameters<typeof completePalette>[0]) =>
+      purposeOf({ kind: "numeric", palette: completePalette(palette) });
+    expect(purpose(presencePalette("Cracks", "#d55e00ff"))).toBe("presence");
+    expect(purpose(measurementPalette(0, 1))).toBe("measurement");
+    expect(purpose(measurementPalette(0, 1, "step"))).toBe("measurement");
     expect(purpose({ mode: "categorical" })).toBe("classes");
   });
   it("palettes are the same when they show and call every value alike", () => {
-    const one = class_palette([{ at: 1, label: "", color: "#ff0000ff" }]);
-    expect(same_palette(one, { ...one, points: [{ at: 1, color: "#ff0000ff" }] })).toBe(true);
-    expect(same_palette(one, { ...one, points: [{ at: 1, color: "#ff0000fe" }] })).toBe(false);
-    expect(same_palette(one, { ...one, points: [] })).toBe(false);
-    expect(same_palette(one, { ...one, max: 2 })).toBe(false);
+    const one = classPalette([{ at: 1, label: "", color: "#ff0000ff" }]);
+    expect(samePalette(one, { ...one, points: [{ at: 1, color: "#ff0000ff" }] })).toBe(true);
+    expect(samePalette(one, { ...one, points: [{ at: 1, color: "#ff0000fe" }] })).toBe(false);
+    expect(samePalette(one, { ...one, points: [] })).toBe(false);
+    expect(samePalette(one, { ...one, max: 2 })).toBe(false);
   });
   it("a stepped gradient has hard edges", () => {
-    const palette = complete_palette({
+    const palette = completePalette({
       mode: "step",
       min: 0,
       max: 2,
@@ -182,7 +182,7 @@ describe("palettes", () => {
         { at: 1, color: "#ffffff" },
       ],
     });
-    expect(css_gradient(palette)).toBe(
+    expect(cssGradient(palette)).toBe(
       "linear-gradient(to right, rgb(0 0 0 / 1.000) 0.00%, rgb(0 0 0 / 1.000) 50.00%, rgb(255 255 255 / 1.000) 50.00%)",
     );
   });
@@ -203,30 +203,30 @@ describe("HTTP", () => {
     await expect(api.me()).rejects.toEqual(new ApiError(problem));
   });
   it("an answer that is no problem object is told in plain words", () => {
-    expect(problem_of_text(503, "<html>").title).toBe("The server is not ready");
-    expect(problem_of_text(418, "null").title).toBe("The server answered 418");
+    expect(problemOfText(503, "<html>").title).toBe("The server is not ready");
+    expect(problemOfText(418, "null").title).toBe("The server answered 418");
   });
   it("a lost network is an ApiError of status 0", async () => {
     const api = new Api(() => Promise.reject(new TypeError("failed")));
     await expect(api.models()).rejects.toMatchObject({ status: 0 });
   });
   it("a picture that nobody waits for any more is asked for no longer", async () => {
-    const given_up: string[] = [];
+    const givenUp: string[] = [];
     const api = new Api(
       (path, init) =>
         new Promise((_, reject) =>
           init!.signal!.addEventListener("abort", () => {
-            given_up.push(path);
+            givenUp.push(path);
             reject(new DOMException("stopped", "AbortError"));
           }),
         ),
     );
     const stop = new AbortController();
     const camera = { op: "camera" } as unknown as Parameters<Api["frame"]>[1];
-    const pictures = [api.frame(1, camera, stop.signal), api.view_picture(1, 2, 256, stop.signal)];
+    const pictures = [api.frame(1, camera, stop.signal), api.viewPicture(1, 2, 256, stop.signal)];
     stop.abort();
     for (const picture of pictures) await expect(picture).rejects.toMatchObject({ status: 499 });
-    expect(given_up).toEqual([
+    expect(givenUp).toEqual([
       "/api/v1/models/1/frame",
       "/api/v1/models/1/views/2/picture?thumbnail=256",
     ]);
@@ -237,7 +237,7 @@ describe("HTTP", () => {
       calls.push([init!.method!, path, (init!.headers as Record<string, string>)["If-Match"]]);
       return answer(200, '{"id":7,"palette":{"mode":"categorical"}}', { ETag: '"3"' });
     });
-    const changed = await api.change_layer(1, 7, { name: "x" });
+    const changed = await api.changeLayer(1, 7, { name: "x" });
     expect(calls).toEqual([
       ["GET", "/api/v1/models/1/layers/7", undefined],
       ["PATCH", "/api/v1/models/1/layers/7", '"3"'],
@@ -245,7 +245,7 @@ describe("HTTP", () => {
     expect(changed.palette.points).toEqual([]);
     calls.length = 0;
     // the version that somebody looked at, even if it is old by now
-    await api.change_layer(1, 7, { name: "y" }, '"2"');
+    await api.changeLayer(1, 7, { name: "y" }, '"2"');
     expect(calls).toEqual([["PATCH", "/api/v1/models/1/layers/7", '"2"']]);
   });
   it("every POST that changes something has a key of its own", async () => {
@@ -254,18 +254,18 @@ describe("HTTP", () => {
       keys.add((init!.headers as Record<string, string>)["Idempotency-Key"]!);
       return answer(201, '{"palette":{"mode":"categorical"}}');
     });
-    for (let i = 0; i < 3; ++i) await api.create_layer(1, { name: "a" });
+    for (let i = 0; i < 3; ++i) await api.createLayer(1, { name: "a" });
     expect(keys.size).toBe(3);
     expect(keys.has(undefined as unknown as string)).toBe(false);
   });
   it("ids are version 4 UUIDs", () => {
     for (let i = 0; i < 50; ++i)
-      expect(new_id()).toMatch(
+      expect(newId()).toMatch(
         /^[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}$/,
       );
   });
   it("a model's name comes from its file", () => {
-    expect(["statue_nefertiti_70k.ply", "a.b.OBJ", ".ply"].map(name_of_file)).toEqual([
+    expect(["statue_nefertiti_70k.ply", "a.b.OBJ", ".ply"].map(nameOfFile)).toEqual([
       "statue nefertiti 70k",
       "a.b",
       ".ply",

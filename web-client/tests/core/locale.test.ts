@@ -1,67 +1,67 @@
 import { afterEach, describe, expect, it } from "vitest";
 
-import { told_date, told_time } from "../../src/domain/times";
-import { load_texts, texts } from "../../src/texts";
+import { toldDate, toldTime } from "../../src/domain/times";
+import { loadTexts, texts } from "../../src/texts";
 import type { Texts } from "../../src/texts/shape";
-import { cell_text, label_of, parse_cell } from "../../src/domain/cells";
+import { cellText, labelOf, parseCell } from "../../src/domain/cells";
 import {
-  format_count,
-  format_list,
-  format_place,
+  formatCount,
+  formatList,
+  formatPlace,
   kPageLanguages,
-  page_language,
-  page_locale,
-  person_languages,
-  read_number,
-  set_locale,
-  typed_number,
+  pageLanguage,
+  pageLocale,
+  personLanguages,
+  readNumber,
+  setLocale,
+  typedNumber,
 } from "../../src/core/locale";
-import { format_area, format_length, format_number } from "../../src/domain/measure";
+import { formatArea, formatLength, formatNumber } from "../../src/domain/measure";
 
-afterEach(() => load_texts("en", true, []));
+afterEach(() => loadTexts("en", true, []));
 
 describe("the language of the page", () => {
   it("is the one that was chosen, else the first of the browser's that there is, else English", () => {
-    expect(page_language(null, ["de-AT", "en"])).toBe("de");
-    expect(page_language(null, ["fr", "es-MX", "de"])).toBe("es");
-    expect(page_language("es", ["de"])).toBe("es");
-    expect(page_language(null, ["fr"])).toBe("en");
-    expect(page_language(null, [])).toBe("en");
-    expect(page_language("tlh", ["de"])).toBe("de"); // kept by a page that had more languages
+    expect(pageLanguage(null, ["de-AT", "en"])).toBe("de");
+    expect(pageLanguage(null, ["fr", "es-MX", "de"])).toBe("es");
+    expect(pageLanguage("es", ["de"])).toBe("es");
+    expect(pageLanguage(null, ["fr"])).toBe("en");
+    expect(pageLanguage(null, [])).toBe("en");
+    expect(pageLanguage("tlh", ["de"])).toBe("de"); // kept by a page that had more languages
   });
 
   it("is written as in the browser's variety of it, and data are called by it first where it was chosen", () => {
-    set_locale("de", false, ["fr", "de-CH", "de"]);
-    expect(page_locale()).toBe("de-CH");
-    expect(person_languages()).toEqual(["fr", "de-CH", "de"]);
-    set_locale("es", true, ["de-CH", "de"]);
-    expect(page_locale()).toBe("es");
-    expect(person_languages()).toEqual(["es", "de-CH", "de"]);
-    expect(label_of({ name: "State", labels: { de: "Zustand", es: "Estado" } })).toBe("Estado");
+    setLocale("de", false, ["fr", "de-CH", "de"]);
+    expect(pageLocale()).toBe("de-CH");
+    expect(personLanguages()).toEqual(["fr", "de-CH", "de"]);
+    setLocale("es", true, ["de-CH", "de"]);
+    expect(pageLocale()).toBe("es");
+    expect(personLanguages()).toEqual(["es", "de-CH", "de"]);
+    expect(labelOf({ name: "State", labels: { de: "Zustand", es: "Estado" } })).toBe("Estado");
   });
 });
 
 describe("numbers", () => {
   it("are written as in the language", () => {
     const written = (): string[] => [
-      format_count(1234567),
-      format_number(0.125),
-      format_length(1.24),
-      format_area(2.5e9),
-      typed_number(-1.5),
-      format_place(["1", "2"]),
+      formatCount(1234567),
+      formatNumber(0.125),
+      formatLength(1.24),
+      formatArea(2.5e9),
+      typedNumber(-1.5),
+      formatPlace(["1", "2"]),
     ];
-    set_locale("en", false, ["en-GB"]);
+    setLocale("en", false, ["en-GB"]);
     expect(written()).toEqual(["1,234,567", "0.125", "1.24 m", "2.50e+9 m²", "-1.5", "1, 2"]);
-    set_locale("de", false, ["de-DE"]);
+    setLocale("de", false, ["de-DE"]);
     expect(written()).toEqual(["1.234.567", "0,125", "1,24 m", "2,50e+9 m²", "-1,5", "1; 2"]);
-    set_locale("es", false, ["es-MX"]);
+    setLocale("es", false, ["es-MX"]);
     expect(written()).toEqual(["1,234,567", "0.125", "1.24 m", "2.50e+9 m²", "-1.5", "1, 2"]);
   });
 
   it("are read with the language's decimal sign or a point, and never guessed", () => {
-    set_locale("de", false, []);
-    expect(["1,5", " -0,25 ", "1.5", "0.125", "1e-3", ",5", "1500"].map(read_number)).toEqual([
+    setLocale("de", false, []);
+    expect(["1,5", " -0,25 ", "1.5", "0.125", "1e-3", ",5", "1500"].map(readNumber)).toEqual([
       1.5, -0.25, 1.5, 0.125, 0.001, 0.5, 1500,
     ]);
     for (const wrong of [
@@ -76,17 +76,17 @@ describe("numbers", () => {
       "NaN",
       "Infinity",
     ])
-      expect(read_number(wrong), wrong).toBeNaN();
-    set_locale("en", false, []);
-    expect(["1.5", "1.500"].map(read_number)).toEqual([1.5, 1.5]);
-    for (const wrong of ["1,5", "1,500"]) expect(read_number(wrong), wrong).toBeNaN();
+      expect(readNumber(wrong), wrong).toBeNaN();
+    setLocale("en", false, []);
+    expect(["1.5", "1.500"].map(readNumber)).toEqual([1.5, 1.5]);
+    for (const wrong of ["1,5", "1,500"]) expect(readNumber(wrong), wrong).toBeNaN();
   });
 
   it("are in fields of records as they may be typed again", () => {
     for (const language of kPageLanguages) {
-      set_locale(language, true, []);
+      setLocale(language, true, []);
       for (const value of [0, 1.5, -1234.5678, 1e21, 1e-7, 1500, 0.001])
-        expect(parse_cell({ kind: "numeric" }, cell_text(value))).toEqual({ value });
+        expect(parseCell({ kind: "numeric" }, cellText(value))).toEqual({ value });
     }
   });
 });
@@ -96,16 +96,16 @@ describe("moments and lists", () => {
     const now = new Date(2026, 10, 21, 15, 0);
     const at = (days: number): string => new Date(2026, 10, 21 - days, 14, 5).toISOString();
     const told = (): string[] => [
-      told_time(at(0), now),
-      told_time(at(1), now),
-      told_date(at(2)),
-      format_list(["a", "b", "c"]),
+      toldTime(at(0), now),
+      toldTime(at(1), now),
+      toldDate(at(2)),
+      formatList(["a", "b", "c"]),
     ];
-    set_locale("en", false, ["en-GB"]);
+    setLocale("en", false, ["en-GB"]);
     expect(told()).toEqual(["today, 14:05", "yesterday, 14:05", "19 Nov 2026", "a, b, c"]);
-    set_locale("de", false, ["de-DE"]);
+    setLocale("de", false, ["de-DE"]);
     expect(told()).toEqual(["heute, 14:05", "gestern, 14:05", "19. Nov. 2026", "a, b und c"]);
-    set_locale("es", false, ["es-ES"]);
+    setLocale("es", false, ["es-ES"]);
     expect(told()).toEqual(["hoy, 14:05", "ayer, 14:05", "19 nov 2026", "a, b, c"]);
   });
 });
@@ -119,7 +119,7 @@ function leaves(from: unknown, path = ""): [string, string][] {
       `${path}(${n})`,
       makes(
         ...Array.from({ length: makes.length }, () => n).map((each, i) =>
-          takes_words.has(path) ? `word${i}` : each,
+          takesWords.has(path) ? `word${i}` : each,
         ),
       ),
     ]);
@@ -129,7 +129,7 @@ function leaves(from: unknown, path = ""): [string, string][] {
     leaves(value, path ? `${path}.${key}` : key),
   );
 }
-const takes_words = new Set([
+const takesWords = new Set([
   "account.token_line",
   "join.lead",
   "people.role_now",
@@ -139,22 +139,20 @@ const takes_words = new Set([
   "site_people.role_changed",
 ]);
 
-async function in_language(
-  language: (typeof kPageLanguages)[number],
-): Promise<Map<string, string>> {
-  await load_texts(language, true, []);
+async function inLanguage(language: (typeof kPageLanguages)[number]): Promise<Map<string, string>> {
+  await loadTexts(language, true, []);
   return new Map(leaves(texts satisfies Texts));
 }
 
 describe("the texts", () => {
   it("are there in each language, none empty, and none left in English", async () => {
-    const english = await in_language("en");
+    const english = await inLanguage("en");
     expect(english.size).toBeGreaterThan(900);
     // Written alike in two languages: names, signs, examples of what is typed.
     const alike =
       /^(product|brush\.width_|account\.token_line|expressions\.functions|areas\.grammar|tables\.examples|view\.sections|labels\.language_example|help\.\w+\.\d+\.0)/;
     for (const language of ["de", "es"] as const) {
-      const translated = await in_language(language);
+      const translated = await inLanguage(language);
       expect([...translated.keys()]).toEqual([...english.keys()]);
       for (const [path, text] of translated) {
         expect(text, `${language} ${path}`).not.toBe("");
@@ -166,9 +164,9 @@ describe("the texts", () => {
   });
 
   it("keep what they are told: each argument of a text is in each language's", async () => {
-    const english = await in_language("en");
+    const english = await inLanguage("en");
     for (const language of ["de", "es"] as const) {
-      for (const [path, text] of await in_language(language)) {
+      for (const [path, text] of await inLanguage(language)) {
         if (!path.endsWith("(7)")) continue;
         const told = (said: string): number => said.split(/7|word\d/).length - 1;
         expect(told(text) > 0, `${language} ${path}: ${text}`).toBe(told(english.get(path)!) > 0);
@@ -177,15 +175,15 @@ describe("the texts", () => {
   });
 
   it("have the plurals of the language", async () => {
-    await load_texts("en", true, []);
+    await loadTexts("en", true, []);
     expect([0, 1, 2].map(texts.home.count)).toEqual(["0 models", "1 model", "2 models"]);
-    await load_texts("de", true, []);
+    await loadTexts("de", true, []);
     expect([0, 1, 1200].map(texts.tables.records)).toEqual([
       "0 Datensätze",
       "1 Datensatz",
       "1.200 Datensätze",
     ]);
-    await load_texts("es", true, []);
+    await loadTexts("es", true, []);
     expect([1, 2, 1000000].map(texts.home.triangles)).toEqual([
       "1 triángulo",
       "2 triángulos",

@@ -40,14 +40,14 @@ describe("messages", () => {
       expect(passes(schema, json)).toBe(true);
     });
 
-  for (const { name, schema, json, schema_passes } of fixtures("invalid").filter(
+  for (const { name, schema, json, schema_passes: schemaPasses } of fixtures("invalid").filter(
     (f) => f.schema !== "ClientMessage",
   ))
-    it(`the invalid fixture "${name}" is ${schema_passes ? "left to the server" : "refused"}`, () => {
-      expect(passes(schema, json)).toBe(schema_passes ?? false);
+    it(`the invalid fixture "${name}" is ${schemaPasses ? "left to the server" : "refused"}`, () => {
+      expect(passes(schema, json)).toBe(schemaPasses ?? false);
     });
 
-  const from_server = [
+  const fromServer = [
     "Welcome",
     "Applied",
     "Saved",
@@ -56,7 +56,7 @@ describe("messages", () => {
     "ModelEvent",
     "RecordEvent",
   ];
-  for (const { name, json } of fixtures("valid").filter((f) => from_server.includes(f.schema)))
+  for (const { name, json } of fixtures("valid").filter((f) => fromServer.includes(f.schema)))
     it(`the server's message "${name}" is read`, () => {
       expect(parse_server_message(JSON.stringify(json))).toEqual(json);
     });

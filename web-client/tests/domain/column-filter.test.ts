@@ -1,16 +1,16 @@
 // What is chosen in the filter of a column, and the text that says so.
 import { describe, expect, it } from "vitest";
 import {
-  chosen_in,
-  condition_of,
-  conditions_of,
-  filter_kinds,
-  filter_of,
-  with_choice,
+  chosenIn,
+  conditionOf,
+  conditionsOf,
+  filterKinds,
+  filterOf,
+  withChoice,
   type ColumnFilter,
 } from "../../src/domain/column-filter";
 import type { ColumnKind } from "../../src/core/protocol.gen";
-import { count_values } from "../../src/domain/value-counts";
+import { countValues } from "../../src/domain/value-counts";
 
 const column = (slug: string, kind: ColumnKind) => ({ slug, kind });
 const soil = column("soil", "enumeration");
@@ -49,17 +49,17 @@ const chosen: [ReturnType<typeof column>, ColumnFilter, string][] = [
 
 describe("the filter of a column", () => {
   it.each(chosen)("of %o says %o as “%s”, and is found again in it", (of, filter, text) => {
-    expect(condition_of(of, filter)).toBe(text);
-    expect(filter_of(of, text)).toEqual(filter);
-    expect(chosen_in(`other is not null and ${text} and x between 1 and 2`, of)).toEqual(filter);
+    expect(conditionOf(of, filter)).toBe(text);
+    expect(filterOf(of, text)).toEqual(filter);
+    expect(chosenIn(`other is not null and ${text} and x between 1 and 2`, of)).toEqual(filter);
   });
 
   it("asks nothing where nothing is chosen", () => {
-    expect(condition_of(soil, { is: "one_of", values: [], empty: false })).toBe("");
-    expect(condition_of(soil, { is: "one_of", values: [], empty: true })).toBe("soil is null");
-    expect(condition_of(depth, { is: "range", from: "", to: "" })).toBe("");
-    expect(condition_of(note, { is: "contains", text: "" })).toBe("");
-    expect(with_choice("", soil, null)).toBe("");
+    expect(conditionOf(soil, { is: "one_of", values: [], empty: false })).toBe("");
+    expect(conditionOf(soil, { is: "one_of", values: [], empty: true })).toBe("soil is null");
+    expect(conditionOf(depth, { is: "range", from: "", to: "" })).toBe("");
+    expect(conditionOf(note, { is: "contains", text: "" })).toBe("");
+    expect(withChoice("", soil, null)).toBe("");
   });
 
   it("does not take for its own what it did not write", () => {
@@ -71,39 +71,39 @@ describe("the filter of a column", () => {
       "notes is null",
       "not soil = 'clay'",
     ])
-      expect([soil, depth, note].map((of) => chosen_in(typed, of))).toEqual([null, null, null]);
+      expect([soil, depth, note].map((of) => chosenIn(typed, of))).toEqual([null, null, null]);
   });
 
   it("parts a text at its outer “and” alone", () => {
     expect(
-      conditions_of("a = 'x and y' and (b = 1 and c = 2) and d between 1 and 2 AND e is null"),
+      conditionsOf("a = 'x and y' and (b = 1 and c = 2) and d between 1 and 2 AND e is null"),
     ).toEqual(["a = 'x and y'", "(b = 1 and c = 2)", "d between 1 and 2", "e is null"]);
-    expect(conditions_of('"and" = 1 and land = 2')).toEqual(['"and" = 1', "land = 2"]);
-    expect(conditions_of("a = 1 or b = 2")).toEqual(["(a = 1 or b = 2)"]);
-    expect(conditions_of("  ")).toEqual([]);
+    expect(conditionsOf('"and" = 1 and land = 2')).toEqual(['"and" = 1', "land = 2"]);
+    expect(conditionsOf("a = 1 or b = 2")).toEqual(["(a = 1 or b = 2)"]);
+    expect(conditionsOf("  ")).toEqual([]);
   });
 
   it("replaces its own condition and leaves the others", () => {
-    const by_depth = with_choice("soil = 'clay' and note like 'x%'", depth, {
+    const byDepth = withChoice("soil = 'clay' and note like 'x%'", depth, {
       is: "range",
       from: "1",
       to: "",
     });
-    expect(by_depth).toBe("soil = 'clay' and note like 'x%' and depth >= 1");
-    expect(with_choice(by_depth, soil, { is: "one_of", values: ["sand"], empty: false })).toBe(
+    expect(byDepth).toBe("soil = 'clay' and note like 'x%' and depth >= 1");
+    expect(withChoice(byDepth, soil, { is: "one_of", values: ["sand"], empty: false })).toBe(
       "note like 'x%' and depth >= 1 and soil = 'sand'",
     );
-    expect(with_choice(by_depth, soil, null)).toBe("note like 'x%' and depth >= 1");
-    expect(with_choice("a = 1 or b = 2", soil, { is: "empty" })).toBe(
+    expect(withChoice(byDepth, soil, null)).toBe("note like 'x%' and depth >= 1");
+    expect(withChoice("a = 1 or b = 2", soil, { is: "empty" })).toBe(
       "(a = 1 or b = 2) and soil is null",
     );
-    expect(with_choice("(a = 1 or b = 2) and soil is null", soil, null)).toBe("a = 1 or b = 2");
+    expect(withChoice("(a = 1 or b = 2) and soil is null", soil, null)).toBe("a = 1 or b = 2");
   });
 
   it("asks of each kind of column what it can hold", () => {
-    expect(filter_kinds(depth)).toEqual(["range", "one_of", "filled", "empty"]);
-    expect(filter_kinds(note)).toEqual(["one_of", "contains", "filled", "empty"]);
-    expect(filter_kinds(column("photos", "picture"))).toEqual(["filled", "empty"]);
+    expect(filterKinds(depth)).toEqual(["range", "one_of", "filled", "empty"]);
+    expect(filterKinds(note)).toEqual(["one_of", "contains", "filled", "empty"]);
+    expect(filterKinds(column("photos", "picture"))).toEqual(["filled", "empty"]);
   });
 });
 
@@ -113,7 +113,7 @@ describe("the values of a column", () => {
   it("are counted over all pages, each record that a cell names by itself", async () => {
     const all = [record(1, [3, 5]), record(2, [5]), record(3, null), record(4, undefined)];
     const asked: number[] = [];
-    const counts = await count_values(({ offset }) => {
+    const counts = await countValues(({ offset }) => {
       asked.push(offset);
       return Promise.resolve({
         records: all.slice(offset, offset + 3),
@@ -121,7 +121,7 @@ describe("the values of a column", () => {
       } as never);
     }, "a");
     expect(asked).toEqual([0, 3]);
-    expect([...counts.of_value]).toEqual([
+    expect([...counts.ofValue]).toEqual([
       [3, 1],
       [5, 2],
     ]);

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { complete, marked_at, name_in_text } from "../../src/domain/completion";
+import { complete, markedAt, nameInText } from "../../src/domain/completion";
 
 const all = [
   "moisture",
@@ -35,7 +35,7 @@ describe("completion of an expression", () => {
     expect(texts("pieces.state = 'a' and m")).toEqual(["moisture", "min("]);
   });
   it("puts names in quotes that are words of the language or begin with a digit", () => {
-    expect(["moisture", "3d", "and", "min"].map(name_in_text)).toEqual([
+    expect(["moisture", "3d", "and", "min"].map(nameInText)).toEqual([
       "moisture",
       '"3d"',
       '"and"',
@@ -43,7 +43,7 @@ describe("completion of an expression", () => {
     ]);
   });
   it("marks the character that is wrong by code point", () => {
-    expect(marked_at("ä𝄞b", 1)).toEqual(["ä", "𝄞", "b"]);
-    expect(marked_at("ab", 2)).toEqual(["ab", " ", ""]);
+    expect(markedAt("ä𝄞b", 1)).toEqual(["ä", "𝄞", "b"]);
+    expect(markedAt("ab", 2)).toEqual(["ab", " ", ""]);
   });
 });

@@ -1,13 +1,7 @@
 import { describe, expect, it } from "vitest";
 
-import { cell_text, named_keys } from "../../src/domain/cells";
-import {
-  describe_mark,
-  mark_length,
-  marks_of,
-  simplify_line,
-  summary_of,
-} from "../../src/domain/marks";
+import { cellText, namedKeys } from "../../src/domain/cells";
+import { describeMark, markLength, marksOf, simplifyLine, summaryOf } from "../../src/domain/marks";
 import type { Mark, MarkPlace } from "../../src/core/protocol.gen";
 
 const line = (model: number, ...coordinates: MarkPlace[]): Mark => ({ model, coordinates });
@@ -24,42 +18,42 @@ describe("lines and points of a cell", () => {
   ];
 
   it("are measured on one model and counted on the others", () => {
-    expect(mark_length(cell[0]!)).toBe(17);
-    expect(summary_of(cell, { id: 1, unit: "cm" })).toEqual({ here: 2, elsewhere: 1, metres: 0.2 });
-    expect(summary_of(null, { id: 1, unit: "cm" })).toEqual({ here: 0, elsewhere: 0, metres: 0 });
+    expect(markLength(cell[0]!)).toBe(17);
+    expect(summaryOf(cell, { id: 1, unit: "cm" })).toEqual({ here: 2, elsewhere: 1, metres: 0.2 });
+    expect(summaryOf(null, { id: 1, unit: "cm" })).toEqual({ here: 0, elsewhere: 0, metres: 0 });
   });
 
   it("are told one by one by their length or place, in the model's unit", () => {
-    expect(describe_mark(cell[0]!, "line", { unit: "mm" })).toBe("1.7 cm");
-    expect(describe_mark(line(1, [1.234567, -2, 300_000.4]), "point", { unit: "m" })).toBe(
+    expect(describeMark(cell[0]!, "line", { unit: "mm" })).toBe("1.7 cm");
+    expect(describeMark(line(1, [1.234567, -2, 300_000.4]), "point", { unit: "m" })).toBe(
       "1.2346, -2, 300000 m",
     );
   });
 
   it("are no keys of records or files, and those are no marks", () => {
-    expect(named_keys(cell)).toEqual([]);
-    expect(marks_of([3, 4])).toEqual([]);
-    expect(marks_of(cell)).toBe(cell);
-    expect([cell_text(cell), cell_text([3, 4])]).toEqual(["3", "3 4"]);
+    expect(namedKeys(cell)).toEqual([]);
+    expect(marksOf([3, 4])).toEqual([]);
+    expect(marksOf(cell)).toBe(cell);
+    expect([cellText(cell), cellText([3, 4])]).toEqual(["3", "3 4"]);
   });
 });
 
 describe("a line that was seen pixel by pixel", () => {
   it("keeps its ends and what bends it by more than the tolerance, in order", () => {
     const bent = [...row(0, 10), [10, 5, 0], [10, 10, 0.4], [10, 20, 0]] as MarkPlace[];
-    expect(simplify_line(bent, () => 0.5)).toEqual([
+    expect(simplifyLine(bent, () => 0.5)).toEqual([
       [0, 0, 0],
       [10, 0, 0],
       [10, 20, 0],
     ]);
-    expect(simplify_line(bent, () => 0.3)).toEqual([
+    expect(simplifyLine(bent, () => 0.3)).toEqual([
       [0, 0, 0],
       [10, 0, 0],
       [10, 10, 0.4],
       [10, 20, 0],
     ]);
     expect(
-      simplify_line(
+      simplifyLine(
         [
           [1, 2, 3],
           [4, 5, 6],
@@ -78,7 +72,7 @@ describe("a line that was seen pixel by pixel", () => {
       4 * Math.sin(at / 40),
       Math.cos(at / 90),
     ]);
-    const kept = simplify_line(wavy, () => 0.25);
+    const kept = simplifyLine(wavy, () => 0.25);
     expect(kept.length).toBeLessThan(wavy.length / 10);
     const distance = ([x, y, z]: MarkPlace, a: MarkPlace, b: MarkPlace): number => {
       const [dx, dy, dz] = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
@@ -98,8 +92,8 @@ describe("a line that was seen pixel by pixel", () => {
   });
 
   it("closes up where it ends at its beginning", () => {
-    const there_and_back = [...row(0, 20), ...row(0, 20).reverse()];
-    expect(simplify_line(there_and_back, one)).toEqual([
+    const thereAndBack = [...row(0, 20), ...row(0, 20).reverse()];
+    expect(simplifyLine(thereAndBack, one)).toEqual([
       [0, 0, 0],
       [20, 0, 0],
       [0, 0, 0],

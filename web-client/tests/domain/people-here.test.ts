@@ -1,12 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import {
-  contrast,
-  followers_of,
-  ink_on,
-  leads_back,
-  people_here,
-} from "../../src/domain/people-here";
+import { contrast, followersOf, inkOn, leadsBack, peopleHere } from "../../src/domain/people-here";
 import type { PresenceUser } from "../../src/core/protocol.gen";
 
 const viewer = (session: string, name: string, more: Partial<PresenceUser> = {}): PresenceUser => ({
@@ -18,7 +12,7 @@ const viewer = (session: string, name: string, more: Partial<PresenceUser> = {})
 
 describe("people at a model", () => {
   it("one's own comes first, the others as they came", () => {
-    const people = people_here([viewer("a", "ada"), viewer("b", "bea"), viewer("c", "carl")], "b");
+    const people = peopleHere([viewer("a", "ada"), viewer("b", "bea"), viewer("c", "carl")], "b");
     expect(people.map(({ user, own }) => [user, own])).toEqual([
       ["bea", true],
       ["ada", false],
@@ -32,19 +26,19 @@ describe("people at a model", () => {
       viewer("a2", "ada", { full_name: "Ada Lovelace", pointer: { position: [0, 0, 0] } }),
       viewer("b", "bea"),
     ];
-    const [, ada] = people_here(windows, "b");
+    const [, ada] = peopleHere(windows, "b");
     expect([ada!.user, ada!.full_name, ada!.viewer!.session]).toEqual([
       "ada",
       "Ada Lovelace",
       "a2",
     ]);
     windows[0]!.leading = true;
-    expect(people_here(windows, "b")[1]!.viewer!.session).toBe("a1");
+    expect(peopleHere(windows, "b")[1]!.viewer!.session).toBe("a1");
   });
 
   it("one's own second window may be followed, this one not", () => {
-    expect(people_here([viewer("a", "ada")], "a")[0]!.viewer).toBe(null);
-    expect(people_here([viewer("a", "ada"), viewer("a2", "ada")], "a")[0]!.viewer!.session).toBe(
+    expect(peopleHere([viewer("a", "ada")], "a")[0]!.viewer).toBe(null);
+    expect(peopleHere([viewer("a", "ada"), viewer("a2", "ada")], "a")[0]!.viewer!.session).toBe(
       "a2",
     );
   });
@@ -56,7 +50,7 @@ describe("people at a model", () => {
       viewer("b2", "bea", { following: "a" }),
       viewer("c", "carl"),
     ];
-    expect(followers_of(people_here(viewers, "a"), "a").map(({ user }) => user)).toEqual(["bea"]);
+    expect(followersOf(peopleHere(viewers, "a"), "a").map(({ user }) => user)).toEqual(["bea"]);
   });
 
   it("following that leads back is known, over any number of people", () => {
@@ -66,7 +60,7 @@ describe("people at a model", () => {
       viewer("c", "carl", { following: "a" }),
       viewer("d", "dora"),
     ];
-    expect(["b", "c", "d", "a"].map((session) => leads_back(chain, session, "a"))).toEqual([
+    expect(["b", "c", "d", "a"].map((session) => leadsBack(chain, session, "a"))).toEqual([
       true,
       true,
       false,
@@ -74,7 +68,7 @@ describe("people at a model", () => {
     ]);
     // two messages met: it does not hang
     const ring = [viewer("b", "bea", { following: "c" }), viewer("c", "carl", { following: "b" })];
-    expect(leads_back(ring, "b", "a")).toBe(false);
+    expect(leadsBack(ring, "b", "a")).toBe(false);
   });
 });
 
@@ -96,8 +90,8 @@ describe("ink on a colour", () => {
       "#7b5ea7",
       "#5c7a29",
     ];
-    for (const color of colors) expect(contrast(color, ink_on(color)), color).toBeGreaterThan(3.8);
-    expect([ink_on("#e69f00"), ink_on("#0072b2"), ink_on("#ffffff"), ink_on("#000000")]).toEqual([
+    for (const color of colors) expect(contrast(color, inkOn(color)), color).toBeGreaterThan(3.8);
+    expect([inkOn("#e69f00"), inkOn("#0072b2"), inkOn("#ffffff"), inkOn("#000000")]).toEqual([
       "#20292a",
       "#ffffff",
       "#20292a",

@@ -1,13 +1,8 @@
 import fc from "fast-check";
 import { describe, expect, it } from "vitest";
 
-import { make_plot, nearest_index, tick_labels, type PlotOf } from "../../src/domain/plot";
-import {
-  length_of,
-  passes_through,
-  profile_parts,
-  simplify_profile,
-} from "../../src/domain/profile";
+import { makePlot, nearestIndex, tickLabels, type PlotOf } from "../../src/domain/plot";
+import { lengthOf, passesThrough, profileParts, simplifyProfile } from "../../src/domain/profile";
 import type { ProfileSample } from "../../src/core/protocol.gen";
 
 const one = (): number => 1;
@@ -24,7 +19,7 @@ const hit = (x: number, y: number, z: number, moisture?: number): ProfileSample 
 });
 const miss: ProfileSample = { along_mm: 0, point: { hit: false } };
 const alongs = (samples: ProfileSample[]): number[][] =>
-  profile_parts(samples, one, null).map((part) => part.map(({ along }) => along));
+  profileParts(samples, one, null).map((part) => part.map(({ along }) => along));
 
 describe("a profile", () => {
   it("counts how far places are along the surface, and nothing where the line leaves it", () => {
@@ -34,8 +29,8 @@ describe("a profile", () => {
       [1, 3],
     ]);
     expect(alongs([miss, miss])).toEqual([]);
-    expect(length_of(profile_parts([], one, null))).toBe(0);
-    expect(length_of(profile_parts([hit(0, 0, 0), hit(3, 0, 4), miss], one, null))).toBe(5);
+    expect(lengthOf(profileParts([], one, null))).toBe(0);
+    expect(lengthOf(profileParts([hit(0, 0, 0), hit(3, 0, 4), miss], one, null))).toBe(5);
   });
 
   it("does not leap from an edge to what lies far behind it", () => {
@@ -46,15 +41,15 @@ describe("a profile", () => {
   });
 
   it("has the values of the layer that was asked for, and none where it has none", () => {
-    const [part] = profile_parts([hit(0, 0, 0, 7), hit(1, 0, 0), hit(2, 0, 0, 0)], one, "moisture");
+    const [part] = profileParts([hit(0, 0, 0, 7), hit(1, 0, 0), hit(2, 0, 0, 0)], one, "moisture");
     expect(part!.map(({ value }) => value)).toEqual([7, null, 0]);
-    expect(profile_parts([hit(0, 0, 0, 7)], one, null)[0]![0]!.value).toBeNull();
+    expect(profileParts([hit(0, 0, 0, 7)], one, null)[0]![0]!.value).toBeNull();
   });
 
   it("passes through places that it comes near to", () => {
-    const parts = profile_parts([hit(0, 0, 0), hit(1, 0, 0), hit(2, 0, 0)], one, null);
+    const parts = profileParts([hit(0, 0, 0), hit(1, 0, 0), hit(2, 0, 0)], one, null);
     expect(
-      passes_through(
+      passesThrough(
         parts,
         [
           [0, 0, 0.5],
@@ -64,7 +59,7 @@ describe("a profile", () => {
       ),
     ).toBe(true);
     expect(
-      passes_through(
+      passesThrough(
         parts,
         [
           [0, 0, 0],
@@ -76,19 +71,19 @@ describe("a profile", () => {
   });
 
   it("is drawn with the places that its course needs", () => {
-    const roof = profile_parts(
+    const roof = profileParts(
       Array.from({ length: 21 }, (_, at) => hit(at, 0, 10 - Math.abs(at - 10))),
       one,
       null,
     );
     expect(
-      simplify_profile(roof, () => 0.1).map((part) => part.map(({ place }) => place[0])),
+      simplifyProfile(roof, () => 0.1).map((part) => part.map(({ place }) => place[0])),
     ).toEqual([[0, 10, 20]]);
   });
 });
 
-const plot_of = (more: Partial<PlotOf> = {}): ReturnType<typeof make_plot> =>
-  make_plot({
+const plotOf = (more: Partial<PlotOf> = {}): ReturnType<typeof makePlot> =>
+  makePlot({
     parts: [
       [
         { x: 0, y: 0.01 },
@@ -96,7 +91,7 @@ const plot_of = (more: Partial<PlotOf> = {}): ReturnType<typeof make_plot> =>
         { x: 0.1, y: 0.01 },
       ],
     ],
-    y_unit: null,
+    yUnit: null,
     equal: false,
     width: 400,
     height: 200,
@@ -105,20 +100,20 @@ const plot_of = (more: Partial<PlotOf> = {}): ReturnType<typeof make_plot> =>
 
 describe("a plot", () => {
   it("writes ticks with the decimals that they need, and no more", () => {
-    expect(tick_labels([0, 2.5, 5])).toEqual(["0.0", "2.5", "5.0"]);
-    expect(tick_labels([0, 20, 40])).toEqual(["0", "20", "40"]);
-    expect(tick_labels([412.335, 412.34, 412.345])).toEqual(["412.335", "412.340", "412.345"]);
-    expect(tick_labels([-0.02, -0.01, 0, 0.01])).toEqual(["-0.02", "-0.01", "0.00", "0.01"]);
-    expect(tick_labels([])).toEqual([]);
+    expect(tickLabels([0, 2.5, 5])).toEqual(["0.0", "2.5", "5.0"]);
+    expect(tickLabels([0, 20, 40])).toEqual(["0", "20", "40"]);
+    expect(tickLabels([412.335, 412.34, 412.345])).toEqual(["412.335", "412.340", "412.345"]);
+    expect(tickLabels([-0.02, -0.01, 0, 0.01])).toEqual(["-0.02", "-0.01", "0.00", "0.01"]);
+    expect(tickLabels([])).toEqual([]);
   });
 
   it("has lengths in the unit that suits them, at their place on the axis", () => {
-    const { x, y, left, right, top, bottom, x_at, y_at } = plot_of();
+    const { x, y, left, right, top, bottom, xAt, yAt } = plotOf();
     expect([x.unit, y.unit]).toEqual(["cm", "cm"]);
     expect(x.ticks.map(({ label }) => label)).toEqual(["0", "2", "4", "6", "8", "10"]);
-    for (const { at, label } of x.ticks) expect(at).toBeCloseTo(x_at(Number(label) / 100), 6);
-    for (const { at, label } of y.ticks) expect(at).toBeCloseTo(y_at(Number(label) / 100), 6);
-    expect([x_at(0), x_at(0.1)]).toEqual([left, right]);
+    for (const { at, label } of x.ticks) expect(at).toBeCloseTo(xAt(Number(label) / 100), 6);
+    for (const { at, label } of y.ticks) expect(at).toBeCloseTo(yAt(Number(label) / 100), 6);
+    expect([xAt(0), xAt(0.1)]).toEqual([left, right]);
     for (const { at } of y.ticks) expect(at >= top - 1e-6 && at <= bottom + 1e-6).toBe(true);
   });
 
@@ -128,7 +123,7 @@ describe("a plot", () => {
         fc.double({ min: 0.001, max: 100, noNaN: true }),
         fc.double({ min: 1e-4, max: 100, noNaN: true }),
         (long, high) => {
-          const plot = plot_of({
+          const plot = plotOf({
             equal: true,
             parts: [
               [
@@ -137,12 +132,12 @@ describe("a plot", () => {
               ],
             ],
           });
-          const wide_px = (plot.x_at(long) - plot.x_at(0)) / long;
-          const high_px = (plot.y_at(0) - plot.y_at(high)) / high;
-          expect(high_px / wide_px).toBeCloseTo(1, 6);
-          expect(plot.x_at(long)).toBeLessThanOrEqual(plot.right + 1e-6);
-          expect(plot.y_at(high)).toBeGreaterThanOrEqual(plot.top - 1e-6);
-          expect(plot.y_at(0)).toBeLessThanOrEqual(plot.bottom + 1e-6);
+          const widePx = (plot.xAt(long) - plot.xAt(0)) / long;
+          const highPx = (plot.yAt(0) - plot.yAt(high)) / high;
+          expect(highPx / widePx).toBeCloseTo(1, 6);
+          expect(plot.xAt(long)).toBeLessThanOrEqual(plot.right + 1e-6);
+          expect(plot.yAt(high)).toBeGreaterThanOrEqual(plot.top - 1e-6);
+          expect(plot.yAt(0)).toBeLessThanOrEqual(plot.bottom + 1e-6);
         },
       ),
     );
@@ -152,7 +147,7 @@ describe("a plot", () => {
     const y = fc.option(fc.double({ min: -1e6, max: 1e6, noNaN: true }), { nil: null });
     fc.assert(
       fc.property(fc.array(y, { minLength: 1, maxLength: 40 }), (ys) => {
-        const plot = plot_of({ y_unit: "%", parts: [ys.map((each, at) => ({ x: at, y: each }))] });
+        const plot = plotOf({ yUnit: "%", parts: [ys.map((each, at) => ({ x: at, y: each }))] });
         const numbers = plot.curves.flatMap((curve) =>
           curve.replaceAll("h0.01", "").split(/[ML ]/).filter(Boolean).map(Number),
         );
@@ -161,7 +156,7 @@ describe("a plot", () => {
           expect(each >= low - 0.01 && each <= high + 0.01).toBe(true);
         });
         expect(numbers.length / 2).toBe(ys.filter((each) => each !== null).length);
-        ys.forEach((_, at) => expect(plot.x_of(plot.x_at(at))).toBeCloseTo(at, 6));
+        ys.forEach((_, at) => expect(plot.xOf(plot.xAt(at))).toBeCloseTo(at, 6));
       }),
     );
   });
@@ -179,14 +174,14 @@ describe("a plot", () => {
         { x: 4, y: 6 },
       ],
     ];
-    const plot = plot_of({ y_unit: "", parts });
+    const plot = plotOf({ yUnit: "", parts });
     expect(plot.curves).toHaveLength(3);
     expect(plot.curves[1]).toMatch(/^M[\d.]+ [\d.]+h0\.01$/); // a point of its own is seen
-    expect(plot.breaks).toEqual([plot.x_at(3)]);
+    expect(plot.breaks).toEqual([plot.xAt(3)]);
   });
 
   it("does not blow up noise: what is flat looks flat, and empty ones are plots, too", () => {
-    const flat = plot_of({
+    const flat = plotOf({
       parts: [
         [
           { x: 0, y: 1 },
@@ -194,9 +189,9 @@ describe("a plot", () => {
         ],
       ],
     });
-    expect(flat.y_at(1) - flat.y_at(1 + 1e-9)).toBeLessThan(1);
-    expect(plot_of({ parts: [] }).curves).toEqual([]);
-    expect(plot_of({ parts: [[{ x: 0, y: 3 }]], y_unit: "%" }).y.ticks.length).toBeGreaterThan(0);
+    expect(flat.yAt(1) - flat.yAt(1 + 1e-9)).toBeLessThan(1);
+    expect(plotOf({ parts: [] }).curves).toEqual([]);
+    expect(plotOf({ parts: [[{ x: 0, y: 3 }]], yUnit: "%" }).y.ticks.length).toBeGreaterThan(0);
   });
 
   it("finds the place that is nearest to a pixel", () => {
@@ -207,7 +202,7 @@ describe("a plot", () => {
         (xs, x) => {
           xs.sort((a, b) => a - b);
           const distances = xs.map((each) => Math.abs(each - x));
-          expect(distances[nearest_index(xs, x)]).toBe(Math.min(...distances));
+          expect(distances[nearestIndex(xs, x)]).toBe(Math.min(...distances));
         },
       ),
     );

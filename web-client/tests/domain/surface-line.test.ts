@@ -1,11 +1,11 @@
 import { describe, expect, it } from "vitest";
 
 import type { Point } from "../../src/net/connection";
-import { mark_length } from "../../src/domain/marks";
+import { markLength } from "../../src/domain/marks";
 import type { MarkPlace } from "../../src/core/protocol.gen";
 import {
-  length_seen,
-  line_on_surface,
+  lengthSeen,
+  lineOnSurface,
   type Measures,
   type NearestAlong,
   type Step,
@@ -15,7 +15,7 @@ import {
 // behind it.
 const kRadius = 100;
 const kWall = -140;
-const measures: Measures = { pixel_at: () => 1, scale: 1 };
+const measures: Measures = { pixelAt: () => 1, scale: 1 };
 
 type Seen = (x: number, y: number) => Pick<Step, "place" | "normal">;
 const cylinder: Seen = (x, y) => {
@@ -24,10 +24,10 @@ const cylinder: Seen = (x, y) => {
     ? { place: [x, y, z], normal: [x / kRadius, 0, z / kRadius] }
     : { place: null, normal: null };
 };
-const before_a_wall: Seen = (x, y) =>
+const beforeAWall: Seen = (x, y) =>
   Math.abs(x) < kRadius ? cylinder(x, y) : { place: [x, y, kWall], normal: [0, 0, 1] };
 /** As the server finds them: of the cylinder and the wall the nearer one. */
-const nearest_along =
+const nearestAlong =
   (wall: boolean): NearestAlong =>
   (from, to, step) => {
     const count = Math.max(
@@ -57,15 +57,15 @@ function drawn(path: (t: number) => Point, seen: Seen): Step[] {
   }
   return steps;
 }
-const length_of = (pieces: MarkPlace[][]): number =>
-  pieces.reduce((sum, coordinates) => sum + mark_length({ coordinates }), 0);
-const off_the_cylinder = (piece: MarkPlace[]): number =>
+const lengthOf = (pieces: MarkPlace[][]): number =>
+  pieces.reduce((sum, coordinates) => sum + markLength({ coordinates }), 0);
+const offTheCylinder = (piece: MarkPlace[]): number =>
   Math.max(...piece.map(([x, , z]) => Math.abs(Math.hypot(x, z) - kRadius)));
 
 describe("a line that is drawn over a surface", () => {
   it("has the length of its way around a cylinder", async () => {
     const steps = drawn((t) => [-95 + 190 * t, 50 * t], cylinder);
-    const pieces = await line_on_surface(steps, measures, nearest_along(false));
+    const pieces = await lineOnSurface(steps, measures, nearestAlong(false));
     expect(pieces).toHaveLength(1);
     // A helix around the cylinder is not straight on the picture: the way is summed up finely.
     let analytic = 0;
@@ -73,20 +73,20 @@ describe("a line that is drawn over a surface", () => {
       const [a, b] = [-95 + (190 * i) / 1e5, -95 + (190 * (i + 1)) / 1e5];
       analytic += Math.hypot(kRadius * (Math.asin(b / kRadius) - Math.asin(a / kRadius)), 50 / 1e5);
     }
-    expect(length_of(pieces) / analytic).toBeCloseTo(1, 2);
-    expect(length_seen(steps, measures) / analytic).toBeCloseTo(1, 2);
+    expect(lengthOf(pieces) / analytic).toBeCloseTo(1, 2);
+    expect(lengthSeen(steps, measures) / analytic).toBeCloseTo(1, 2);
   });
 
   for (const [what, seen, wall] of [
     ["nothing", cylinder, false],
-    ["a wall", before_a_wall, true],
+    ["a wall", beforeAWall, true],
   ] as const) {
     it(`stays one line along the edge that it crosses again and again, before ${what}`, async () => {
       // Down the silhouette, 9 pixels beyond it and 13 on it, five times.
       const steps = drawn((t) => [98 + 11 * Math.sin(t * Math.PI * 10) - 2, 300 * t], seen);
-      const pieces = await line_on_surface(steps, measures, nearest_along(wall));
+      const pieces = await lineOnSurface(steps, measures, nearestAlong(wall));
       expect(pieces).toHaveLength(1);
-      expect(off_the_cylinder(pieces[0]!)).toBeLessThan(0.5);
+      expect(offTheCylinder(pieces[0]!)).toBeLessThan(0.5);
       // nothing of the wall
       expect(Math.min(...pieces[0]!.map(([, , z]) => z))).toBeGreaterThan(-30);
       // Where it is on the cylinder its own way, and beside it along the edge.
@@ -102,29 +102,29 @@ describe("a line that is drawn over a surface", () => {
           );
         last = place;
       }
-      expect(Math.abs(length_of(pieces) / analytic - 1)).toBeLessThan(0.12);
-      expect(Math.abs(length_seen(steps, measures) / length_of(pieces) - 1)).toBeLessThan(0.05);
+      expect(Math.abs(lengthOf(pieces) / analytic - 1)).toBeLessThan(0.12);
+      expect(Math.abs(lengthSeen(steps, measures) / lengthOf(pieces) - 1)).toBeLessThan(0.05);
     });
   }
 
   it("does not take the wall on which it slips off at the end", async () => {
-    const steps = drawn((t) => [60 + 55 * t, 10 * t], before_a_wall);
-    const pieces = await line_on_surface(steps, measures, nearest_along(true));
+    const steps = drawn((t) => [60 + 55 * t, 10 * t], beforeAWall);
+    const pieces = await lineOnSurface(steps, measures, nearestAlong(true));
     expect(pieces).toHaveLength(1);
-    expect(off_the_cylinder(pieces[0]!)).toBeLessThan(0.5);
+    expect(offTheCylinder(pieces[0]!)).toBeLessThan(0.5);
   });
 
   it("is cut where it goes on far behind the edge", async () => {
-    const pieces = await line_on_surface(
-      drawn((t) => [50 + 150 * t, 0], before_a_wall),
+    const pieces = await lineOnSurface(
+      drawn((t) => [50 + 150 * t, 0], beforeAWall),
       measures,
-      nearest_along(true),
+      nearestAlong(true),
     );
     expect(pieces).toHaveLength(2);
-    expect(off_the_cylinder(pieces[0]!)).toBeLessThan(0.5);
+    expect(offTheCylinder(pieces[0]!)).toBeLessThan(0.5);
     expect(pieces[1]!.every(([, , z]) => z === kWall)).toBe(true);
-    expect(length_of([pieces[1]!])).toBeCloseTo(100, -1);
-    expect(length_of([pieces[0]!]) / (kRadius * (Math.PI / 2 - Math.asin(0.5)))).toBeGreaterThan(
+    expect(lengthOf([pieces[1]!])).toBeCloseTo(100, -1);
+    expect(lengthOf([pieces[0]!]) / (kRadius * (Math.PI / 2 - Math.asin(0.5)))).toBeGreaterThan(
       0.85,
     );
   });
@@ -145,20 +145,20 @@ describe("a line that is drawn over a surface", () => {
     };
     const nothing: NearestAlong = () => Promise.resolve([]);
     const across = (seen: Seen): Step[] => drawn((t) => [200 * t, 0], seen);
-    const below = await line_on_surface(
+    const below = await lineOnSurface(
       across(flat((x) => (x > 80 && x < 120 ? [x, 0, 60] : [x, 0, 0]))),
       measures,
       plane,
     );
     expect(below).toHaveLength(1);
-    expect(length_of(below)).toBeCloseTo(200, -0.5);
-    const narrow = await line_on_surface(
+    expect(lengthOf(below)).toBeCloseTo(200, -0.5);
+    const narrow = await lineOnSurface(
       across(flat((x) => (x > 95 && x < 105 ? null : [x, 0, 0]))),
       measures,
       nothing,
     );
     expect(narrow).toHaveLength(1);
-    const wide = await line_on_surface(
+    const wide = await lineOnSurface(
       across(flat((x) => (x > 70 && x < 130 ? null : [x, 0, 0]))),
       measures,
       nothing,
@@ -178,21 +178,21 @@ describe("a line that is drawn over a surface", () => {
         ]),
       );
     };
-    const pieces = await line_on_surface(
+    const pieces = await lineOnSurface(
       drawn((t) => [200 * t, 0], seen),
       measures,
       walls,
     );
     expect(pieces).toHaveLength(1);
-    expect(length_of(pieces)).toBeCloseTo(230, -0.5);
+    expect(lengthOf(pieces)).toBeCloseTo(230, -0.5);
   });
 
   it("is none where there is no surface, or of a single place", async () => {
     const none = (places: (MarkPlace | null)[]): Promise<MarkPlace[][]> =>
-      line_on_surface(
+      lineOnSurface(
         places.map((place, at) => ({ at: [at, 0], place, normal: null })),
         measures,
-        nearest_along(false),
+        nearestAlong(false),
       );
     expect(await none([null, null])).toEqual([]);
     expect(

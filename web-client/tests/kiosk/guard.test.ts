@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
-import { fill_screen, keep_on_page, stay_awake } from "../../src/kiosk/guard";
+import { fillScreen, keepOnPage, stayAwake } from "../../src/kiosk/guard";
 
 /**
  * As browsers have it: on the document, who listens to wheels and fingers can refuse them only
@@ -42,7 +42,7 @@ describe("what keeps visitors on the page", () => {
     vi.stubGlobal("addEventListener", window.addEventListener.bind(window));
     vi.stubGlobal("history", history);
     vi.stubGlobal("location", { href: "https://strata.example/kiosk/secret" });
-    keep_on_page();
+    keepOnPage();
   });
 
   it.each(["contextmenu", "selectstart", "dragstart", "gesturestart", "gesturechange"])(
@@ -100,10 +100,10 @@ describe("a screen that stays on", () => {
   });
 
   it("is asked of the browser while the page is seen", async () => {
-    await stay_awake();
+    await stayAwake();
     expect(request.mock.calls).toEqual([["screen"]]);
     page.visibilityState = "hidden";
-    await stay_awake();
+    await stayAwake();
     expect(request).toHaveBeenCalledTimes(1);
   });
 
@@ -111,9 +111,9 @@ describe("a screen that stays on", () => {
     vi.stubGlobal("navigator", {
       wakeLock: { request: () => Promise.reject(new Error("low battery")) },
     });
-    await expect(stay_awake()).resolves.toBeUndefined();
+    await expect(stayAwake()).resolves.toBeUndefined();
     vi.stubGlobal("navigator", {});
-    await expect(stay_awake()).resolves.toBeUndefined();
+    await expect(stayAwake()).resolves.toBeUndefined();
   });
 });
 
@@ -122,7 +122,7 @@ describe("the whole screen", () => {
     vi.stubGlobal("screen", { width: 1080, height: 1920 });
     vi.stubGlobal("innerWidth", width);
     vi.stubGlobal("innerHeight", height);
-    fill_screen();
+    fillScreen();
     return page.documentElement.requestFullscreen.mock.calls.length > 0;
   };
   it("is asked for where bars of the browser are left", () => expect(fills(1080, 1800)).toBe(true));

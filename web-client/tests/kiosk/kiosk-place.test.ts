@@ -1,7 +1,7 @@
 // What a tap in a kiosk names.
 import { describe, expect, it } from "vitest";
 import type { Layer } from "../../src/core/types";
-import { layer_there, words_of_place } from "../../src/kiosk/place";
+import { layerThere, wordsOfPlace } from "../../src/kiosk/place";
 
 const layer = (change: Partial<Layer>): Layer =>
   ({
@@ -37,25 +37,25 @@ const picked = (values: Record<string, number>) =>
 
 describe("a tap in a kiosk", () => {
   it("finds the record before what lies over it, and otherwise the topmost layer", () => {
-    expect(layer_there([moisture, finds], picked({ moisture: 3, finds: 7 }))).toEqual({
+    expect(layerThere([moisture, finds], picked({ moisture: 3, finds: 7 }))).toEqual({
       layer: finds,
       value: 7,
     });
-    expect(layer_there([moisture, pieces], picked({ moisture: 3, pieces: 1 }))).toEqual({
+    expect(layerThere([moisture, pieces], picked({ moisture: 3, pieces: 1 }))).toEqual({
       layer: moisture,
       value: 3,
     });
-    expect(layer_there([moisture, pieces], picked({ pieces: 1 }))).toEqual({
+    expect(layerThere([moisture, pieces], picked({ pieces: 1 }))).toEqual({
       layer: pieces,
       value: 1,
     });
-    expect(layer_there([moisture, pieces], { values: { pieces: { valid: false } } })).toBeNull();
+    expect(layerThere([moisture, pieces], { values: { pieces: { valid: false } } })).toBeNull();
   });
 
   it("names the class, or the number with its unit, and the layer in the visitor's language", () => {
-    expect(words_of_place(pieces, 1, "de")).toEqual({ title: "Sherd 1", about: "Scherben" });
-    expect(words_of_place(pieces, 1, "es")).toEqual({ title: "Sherd 1", about: "Pieces" });
-    expect(words_of_place(pieces, 2, "en")).toEqual({ title: "Pieces", about: "" });
-    expect(words_of_place(moisture, 12.5, "en")).toEqual({ title: "12.5 %", about: "Moisture" });
+    expect(wordsOfPlace(pieces, 1, "de")).toEqual({ title: "Sherd 1", about: "Scherben" });
+    expect(wordsOfPlace(pieces, 1, "es")).toEqual({ title: "Sherd 1", about: "Pieces" });
+    expect(wordsOfPlace(pieces, 2, "en")).toEqual({ title: "Pieces", about: "" });
+    expect(wordsOfPlace(moisture, 12.5, "en")).toEqual({ title: "12.5 %", about: "Moisture" });
   });
 });

@@ -180,7 +180,7 @@ describe("the link of a kiosk", () => {
     const site = new Site();
     const host = { told: vi.fn(), missed: vi.fn(), worthless: vi.fn(), reload: vi.fn() };
     const refuse = vi
-      .spyOn(site.api, "sign_in_kiosk")
+      .spyOn(site.api, "signInKiosk")
       .mockRejectedValue(new ApiError({ status: 429, title: "Too many tries" }));
     new KioskLink(site.api, "SECRET", host).ask();
     await vi.advanceTimersByTimeAsync(10_000);
@@ -215,7 +215,7 @@ describe("what a kiosk keeps", () => {
   const make = (secret = "SECRET", shelf = new Shelf()) => {
     const site = new Site();
     const store = new KioskStore({
-      open_shelf: async () => shelf,
+      openShelf: async () => shelf,
       secret,
       files: () => ["/assets/main-1.js"],
       fetch: async (address, init) =>
@@ -227,7 +227,7 @@ describe("what a kiosk keeps", () => {
   it("is the page, its files, the views with their pictures, and what it was told, but not its secret", async () => {
     const { shelf, store, site } = make();
     await store.keep(site.self, "1");
-    expect(await store.last_told()).toEqual(site.self);
+    expect(await store.lastTold()).toEqual(site.self);
     const keys = await shelf.keys();
     for (const key of [
       "/kiosk/",
@@ -237,7 +237,7 @@ describe("what a kiosk keeps", () => {
     ])
       expect(keys).toContain(key);
     expect(JSON.stringify([...shelf.things])).not.toContain("SECRET");
-    expect(await make("OTHER", shelf).store.last_told()).toBeNull();
+    expect(await make("OTHER", shelf).store.lastTold()).toBeNull();
   });
 
   it("goes when a later state does not need it, and is not read again while nothing changed", async () => {
@@ -270,19 +270,19 @@ describe("what a kiosk keeps", () => {
     const { store, site } = make();
     const self = { ...site.self, expires: "2026-06-01T00:00:00Z" };
     await store.keep(self, "1");
-    expect(await store.last_told(new Date("2026-05-01"))).toEqual(self);
-    expect(await store.last_told(new Date("2026-07-01"))).toBeNull();
+    expect(await store.lastTold(new Date("2026-05-01"))).toEqual(self);
+    expect(await store.lastTold(new Date("2026-07-01"))).toBeNull();
   });
 
   it("is nothing where the browser has no store", async () => {
     const { site } = make();
     const store = new KioskStore({
-      open_shelf: async () => null,
+      openShelf: async () => null,
       secret: "SECRET",
       fetch: async (address) => site.answer(address),
     });
     await store.keep(site.self, "1");
-    expect(await store.last_told()).toBeNull();
+    expect(await store.lastTold()).toBeNull();
     await store.forget();
   });
 });
@@ -291,7 +291,7 @@ describe("the kiosk", () => {
   const make = (site = new Site(), last: KioskSelf | null = null) => {
     const sockets: FakeSocket[] = [];
     const store = {
-      last_told: vi.fn(async () => last),
+      lastTold: vi.fn(async () => last),
       keep: vi.fn(async () => {}),
       forget: vi.fn(async () => {}),
     };
@@ -301,7 +301,7 @@ describe("the kiosk", () => {
       secret: "SECRET",
       store,
       reload,
-      make_socket: (url, protocol) => {
+      makeSocket: (url, protocol) => {
         const socket = new FakeSocket(url, protocol);
         sockets.push(socket);
         return socket;
@@ -329,7 +329,7 @@ describe("the kiosk", () => {
     expect([session.resting, session.index]).toEqual([false, 0]);
     session.step(1);
     session.step(1);
-    session.choose_language("de");
+    session.chooseLanguage("de");
     expect([session.index, session.language]).toEqual([1, "de"]);
     await vi.advanceTimersByTimeAsync(59_000);
     expect(session.index).toBe(1);
@@ -352,7 +352,7 @@ describe("the kiosk", () => {
     site.away = false;
     await vi.advanceTimersByTimeAsync(10_000);
     connect(sockets.at(-1)!);
-    session.show!.frame_drawn({ header: { view_id: 0, frame: 1 } } as never);
+    session.show!.frameDrawn({ header: { view_id: 0, frame: 1 } } as never);
     expect([session.show!.away, session.show!.drawn]).toEqual([false, true]);
   });
 
@@ -414,12 +414,12 @@ describe("the kiosk", () => {
     const { session, sockets } = make();
     await settle();
     connect(sockets[0]!);
-    session.show!.frame_drawn({ header: { view_id: 0, frame: 1 } } as never);
+    session.show!.frameDrawn({ header: { view_id: 0, frame: 1 } } as never);
     const rounds: number[] = [];
     for (let round = 0; round < 2000; ++round) {
       session.touched();
       session.step(1);
-      session.choose_language("de");
+      session.chooseLanguage("de");
       await vi.advanceTimersByTimeAsync(300_000); // asked, gone, and the tour by itself
       expect(session.resting).toBe(true);
       sockets[0]!.sent.length = 0;

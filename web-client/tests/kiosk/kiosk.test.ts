@@ -1,32 +1,32 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { Api } from "../../src/net/api";
-import { between, OrbitCamera, place_of } from "../../src/math/camera";
+import { between, OrbitCamera, placeOf } from "../../src/math/camera";
 import type { Column, Table, TourStop, View } from "../../src/core/protocol.gen";
 import type { Layer } from "../../src/core/types";
-import { as_kiosk } from "../../src/kiosk/as-kiosk";
+import { asKiosk } from "../../src/kiosk/as-kiosk";
 import { AttractLoop } from "../../src/kiosk/attract";
-import { card_of } from "../../src/kiosk/cards";
-import { IdleWatch, kAsked_s } from "../../src/kiosk/idle";
-import { direction_of_language, words_in } from "../../src/kiosk/languages";
+import { cardOf } from "../../src/kiosk/cards";
+import { IdleWatch, kAskedS } from "../../src/kiosk/idle";
+import { directionOfLanguage, wordsIn } from "../../src/kiosk/languages";
 import {
-  choices_of,
-  first_choice,
-  layers_shown,
-  seen_layers,
-  step_from,
-  stops_of,
+  choicesOf,
+  firstChoice,
+  layersShown,
+  seenLayers,
+  stepFrom,
+  stopsOf,
   type Stop,
 } from "../../src/kiosk/stops";
-import { texts_in } from "../../src/kiosk/texts";
-import { answered, says_away } from "../../src/kiosk/worker-rules";
+import { textsIn } from "../../src/kiosk/texts";
+import { answered, saysAway } from "../../src/kiosk/worker-rules";
 
 beforeEach(() => void vi.useFakeTimers());
 afterEach(() => void vi.useRealTimers());
 
 describe("who stands before the kiosk", () => {
-  const watch = (idle_s = 60) => {
-    const host = { idle_s: () => idle_s, came: vi.fn(), left: vi.fn(), changed: vi.fn() };
+  const watch = (idleS = 60) => {
+    const host = { idleS: () => idleS, came: vi.fn(), left: vi.fn(), changed: vi.fn() };
     return { host, idle: new IdleWatch(host) };
   };
 
@@ -38,10 +38,10 @@ describe("who stands before the kiosk", () => {
     vi.advanceTimersByTime(59_000);
     expect(idle.presence).toEqual({ is: "visited" });
     vi.advanceTimersByTime(1_100);
-    expect(idle.presence).toEqual({ is: "asked", left_s: kAsked_s });
-    for (let left = kAsked_s - 1; left > 0; --left) {
+    expect(idle.presence).toEqual({ is: "asked", leftS: kAskedS });
+    for (let left = kAskedS - 1; left > 0; --left) {
       vi.advanceTimersByTime(1000);
-      expect(idle.presence).toEqual({ is: "asked", left_s: left });
+      expect(idle.presence).toEqual({ is: "asked", leftS: left });
     }
     expect(host.left).not.toHaveBeenCalled();
     vi.advanceTimersByTime(1000);
@@ -124,28 +124,28 @@ describe("the way between two stops", () => {
     const [from, to] = [new OrbitCamera(), new OrbitCamera()];
     Object.assign(from, { azimuth: 3, distance: 1 });
     Object.assign(to, { azimuth: -3, distance: 100 });
-    const middle = between(place_of(from), place_of(to), 0.5);
+    const middle = between(placeOf(from), placeOf(to), 0.5);
     expect(Math.abs(middle.azimuth)).toBeCloseTo(Math.PI, 6);
     expect(middle.distance).toBeCloseTo(10, 6);
-    expect(between(place_of(from), place_of(to), 1).distance).toBeCloseTo(100, 6);
+    expect(between(placeOf(from), placeOf(to), 1).distance).toBeCloseTo(100, 6);
   });
 });
 
 describe("the languages of a tour", () => {
   it("fall back to the tour's own order, not to another one", () => {
     const words = { de: "Topf", es: "Vasija" };
-    expect(words_in(words, "es", ["en", "de", "es"])).toBe("Vasija");
-    expect(words_in(words, "en", ["en", "de", "es"])).toBe("Topf");
-    expect(words_in({}, "en", ["en"])).toBe("");
-    expect(words_in(undefined, "en", ["en"])).toBe("");
+    expect(wordsIn(words, "es", ["en", "de", "es"])).toBe("Vasija");
+    expect(wordsIn(words, "en", ["en", "de", "es"])).toBe("Topf");
+    expect(wordsIn({}, "en", ["en"])).toBe("");
+    expect(wordsIn(undefined, "en", ["en"])).toBe("");
   });
 
   it("have buttons in a language that the page is written in", () => {
-    expect(texts_in("es", ["en", "es"]).next).toBe("Siguiente");
-    expect(texts_in("de-CH", ["de-CH"]).next).toBe("Weiter");
-    expect(texts_in("fr", ["de", "fr"]).next).toBe("Weiter");
-    expect(texts_in("fr", ["fr"]).next).toBe("Next");
-    expect([direction_of_language("ar-EG"), direction_of_language("de")]).toEqual(["rtl", "ltr"]);
+    expect(textsIn("es", ["en", "es"]).next).toBe("Siguiente");
+    expect(textsIn("de-CH", ["de-CH"]).next).toBe("Weiter");
+    expect(textsIn("fr", ["de", "fr"]).next).toBe("Weiter");
+    expect(textsIn("fr", ["fr"]).next).toBe("Next");
+    expect([directionOfLanguage("ar-EG"), directionOfLanguage("de")]).toEqual(["rtl", "ltr"]);
   });
 });
 
@@ -160,7 +160,7 @@ const layer = (id: number, slug: string, visible: boolean, order = id): Layer =>
   }) as unknown as Layer;
 const view = (id: number, slug: string, layers: View["layers"] = []): View =>
   ({ id, slug, name: slug, layers, light: { mode: "museum" }, version: 1 }) as unknown as View;
-const tour_stop = (change: Partial<TourStop>): TourStop => ({
+const tourStop = (change: Partial<TourStop>): TourStop => ({
   title: { en: "A" },
   text: {},
   attract_s: 10,
@@ -174,20 +174,20 @@ const tour_stop = (change: Partial<TourStop>): TourStop => ({
 describe("the stops", () => {
   const layers = [layer(1, "cracks", true), layer(2, "sherds", false), layer(3, "moisture", false)];
   const stop = (slugs: string[], shown: View["layers"]): Stop => ({
-    stop: tour_stop({ layers: slugs }),
+    stop: tourStop({ layers: slugs }),
     view: view(1, "a", shown),
   });
 
   it("without a view are passed over", () => {
     const tour = {
       stops: [
-        tour_stop({ view: "a" }),
-        tour_stop({}),
-        tour_stop({ view: "gone" }),
-        tour_stop({ view: "b" }),
+        tourStop({ view: "a" }),
+        tourStop({}),
+        tourStop({ view: "gone" }),
+        tourStop({ view: "b" }),
       ],
     };
-    const found = stops_of(
+    const found = stopsOf(
       tour,
       new Map([
         ["a", view(1, "a")],
@@ -195,7 +195,7 @@ describe("the stops", () => {
       ]),
     );
     expect(found.map(({ view: { slug } }) => slug)).toEqual(["a", "b"]);
-    expect([step_from(1, 1, 2), step_from(0, -1, 2), step_from(0, 1, 1)]).toEqual([0, 1, 0]);
+    expect([stepFrom(1, 1, 2), stepFrom(0, -1, 2), stepFrom(0, 1, 1)]).toEqual([0, 1, 0]);
   });
 
   it("offer their layers; where the view shows one of them, that is the first choice", () => {
@@ -206,17 +206,17 @@ describe("the stops", () => {
         { layer: 1, visible: false },
       ],
     );
-    expect(choices_of(one, layers).map((each) => each?.slug)).toEqual(["sherds", "cracks"]);
-    expect(first_choice(one, choices_of(one, layers))?.slug).toBe("sherds");
+    expect(choicesOf(one, layers).map((each) => each?.slug)).toEqual(["sherds", "cracks"]);
+    expect(firstChoice(one, choicesOf(one, layers))?.slug).toBe("sherds");
     const both = stop(["sherds", "cracks"], [{ layer: 2, visible: true }]);
-    expect(choices_of(both, layers).map((each) => each?.slug)).toEqual([
+    expect(choicesOf(both, layers).map((each) => each?.slug)).toEqual([
       undefined,
       "sherds",
       "cracks",
     ]);
-    expect(first_choice(both, choices_of(both, layers))).toBeNull();
-    expect(choices_of(stop([], []), layers)).toEqual([]);
-    expect(choices_of(stop(["gone"], []), layers)).toEqual([]);
+    expect(firstChoice(both, choicesOf(both, layers))).toBeNull();
+    expect(choicesOf(stop([], []), layers)).toEqual([]);
+    expect(choicesOf(stop(["gone"], []), layers)).toEqual([]);
   });
 
   it("show of these layers the chosen one, and the others as the view has them", () => {
@@ -228,15 +228,15 @@ describe("the stops", () => {
         { layer: 9, visible: true },
       ],
     );
-    const choices = choices_of(both, layers);
-    expect(layers_shown(both, layers, choices, null)).toEqual([
+    const choices = choicesOf(both, layers);
+    expect(layersShown(both, layers, choices, null)).toEqual([
       { layer: 2, visible: true, opacity: 0.5 },
       { layer: 3, visible: true },
     ]);
-    const shown = layers_shown(both, layers, choices, layers[0]!);
+    const shown = layersShown(both, layers, choices, layers[0]!);
     expect(shown).toContainEqual({ layer: 2, visible: false, opacity: 0.5 });
     expect(shown).toContainEqual({ layer: 1, visible: true });
-    expect(seen_layers(layers, shown).map(({ slug }) => slug)).toEqual(["moisture", "cracks"]);
+    expect(seenLayers(layers, shown).map(({ slug }) => slug)).toEqual(["moisture", "cracks"]);
   });
 });
 
@@ -309,7 +309,7 @@ describe("the card of a record", () => {
   const languages = ["en", "de"];
 
   it("tells what the tour chose, in the visitor's language where there are words", async () => {
-    const stop = tour_stop({
+    const stop = tourStop({
       records: [
         {
           table: "sherds",
@@ -323,7 +323,7 @@ describe("the card of a record", () => {
         },
       ],
     });
-    const card = await card_of(api, { table: "sherds", key: 3, stop, language: "de", languages });
+    const card = await cardOf(api, { table: "sherds", key: 3, stop, language: "de", languages });
     expect(card).toMatchObject({
       title: "Sherd 3",
       lines: [
@@ -337,10 +337,10 @@ describe("the card of a record", () => {
   });
 
   it("tells all of a table of which nothing was chosen, but not its heading again", async () => {
-    const card = await card_of(api, {
+    const card = await cardOf(api, {
       table: "7",
       key: 3,
-      stop: tour_stop({}),
+      stop: tourStop({}),
       language: "en",
       languages,
     });
@@ -353,7 +353,7 @@ describe("the card of a record", () => {
 
   it("is none where there is no such record", async () => {
     expect(
-      await card_of(api, { table: "7", key: 4, stop: tour_stop({}), language: "en", languages }),
+      await cardOf(api, { table: "7", key: 4, stop: tourStop({}), language: "en", languages }),
     ).toBeNull();
   });
 });
@@ -367,16 +367,16 @@ describe("the kiosk's service worker", () => {
     expect(ask("/kiosk/SECRET", { mode: "navigate" })).toBe("page");
     expect(ask("/models/pot", { mode: "navigate" })).toBe("not");
     expect([ask("/assets/main-1.js"), ask("/favicon.svg")]).toEqual(["file", "file"]);
-    expect(ask(as_kiosk("/api/v1/models/pot/views/west/picture"))).toBe("data");
-    expect(ask(as_kiosk("/api/v1/attachments/6?thumbnail=256"))).toBe("data");
+    expect(ask(asKiosk("/api/v1/models/pot/views/west/picture"))).toBe("data");
+    expect(ask(asKiosk("/api/v1/attachments/6?thumbnail=256"))).toBe("data");
     expect(ask("/api/v1/models/pot")).toBe("not");
-    expect(ask(as_kiosk("/api/v1/kiosk"))).toBe("not");
-    expect(ask(as_kiosk("/api/v1/auth/kiosk"), { method: "POST" })).toBe("not");
+    expect(ask(asKiosk("/api/v1/kiosk"))).toBe("not");
+    expect(ask(asKiosk("/api/v1/auth/kiosk"), { method: "POST" })).toBe("not");
     expect(ask("https://elsewhere.example/assets/a.js")).toBe("not");
   });
 
   it("tells a server that is away from one that refuses", () => {
-    expect([502, 503, 504].every(says_away)).toBe(true);
-    expect([200, 304, 401, 403, 404, 500].some(says_away)).toBe(false);
+    expect([502, 503, 504].every(saysAway)).toBe(true);
+    expect([200, 304, 401, 403, 404, 500].some(saysAway)).toBe(false);
   });
 });

@@ -16,22 +16,18 @@ import {
 const site = { min: [500_000, 4_100_000, 600] as Vec3, max: [500_040, 4_100_020, 612] as Vec3 };
 const middle: Vec3 = [500_020, 4_100_010, 606];
 
-function camera_on(up: UpAxis = "z", width = 1280, height = 720): OrbitCamera {
+function cameraOn(up: UpAxis = "z", width = 1280, height = 720): OrbitCamera {
   const camera = new OrbitCamera();
-  camera.set_model(site, up);
+  camera.setModel(site, up);
   camera.resize(width, height);
   camera.fit();
   return camera;
 }
 
-const clip_of = (camera: OrbitCamera, point: Vec3): Vec4 =>
-  transform(camera.projection_matrix(), transform(camera.view_matrix(), [...point, 1]));
+const clipOf = (camera: OrbitCamera, point: Vec3): Vec4 =>
+  transform(camera.projectionMatrix(), transform(camera.viewMatrix(), [...point, 1]));
 
-function expect_close(
-  actual: readonly number[],
-  wanted: readonly number[],
-  tolerance = 1e-6,
-): void {
+function expectClose(actual: readonly number[], wanted: readonly number[], tolerance = 1e-6): void {
   expect(actual.length).toBe(wanted.length);
   actual.forEach((value, index) =>
     expect(Math.abs(value - wanted[index]!)).toBeLessThan(tolerance),
@@ -62,15 +58,15 @@ describe("standard views", () => {
     };
     for (const view of Object.keys(expected) as StandardView[]) {
       it(`${view} looks from the ${view} when ${up} is up`, () => {
-        const camera = camera_on(up);
-        camera.standard_view(view);
-        expect_close(camera.axes().back, expected[view]);
-        const { right, up: screen_up, back } = camera.axes();
-        expect(dot(right, screen_up)).toBeCloseTo(0, 12);
+        const camera = cameraOn(up);
+        camera.standardView(view);
+        expectClose(camera.axes().back, expected[view]);
+        const { right, up: screenUp, back } = camera.axes();
+        expect(dot(right, screenUp)).toBeCloseTo(0, 12);
         expect(dot(right, back)).toBeCloseTo(0, 12);
-        expect(length(screen_up)).toBeCloseTo(1, 12);
-        if (view !== "top" && view !== "bottom") expect_close(screen_up, front.up);
-        else expect_close(right, front.right);
+        expect(length(screenUp)).toBeCloseTo(1, 12);
+        if (view !== "top" && view !== "bottom") expectClose(screenUp, front.up);
+        else expectClose(right, front.right);
       });
     }
   }
@@ -88,7 +84,7 @@ describe("matrices", () => {
       ] as const) {
         for (let azimuth = -3; azimuth <= 3; azimuth += 0.7) {
           for (const elevation of [-1.5, -0.4, 0, 0.8, 1.57]) {
-            const camera = camera_on("z", width, height);
+            const camera = cameraOn("z", width, height);
             camera.perspective = perspective;
             camera.azimuth = azimuth;
             camera.elevation = elevation;
@@ -97,7 +93,7 @@ describe("matrices", () => {
               const point: Vec3 = [0, 1, 2].map(
                 (axis) => (corner & (1 << axis) ? site.max : site.min)[axis]!,
               ) as unknown as Vec3;
-              const [x, y, z, w] = clip_of(camera, point);
+              const [x, y, z, w] = clipOf(camera, point);
               expect(w).toBeGreaterThan(0);
               for (const value of [x, y, z]) expect(Math.abs(value / w)).toBeLessThan(1.000001);
             }
@@ -107,81 +103,81 @@ describe("matrices", () => {
     });
 
     it(`the point under a ${kind} pixel is projected onto it`, () => {
-      const camera = camera_on();
+      const camera = cameraOn();
       camera.perspective = perspective;
       camera.orbit(0.7, 0.3);
-      const seen = camera.project(camera.point_on_focus_plane(200.5, 611.25))!;
+      const seen = camera.project(camera.pointOnFocusPlane(200.5, 611.25))!;
       expect(seen.x).toBeCloseTo(200.5, 5);
       expect(seen.y).toBeCloseTo(611.25, 5);
       expect(seen.depth).toBeCloseTo(camera.distance, 5);
     });
 
     it(`one ${kind} window pixel is unit_per_pixel wide at its depth`, () => {
-      const camera = camera_on();
+      const camera = cameraOn();
       camera.perspective = perspective;
       const point = add(middle, scale(camera.axes().back, 7));
-      const depth = camera.depth_of(point);
-      const beside = add(point, scale(camera.axes().right, camera.unit_per_pixel(depth)));
+      const depth = camera.depthOf(point);
+      const beside = add(point, scale(camera.axes().right, camera.unitPerPixel(depth)));
       expect(camera.project(beside)!.x - camera.project(point)!.x).toBeCloseTo(1, 5);
     });
   }
 
   it("the view matrix is a rotation and keeps the eye at zero", () => {
-    const camera = camera_on();
+    const camera = cameraOn();
     camera.orbit(1, 0.5);
-    expect_close(transform(camera.view_matrix(), [...camera.eye(), 1]), [0, 0, 0, 1], 1e-6);
+    expectClose(transform(camera.viewMatrix(), [...camera.eye(), 1]), [0, 0, 0, 1], 1e-6);
   });
 
   it("what is behind the eye has no place in the window", () => {
-    const camera = camera_on();
+    const camera = cameraOn();
     expect(camera.project(add(camera.eye(), camera.axes().back))).toBeNull();
   });
 });
 
 describe("movement", () => {
   it("zooming keeps the point of the focus plane under the pointer", () => {
-    const camera = camera_on();
+    const camera = cameraOn();
     camera.orbit(0.4, 0.2);
-    const anchor = camera.point_on_focus_plane(900, 150);
-    camera.zoom_at(0.31, 900, 150);
+    const anchor = camera.pointOnFocusPlane(900, 150);
+    camera.zoomAt(0.31, 900, 150);
     const seen = camera.project(anchor)!;
     expect(seen.x).toBeCloseTo(900, 4);
     expect(seen.y).toBeCloseTo(150, 4);
   });
 
   it("zoom stops before it passes through or loses the model", () => {
-    const camera = camera_on();
-    for (let i = 0; i < 500; ++i) camera.zoom_at(0.5, 640, 360);
+    const camera = cameraOn();
+    for (let i = 0; i < 500; ++i) camera.zoomAt(0.5, 640, 360);
     expect(camera.distance).toBeGreaterThan(0);
-    expect(camera.projection_matrix().every(Number.isFinite)).toBe(true);
-    for (let i = 0; i < 500; ++i) camera.zoom_at(2, 640, 360);
+    expect(camera.projectionMatrix().every(Number.isFinite)).toBe(true);
+    for (let i = 0; i < 500; ++i) camera.zoomAt(2, 640, 360);
     expect(camera.distance).toBeLessThan(2000);
   });
 
   it("panning moves the picture with the pointer", () => {
-    const camera = camera_on();
+    const camera = cameraOn();
     const before = camera.project(camera.target)!;
     const point = camera.target;
-    camera.pan_pixels(33, -21);
+    camera.panPixels(33, -21);
     const after = camera.project(point)!;
     expect(after.x - before.x).toBeCloseTo(33, 5);
     expect(after.y - before.y).toBeCloseTo(-21, 5);
   });
 
   it("orbiting keeps target and distance, and stops at the poles", () => {
-    const camera = camera_on();
+    const camera = cameraOn();
     const { target, distance } = camera;
-    camera.orbit_pixels(200, 5000);
+    camera.orbitPixels(200, 5000);
     expect(camera.target).toEqual(target);
     expect(length(subtract(camera.eye(), target))).toBeCloseTo(distance, 6);
     expect(camera.elevation).toBeCloseTo(Math.PI / 2, 12);
-    expect(camera.view_matrix().every(Number.isFinite)).toBe(true);
+    expect(camera.viewMatrix().every(Number.isFinite)).toBe(true);
   });
 
   it("perspective and orthographic show the target equally large", () => {
-    const camera = camera_on();
-    const perspective = camera.unit_per_pixel();
+    const camera = cameraOn();
+    const perspective = camera.unitPerPixel();
     camera.perspective = false;
-    expect(camera.unit_per_pixel()).toBeCloseTo(perspective, 12);
+    expect(camera.unitPerPixel()).toBeCloseTo(perspective, 12);
   });
 });

@@ -1,15 +1,15 @@
 import { describe, expect, it } from "vitest";
 
-import { between, OrbitCamera, place_of, type UpAxis } from "../../src/math/camera";
-import { has_arrived, place_like } from "../../src/math/fit-to-window";
+import { between, OrbitCamera, placeOf, type UpAxis } from "../../src/math/camera";
+import { hasArrived, placeLike } from "../../src/math/fit-to-window";
 import { add, length, scale, subtract, type Vec3 } from "../../src/math/vector";
 
 // A building in UTM coordinates: doubles must hold millimetres there.
 const site = { min: [500_000, 4_100_000, 600] as Vec3, max: [500_040, 4_100_020, 612] as Vec3 };
 
-function camera_on(up: UpAxis, width: number, height: number): OrbitCamera {
+function cameraOn(up: UpAxis, width: number, height: number): OrbitCamera {
   const camera = new OrbitCamera();
-  camera.set_model(site, up);
+  camera.setModel(site, up);
   camera.resize(width, height);
   camera.fit();
   return camera;
@@ -22,7 +22,7 @@ const corners = (camera: OrbitCamera): Vec3[] =>
     [camera.width, 0],
     [0, camera.height],
     [camera.width, camera.height],
-  ].map(([x, y]) => camera.point_on_focus_plane(x!, y!));
+  ].map(([x, y]) => camera.pointOnFocusPlane(x!, y!));
 
 const windows: Record<string, [number, number]> = {
   wide: [1600, 700],
@@ -36,12 +36,12 @@ describe("looking with somebody", () => {
       for (const [from, theirs] of Object.entries(windows))
         for (const [to, own] of Object.entries(windows))
           it(`${perspective ? "in perspective" : "in parallel"}, ${up} up, ${from} window to ${to}: all that they see is seen, and no more than needed`, () => {
-            const them = camera_on(up, ...theirs);
+            const them = cameraOn(up, ...theirs);
             them.perspective = perspective;
             them.orbit(2.1, 0.4);
-            them.zoom_at(0.3, 100, 90);
-            const me = camera_on(up, ...own);
-            const place = place_like(them.message(), me);
+            them.zoomAt(0.3, 100, 90);
+            const me = cameraOn(up, ...own);
+            const place = placeLike(them.message(), me);
             Object.assign(me, place);
             const seen = corners(them).map((corner) => me.project(corner)!);
             const beyond = ({ x, y }: { x: number; y: number }): number =>
@@ -50,50 +50,50 @@ describe("looking with somebody", () => {
             expect(Math.max(...seen.map(beyond))).toBeGreaterThan(-1e-3);
             expect(length(subtract(me.axes().back, them.axes().back))).toBeLessThan(1e-9);
             if (perspective) expect(length(subtract(me.eye(), them.eye()))).toBeLessThan(1e-6);
-            expect(has_arrived(me, place)).toBe(true);
+            expect(hasArrived(me, place)).toBe(true);
           });
 
   it("from straight above keeps which way is up", () => {
-    const [them, me] = [camera_on("z", 800, 600), camera_on("z", 800, 600)];
-    them.standard_view("top");
+    const [them, me] = [cameraOn("z", 800, 600), cameraOn("z", 800, 600)];
+    them.standardView("top");
     them.orbit(1, 0);
-    Object.assign(me, place_like(them.message(), me));
+    Object.assign(me, placeLike(them.message(), me));
     expect(length(subtract(me.axes().right, them.axes().right))).toBeLessThan(1e-9);
   });
 
   it("close to the surface, with the middle of the model behind the eye, stays a camera", () => {
-    const [them, me] = [camera_on("z", 800, 600), camera_on("z", 400, 600)];
+    const [them, me] = [cameraOn("z", 800, 600), cameraOn("z", 400, 600)];
     them.target = add(them.target, scale(them.axes().back, -15));
     them.distance = 0.5;
-    Object.assign(me, place_like(them.message(), me));
+    Object.assign(me, placeLike(them.message(), me));
     expect(me.distance).toBeGreaterThan(0);
     expect(length(subtract(me.eye(), them.eye()))).toBeLessThan(1e-6);
   });
 
   it("a camera whose matrix is scaled has the same eye", () => {
-    const [them, me] = [camera_on("z", 800, 600), camera_on("z", 800, 600)];
+    const [them, me] = [cameraOn("z", 800, 600), cameraOn("z", 800, 600)];
     them.orbit(1, 0.2);
     const { view, projection } = them.message();
     const enlarged = view.map((value, index) => (index === 15 ? value : value * 3));
-    Object.assign(me, place_like({ view: enlarged, projection }, me));
+    Object.assign(me, placeLike({ view: enlarged, projection }, me));
     expect(length(subtract(me.eye(), them.eye()))).toBeLessThan(1e-6);
   });
 
   it("on the way there the eye goes straight, once both turn around the same depth", () => {
-    const [them, me] = [camera_on("z", 800, 600), camera_on("z", 800, 600)];
-    Object.assign(me, place_of(them));
-    me.turn_around(3); // the same picture, around something nearer
+    const [them, me] = [cameraOn("z", 800, 600), cameraOn("z", 800, 600)];
+    Object.assign(me, placeOf(them));
+    me.turnAround(3); // the same picture, around something nearer
     expect(length(subtract(me.eye(), them.eye()))).toBeLessThan(1e-6);
-    const to = place_like(them.message(), me);
-    me.turn_around(to.distance);
-    Object.assign(me, between(place_of(me), to, 0.4));
+    const to = placeLike(them.message(), me);
+    me.turnAround(to.distance);
+    Object.assign(me, between(placeOf(me), to, 0.4));
     expect(length(subtract(me.eye(), them.eye()))).toBeLessThan(1e-6);
   });
 
   it("has not arrived while anything that can be seen is missing", () => {
-    const camera = camera_on("z", 800, 600);
-    const here = place_of(camera);
-    expect(has_arrived(camera, here)).toBe(true);
+    const camera = cameraOn("z", 800, 600);
+    const here = placeOf(camera);
+    expect(hasArrived(camera, here)).toBe(true);
     const others = [
       { target: add(here.target, [0, 0, here.distance * 0.01]) },
       { distance: here.distance * 1.01 },
@@ -101,32 +101,32 @@ describe("looking with somebody", () => {
       { azimuth: here.azimuth + 0.01 },
       { elevation: here.elevation + 0.01 },
       { perspective: false },
-      { half_field: here.half_field * 1.01 },
+      { halfField: here.halfField * 1.01 },
     ];
-    for (const other of others) expect(has_arrived(camera, { ...here, ...other })).toBe(false);
+    for (const other of others) expect(hasArrived(camera, { ...here, ...other })).toBe(false);
   });
 });
 
 describe("on from there alone", () => {
   it("the usual field comes back, and what is as far as the target stays as large", () => {
-    const [them, me] = [camera_on("z", 1600, 700), camera_on("z", 390, 760)];
-    const usual = me.half_field;
-    Object.assign(me, place_like(them.message(), me));
-    expect(me.half_field).toBeGreaterThan(usual);
+    const [them, me] = [cameraOn("z", 1600, 700), cameraOn("z", 390, 760)];
+    const usual = me.halfField;
+    Object.assign(me, placeLike(them.message(), me));
+    expect(me.halfField).toBeGreaterThan(usual);
     const [before, right] = [me.project(me.target)!, add(me.target, me.axes().right)];
     const wide = me.project(right)!.x - before.x;
-    me.reset_field();
-    expect(me.half_field).toBe(usual);
+    me.resetField();
+    expect(me.halfField).toBe(usual);
     expect(me.project(right)!.x - me.project(me.target)!.x).toBeCloseTo(wide, 6);
   });
 
   for (const perspective of [true, false])
     it(`turns around what is in the middle${perspective ? "" : ", without perspective, too"}`, () => {
-      const camera = camera_on("z", 800, 600);
+      const camera = cameraOn("z", 800, 600);
       camera.perspective = perspective;
       const seen = add(camera.target, scale(camera.axes().back, 4));
       const before = camera.project(add(seen, [1, 0, 0]))!;
-      camera.turn_around(camera.depth_of(seen));
+      camera.turnAround(camera.depthOf(seen));
       expect(camera.project(add(seen, [1, 0, 0]))!.x).toBeCloseTo(before.x, 5);
       camera.orbit(1, 0.3);
       expect(camera.project(seen)!.x).toBeCloseTo(400, 4);

@@ -1,14 +1,14 @@
 import fc from "fast-check";
 import { describe, expect, it } from "vitest";
 
-import { flat_polygon, height_of, legs_of, sum } from "../../src/math/measured-line";
+import { flatPolygon, heightOf, legsOf, sum } from "../../src/math/measured-line";
 import { add, cross, length, scale, subtract, type Vec3 } from "../../src/math/vector";
 
 const number = fc.double({ min: -50, max: 50, noNaN: true });
 const place = fc.tuple(number, number, number);
 
 /** Two directions at right angles to each other, of length 1. */
-function frame_of(seed: Vec3): [Vec3, Vec3] {
+function frameOf(seed: Vec3): [Vec3, Vec3] {
   const across = cross(seed, Math.abs(seed[0]) < Math.abs(seed[1]) ? [1, 0, 0] : [0, 1, 0]);
   const first = scale(across, 1 / length(across));
   const second = cross(seed, first);
@@ -28,25 +28,25 @@ const shoelace = (points: readonly (readonly [number, number])[]): number =>
 describe("places that are measured between", () => {
   it("are as far from each other as Pythagoras says", () => {
     expect(
-      legs_of([
+      legsOf([
         [0, 0, 0],
         [3, 4, 0],
         [3, 4, 12],
       ]),
     ).toEqual([5, 12]);
-    expect(legs_of([[1, 2, 3]])).toEqual([]);
+    expect(legsOf([[1, 2, 3]])).toEqual([]);
     expect(sum([5, 12])).toBe(17);
   });
 
   it("are as high as their coordinate along the model's up axis", () => {
-    expect((["x", "y", "z"] as const).map((up) => height_of([1, 2, 3], up))).toEqual([1, 2, 3]);
+    expect((["x", "y", "z"] as const).map((up) => heightOf([1, 2, 3], up))).toEqual([1, 2, 3]);
   });
 });
 
 describe("the flat polygon through places", () => {
   it("has the area and perimeter that are calculated by hand", () => {
     // 60 wide, and 40 up a roof that rises 3 in 4: 50 deep.
-    const roof = flat_polygon([
+    const roof = flatPolygon([
       [0, 0, 0],
       [60, 0, 0],
       [60, 40, 30],
@@ -55,31 +55,31 @@ describe("the flat polygon through places", () => {
     expect(roof.area).toBeCloseTo(3000, 9);
     expect(roof.perimeter).toBeCloseTo(220, 9);
     expect(roof.off_plane).toBeCloseTo(0, 9);
-    const triangle = flat_polygon([
+    const triangle = flatPolygon([
       [0, 0, 0],
       [3, 0, 0],
       [0, 4, 0],
     ])!;
     expect([triangle.area, triangle.perimeter]).toEqual([6, 12]);
-    const with_a_bay = flat_polygon([
+    const withABay = flatPolygon([
       [0, 0, 5],
       [4, 0, 5],
       [4, 4, 5],
       [2, 1, 5],
       [0, 4, 5],
     ])!;
-    expect(with_a_bay.area).toBeCloseTo(16 - 6, 9);
+    expect(withABay.area).toBeCloseTo(16 - 6, 9);
   });
 
   it("is none of fewer than three places, and has no area on a line", () => {
     expect(
-      flat_polygon([
+      flatPolygon([
         [0, 0, 0],
         [1, 0, 0],
       ]),
     ).toBeNull();
     expect(
-      flat_polygon([
+      flatPolygon([
         [0, 0, 0],
         [1, 1, 1],
         [2, 2, 2],
@@ -88,7 +88,7 @@ describe("the flat polygon through places", () => {
   });
 
   it("says how far its corners lie off its plane", () => {
-    const bent = flat_polygon([
+    const bent = flatPolygon([
       [0, 0, 1],
       [10, 0, -1],
       [10, 10, 1],
@@ -106,10 +106,10 @@ describe("the flat polygon through places", () => {
         place.filter((seed) => length(seed) > 1),
         place,
         (points, seed, origin) => {
-          const [first, second] = frame_of(seed);
+          const [first, second] = frameOf(seed);
           // as in a country's grid
           const far: Vec3 = add(scale(origin, 1000), [400_000, 4_600_000, 0]);
-          const polygon = flat_polygon(
+          const polygon = flatPolygon(
             points.map(([x, y]) => add(far, add(scale(first, x), scale(second, y)))),
           )!;
           expect(Math.abs(polygon.area - shoelace(points))).toBeLessThan(1e-4);
@@ -122,7 +122,7 @@ describe("the flat polygon through places", () => {
   it("has never more area than its shape around the first corner has as triangles, and the same with its corners turned round", () => {
     fc.assert(
       fc.property(fc.array(place, { minLength: 3, maxLength: 8 }), (places) => {
-        const { area, perimeter } = flat_polygon(places)!;
+        const { area, perimeter } = flatPolygon(places)!;
         const triangles = places
           .slice(2)
           .map(
@@ -130,7 +130,7 @@ describe("the flat polygon through places", () => {
               length(cross(subtract(places[at + 1]!, places[0]!), subtract(each, places[0]!))) / 2,
           );
         expect(area).toBeLessThanOrEqual(sum(triangles) + 1e-6);
-        const turned = flat_polygon([...places].reverse())!;
+        const turned = flatPolygon([...places].reverse())!;
         expect(turned.area).toBeCloseTo(area, 6);
         expect(turned.perimeter).toBeCloseTo(perimeter, 6);
       }),

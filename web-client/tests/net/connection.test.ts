@@ -7,7 +7,7 @@ import type { Layer } from "../../src/core/protocol.gen";
 import { FakeSocket, welcome } from "../fake-socket";
 
 const camera = { view: [1], projection: [1], width: 640, height: 480 };
-const stroke_options: StrokeOptions = {
+const strokeOptions: StrokeOptions = {
   layer: 7,
   value: 3,
   erase: false,
@@ -57,19 +57,19 @@ beforeEach(() => {
     presence: vi.fn(),
     picked: vi.fn(),
     problem: vi.fn(),
-    taken_up: vi.fn(),
+    takenUp: vi.fn(),
   };
   shelved = [];
   connection = new Connection(
     {
       url: "ws://here/api/v1/models/1/live",
       client: "test",
-      device_pixel_ratio: 2,
-      make_socket: (url, protocol) => {
+      devicePixelRatio: 2,
+      makeSocket: (url, protocol) => {
         sockets.push(new FakeSocket(url, protocol));
         return socket();
       },
-      make_shelf: (user) => {
+      makeShelf: (user) => {
         expect(user).toBe("owner");
         return {
           read: async () => [...shelved],
@@ -77,7 +77,7 @@ beforeEach(() => {
           remove: (ids) => void (shelved = shelved.filter(({ id }) => !ids.includes(id))),
         };
       },
-      next_frame: (callback) => void frames.push(callback),
+      nextFrame: (callback) => void frames.push(callback),
       random: () => 0.5,
     },
     callbacks,
@@ -104,30 +104,30 @@ describe("opening", () => {
 
   it("takes no stroke while too much waits to be saved, and says that this is why", () => {
     connect();
-    const stroke = connection.begin_stroke(stroke_options)!;
+    const stroke = connection.beginStroke(strokeOptions)!;
     for (let i = 0; i <= 5000; ++i) stroke.extend([[i, i]]);
-    expect([connection.begin_stroke(stroke_options), connection.full]).toEqual([null, true]);
+    expect([connection.beginStroke(strokeOptions), connection.full]).toEqual([null, true]);
     socket().receive({ op: "saved", stroke: stroke.stroke, n: 0, sequence: 1 });
     expect(connection.full).toBe(false);
-    expect(connection.begin_stroke(stroke_options)).not.toBeNull();
+    expect(connection.beginStroke(strokeOptions)).not.toBeNull();
   });
 
   it("takes no stroke before it is open", () => {
-    expect(connection.begin_stroke(stroke_options)).toBeNull();
+    expect(connection.beginStroke(strokeOptions)).toBeNull();
     socket().open();
-    expect(connection.begin_stroke(stroke_options)).toBeNull();
+    expect(connection.beginStroke(strokeOptions)).toBeNull();
   });
 });
 
 describe("cameras", () => {
   it("only the newest camera of a drawn picture is sent, with ascending numbers", () => {
     connect();
-    connection.set_camera({ ...camera, width: 1 }, true);
-    connection.set_camera({ ...camera, width: 2 }, true);
-    connection.set_camera({ ...camera, width: 3 }, true);
+    connection.setCamera({ ...camera, width: 1 }, true);
+    connection.setCamera({ ...camera, width: 2 }, true);
+    connection.setCamera({ ...camera, width: 3 }, true);
     expect(socket().of("camera")).toEqual([]);
     draw();
-    connection.set_camera({ ...camera, width: 4 }, false);
+    connection.setCamera({ ...camera, width: 4 }, false);
     draw();
     expect(
       socket()
@@ -142,9 +142,9 @@ describe("cameras", () => {
   it("a camera waits while the socket is busy, and only the newest leaves then", () => {
     connect();
     socket().bufferedAmount = 1e6;
-    connection.set_camera({ ...camera, width: 1 }, true);
+    connection.setCamera({ ...camera, width: 1 }, true);
     draw();
-    connection.set_camera({ ...camera, width: 2 }, true);
+    connection.setCamera({ ...camera, width: 2 }, true);
     draw();
     expect(socket().of("camera")).toEqual([]);
     socket().bufferedAmount = 0;
@@ -158,8 +158,8 @@ describe("cameras", () => {
 
   it("after a reconnect the last camera and layer settings are sent again", () => {
     connect();
-    connection.set_camera(camera, true);
-    connection.set_layer_overrides([
+    connection.setCamera(camera, true);
+    connection.setLayerOverrides([
       { layer: 7, visible: false },
       { layer: 8, opacity: 0.5 },
     ]);
@@ -181,27 +181,27 @@ describe("cameras", () => {
 
   it("nothing is viewed any more once nobody looks", () => {
     connect();
-    connection.set_camera(camera, false);
+    connection.setCamera(camera, false);
     draw();
-    connection.stop_viewing();
+    connection.stopViewing();
     socket().lose();
     vi.advanceTimersByTime(300);
     connect();
-    expect(socket().sent_ops()).toEqual(["hello"]);
+    expect(socket().sentOps()).toEqual(["hello"]);
   });
 });
 
 describe("strokes", () => {
   it("a stroke is sent in numbered batches", () => {
     connect();
-    const stroke = connection.begin_stroke(stroke_options)!;
+    const stroke = connection.beginStroke(strokeOptions)!;
     stroke.extend([[1, 1]]);
     stroke.extend([
       [2, 2],
       [3, 3],
     ]);
     stroke.end();
-    expect(socket().sent_ops()).toEqual([
+    expect(socket().sentOps()).toEqual([
       "hello",
       "stroke.begin",
       "stroke.extend",
@@ -230,7 +230,7 @@ describe("strokes", () => {
   it("a long path is split at the server's limit of points", () => {
     connect(); // path_points: 4
     connection
-      .begin_stroke(stroke_options)!
+      .beginStroke(strokeOptions)!
       .extend(Array.from({ length: 9 }, (_, i): [number, number] => [i, 0]));
     const paths = socket()
       .of("stroke.extend")
@@ -241,7 +241,7 @@ describe("strokes", () => {
 
   it("an erasing stroke has no value and may have its radius in millimetres", () => {
     connect();
-    connection.begin_stroke({ ...stroke_options, erase: true, radius: { mm: 2.5 } });
+    connection.beginStroke({ ...strokeOptions, erase: true, radius: { mm: 2.5 } });
     const [begin] = socket().of("stroke.begin");
     expect(begin).toMatchObject({ erase: true, radius_mm: 2.5 });
     expect(begin).not.toHaveProperty("value");
@@ -250,8 +250,8 @@ describe("strokes", () => {
 
   it("a stroke names the shape of its brush, and the slant that it reaches where there is a limit", () => {
     connect();
-    connection.begin_stroke({ ...stroke_options, shape: 12, max_angle_deg: 60 });
-    connection.begin_stroke({ ...stroke_options, shape: "square" });
+    connection.beginStroke({ ...strokeOptions, shape: 12, max_angle_deg: 60 });
+    connection.beginStroke({ ...strokeOptions, shape: "square" });
     const [limited, plain] = socket().of("stroke.begin");
     expect(limited).toMatchObject({ shape: 12, max_angle_deg: 60 });
     expect(plain).toMatchObject({ shape: "square" });
@@ -260,7 +260,7 @@ describe("strokes", () => {
 
   it("what is applied still counts as unsaved until it is saved", () => {
     connect();
-    const stroke = connection.begin_stroke(stroke_options)!;
+    const stroke = connection.beginStroke(strokeOptions)!;
     stroke.extend([[1, 1]]);
     stroke.end();
     expect(saving()).toEqual({ waiting: 1, failing: false });
@@ -278,12 +278,12 @@ describe("a lost connection", () => {
       const before = sockets.length;
       socket().lose();
       expect(connection.state).toBe("lost");
-      let waited_ms = 0;
-      while (sockets.length === before && waited_ms < 60_000) {
+      let waitedMs = 0;
+      while (sockets.length === before && waitedMs < 60_000) {
         vi.advanceTimersByTime(50);
-        waited_ms += 50;
+        waitedMs += 50;
       }
-      pauses.push(waited_ms);
+      pauses.push(waitedMs);
     }
     expect(pauses).toEqual([250, 500, 1000, 2000, 4000, 8000, 8000, 8000]);
     socket().lose();
@@ -305,7 +305,7 @@ describe("a lost connection", () => {
 
   it("resends exactly what was not saved, in order and under the same ids", () => {
     connect();
-    const stroke = connection.begin_stroke(stroke_options)!;
+    const stroke = connection.beginStroke(strokeOptions)!;
     for (let i = 0; i < 4; ++i) stroke.extend([[i, i]]);
     stroke.end();
     const before = socket();
@@ -330,11 +330,11 @@ describe("a lost connection", () => {
 
   it("keeps what is not saved beyond the page, and nothing else", () => {
     connect();
-    const stroke = connection.begin_stroke(stroke_options)!;
+    const stroke = connection.beginStroke(strokeOptions)!;
     stroke.extend([[1, 1]]);
     stroke.extend([[2, 2]]);
     stroke.end();
-    connection.send_change({ op: "undo", id: "u", layer: 7 });
+    connection.sendChange({ op: "undo", id: "u", layer: 7 });
     expect(shelved.map(({ op }) => op)).toEqual([
       "stroke.begin",
       "stroke.extend",
@@ -378,9 +378,9 @@ describe("a lost connection", () => {
       { op: "undo", id: "u", layer: 7 },
     ];
     connect([{ stroke: "s", n: 0 }]); // whose answer the earlier page never heard
-    connection.send_change({ op: "redo", id: "mine", layer: 7 });
+    connection.sendChange({ op: "redo", id: "mine", layer: 7 });
     await vi.advanceTimersByTimeAsync(0);
-    expect(callbacks.taken_up.mock.calls).toEqual([[3]]);
+    expect(callbacks.takenUp.mock.calls).toEqual([[3]]);
     expect(saving()).toEqual({ waiting: 3, failing: false });
     expect(
       socket()
@@ -399,26 +399,26 @@ describe("a lost connection", () => {
 
   it("keeps nothing of a model that is gone", () => {
     connect();
-    connection.send_change({ op: "undo", id: "u", layer: 7 });
+    connection.sendChange({ op: "undo", id: "u", layer: 7 });
     connection.forget();
     expect(shelved).toEqual([]);
   });
 
   it("sends nothing again when all was saved", () => {
     connect();
-    const stroke = connection.begin_stroke(stroke_options)!;
+    const stroke = connection.beginStroke(strokeOptions)!;
     stroke.extend([[1, 1]]);
     stroke.end();
     socket().receive({ op: "saved", stroke: stroke.stroke, n: 0, sequence: 1 });
     socket().lose();
     vi.advanceTimersByTime(300);
     connect();
-    expect(socket().sent_ops()).toEqual(["hello"]);
+    expect(socket().sentOps()).toEqual(["hello"]);
   });
 
   it("goes on with a stroke that was being drawn", () => {
     connect();
-    const stroke = connection.begin_stroke(stroke_options)!;
+    const stroke = connection.beginStroke(strokeOptions)!;
     stroke.extend([[1, 1]]);
     socket().lose();
     stroke.extend([[2, 2]]);
@@ -426,7 +426,7 @@ describe("a lost connection", () => {
     connect();
     stroke.extend([[3, 3]]);
     stroke.end();
-    expect(socket().sent_ops()).toEqual([
+    expect(socket().sentOps()).toEqual([
       "hello",
       "stroke.begin",
       "stroke.extend",
@@ -443,7 +443,7 @@ describe("a lost connection", () => {
 
   it("resends no faster than the server takes, and new changes stay behind the old ones", () => {
     connect(); // messages_per_second: 200
-    const stroke = connection.begin_stroke(stroke_options)!;
+    const stroke = connection.beginStroke(strokeOptions)!;
     for (let i = 0; i < 250; ++i) stroke.extend([[i, i]]);
     socket().lose();
     vi.advanceTimersByTime(300);
@@ -461,8 +461,8 @@ describe("a lost connection", () => {
   });
 
   it.each([
-    ["changes wait", () => connection.begin_stroke(stroke_options)!.extend([[1, 1]])],
-    ["a picture is due", () => (connection.set_camera(camera, false), draw())],
+    ["changes wait", () => connection.beginStroke(strokeOptions)!.extend([[1, 1]])],
+    ["a picture is due", () => (connection.setCamera(camera, false), draw())],
   ])(
     "a server that stays silent while %s is asked for a sign of life, and counts as lost without one",
     (_, act) => {
@@ -483,7 +483,7 @@ describe("a lost connection", () => {
 
   it("a sign of life is enough, and nobody hears of it", () => {
     connect();
-    connection.set_camera(camera, false);
+    connection.setCamera(camera, false);
     draw();
     vi.advanceTimersByTime(10_100);
     socket().receive({ op: "picked", id: socket().of("pick")[0]!.id!, hit: false });
@@ -537,7 +537,7 @@ describe("a lost connection", () => {
 describe("refusals", () => {
   it("changes that could not be saved are sent again, and the page is told", () => {
     connect();
-    const stroke = connection.begin_stroke(stroke_options)!;
+    const stroke = connection.beginStroke(strokeOptions)!;
     stroke.extend([[1, 1]]);
     stroke.end();
     const sent = socket().sent.slice(1);
@@ -553,12 +553,12 @@ describe("refusals", () => {
 
   it("a passing refusal is tried again with growing pauses and told once", () => {
     connect();
-    const id = connection.send_change({
+    const id = connection.sendChange({
       op: "undo",
       id: "11111111-1111-4111-8111-111111111111",
       layer: 7,
     })!;
-    for (const pause_ms of [250, 500, 1000]) {
+    for (const pauseMs of [250, 500, 1000]) {
       socket().sent = [];
       socket().receive({
         op: "problem",
@@ -567,10 +567,10 @@ describe("refusals", () => {
         title: "Database gone",
         detail: "Wait.",
       });
-      vi.advanceTimersByTime(pause_ms - 10);
+      vi.advanceTimersByTime(pauseMs - 10);
       expect(socket().sent).toEqual([]);
       vi.advanceTimersByTime(20);
-      expect(socket().sent_ops()).toEqual(["undo"]);
+      expect(socket().sentOps()).toEqual(["undo"]);
     }
     expect(callbacks.problem).toHaveBeenCalledTimes(1);
     expect(saving()).toEqual({ waiting: 1, failing: true });
@@ -578,7 +578,7 @@ describe("refusals", () => {
 
   it("a batch that came out of order because the one before was refused for the moment goes again with it", () => {
     connect();
-    const stroke = connection.begin_stroke(stroke_options)!;
+    const stroke = connection.beginStroke(strokeOptions)!;
     stroke.extend([[1, 1]]);
     stroke.extend([[2, 2]]);
     const [first, second] = socket().of("stroke.extend");
@@ -604,7 +604,7 @@ describe("refusals", () => {
 
   it("a refused stroke is given up as a whole and told once", () => {
     connect();
-    const stroke = connection.begin_stroke(stroke_options)!;
+    const stroke = connection.beginStroke(strokeOptions)!;
     stroke.extend([[1, 1]]);
     const begin = socket().of("stroke.begin")[0]!;
     const extend = socket().of("stroke.extend")[0]!;
@@ -649,9 +649,7 @@ describe("messages", () => {
   it("frames are decoded, and acks name view and frame", () => {
     connect();
     const { hex } = golden.valid.find((vector) => vector.name === "keyframe")!;
-    socket().receive_raw(
-      new Uint8Array(hex.match(/../g)!.map((byte) => parseInt(byte, 16))).buffer,
-    );
+    socket().receiveRaw(new Uint8Array(hex.match(/../g)!.map((byte) => parseInt(byte, 16))).buffer);
     expect(callbacks.frame.mock.lastCall?.[0].header).toMatchObject({ frame: 1, full_width: 1280 });
     connection.ack(0, 1);
     expect(socket().of("ack")).toEqual([{ op: "ack", view_id: 0, frame: 1 }]);
@@ -659,19 +657,19 @@ describe("messages", () => {
 
   it("a broken frame or an unknown message is told, and the connection lives on", () => {
     connect();
-    socket().receive_raw(new ArrayBuffer(3));
-    socket().receive_raw('{"op":"later"}');
-    socket().receive_raw("{");
+    socket().receiveRaw(new ArrayBuffer(3));
+    socket().receiveRaw('{"op":"later"}');
+    socket().receiveRaw("{");
     expect(callbacks.problem).toHaveBeenCalledTimes(3);
     expect(connection.state).toBe("open");
   });
 
   it("says all that a view shows at once, and again after it came back", () => {
     connect();
-    connection.set_appearance(null, { mode: "museum" });
+    connection.setAppearance(null, { mode: "museum" });
     expect(socket().of("layers")).toHaveLength(0);
-    connection.set_layer_overrides([{ layer: 3, visible: false }]);
-    connection.set_appearance([{ look: 4, opacity: 0.5 }], {
+    connection.setLayerOverrides([{ layer: 3, visible: false }]);
+    connection.setAppearance([{ look: 4, opacity: 0.5 }], {
       mode: "raking",
       direction: [1, 0, 1],
     });
@@ -681,7 +679,7 @@ describe("messages", () => {
       looks: [{ look: 4 }],
       light: { mode: "raking" },
     });
-    connection.set_appearance(null, { mode: "museum" });
+    connection.setAppearance(null, { mode: "museum" });
     expect(socket().of("layers").at(-1)).toEqual({
       op: "layers",
       layers: [{ layer: 3, visible: false }],

@@ -3,30 +3,30 @@
 import { describe, expect, it } from "vitest";
 
 import golden from "../../../protocol/golden/frame_headers.json";
-import { decode_frame, FRAME_HEADER_BYTES, FrameError } from "../../src/net/frame-header";
+import { decodeFrame, kFrameHeaderBytes, FrameError } from "../../src/net/frame-header";
 
-function from_hex(hex: string): ArrayBuffer {
+function fromHex(hex: string): ArrayBuffer {
   return new Uint8Array((hex.match(/../g) ?? []).map((byte) => parseInt(byte, 16))).buffer;
 }
 
 describe("frame header", () => {
   for (const { name, hex, fields } of golden.valid) {
     it(`the golden header "${name}" is read`, () => {
-      const { header, payload } = decode_frame(from_hex(hex));
+      const { header, payload } = decodeFrame(fromHex(hex));
       expect(header).toEqual(fields);
-      expect(payload).toEqual(new Uint8Array(from_hex(hex)).slice(FRAME_HEADER_BYTES));
+      expect(payload).toEqual(new Uint8Array(fromHex(hex)).slice(kFrameHeaderBytes));
     });
 
     it(`"${name}" cut anywhere is refused`, () => {
-      const whole = from_hex(hex);
+      const whole = fromHex(hex);
       for (let length = 0; length < whole.byteLength; ++length)
-        expect(() => decode_frame(whole.slice(0, length))).toThrow(FrameError);
+        expect(() => decodeFrame(whole.slice(0, length))).toThrow(FrameError);
     });
   }
 
   for (const { name, hex, field } of golden.invalid) {
     it(`the broken header "${name}" is refused by its ${field}`, () => {
-      expect(() => decode_frame(from_hex(hex))).toThrow(
+      expect(() => decodeFrame(fromHex(hex))).toThrow(
         expect.objectContaining({ name: "FrameError", field }),
       );
     });

@@ -5,7 +5,7 @@ import { beside } from "../../src/ui/beside";
 import type { Point } from "../../src/net/connection";
 import type { MarkPlace } from "../../src/core/protocol.gen";
 
-const kLong_ms = 10_000;
+const kLongMs = 10_000;
 
 type PlacesSeen = readonly (MarkPlace | null)[];
 
@@ -16,7 +16,7 @@ let refuse: () => void;
 let measure: LineMeasure<MarkPlace | null>;
 let told: (number | null)[];
 
-const settle = (): Promise<unknown> => vi.advanceTimersByTimeAsync(kLong_ms);
+const settle = (): Promise<unknown> => vi.advanceTimersByTimeAsync(kLongMs);
 const draw = (points: readonly Point[], pointer: Point | null = null): void =>
   measure.follow({ points, pointer });
 
@@ -24,14 +24,14 @@ beforeEach(() => {
   vi.useFakeTimers();
   [asked, told] = [[], []];
   measure = new LineMeasure({
-    look_along: (path) => {
+    lookAlong: (path) => {
       asked.push(path);
       return new Promise((resolve, reject) => {
         answer = (places = path.map(([x, y]): MarkPlace => [x, y, 0])) => resolve(places);
         refuse = () => reject(new Error("refused"));
       });
     },
-    metres_along: (places) => {
+    metresAlong: (places) => {
       const hit = places.filter((place) => place !== null);
       return hit
         .slice(1)

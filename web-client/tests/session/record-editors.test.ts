@@ -6,7 +6,7 @@ type Said = { table: number; key: number; editing: boolean; take_over?: boolean 
 let said: Said[];
 let editors: RecordEditors;
 const there = (key: number, session?: string, user?: string): void =>
-  editors.on_message({
+  editors.onMessage({
     op: "record.editors",
     records: [
       {
@@ -22,7 +22,7 @@ beforeEach(() => {
   said = [];
   editors = new RecordEditors({
     say: (what) => said.push(what),
-    name_of: (user) => (user === "bea" ? "Bea Ost" : user),
+    nameOf: (user) => (user === "bea" ? "Bea Ost" : user),
     changed: () => {},
   });
   editors.joined("me", "ada");
@@ -46,8 +46,8 @@ describe("who writes into a record", () => {
     there(8, "window", "ada");
     there(9, "me", "ada");
     expect([7, 8, 9, 10].map((key) => editors.other(4, key))).toEqual([
-      { user: "Bea Ost", is_me: false },
-      { user: "ada", is_me: true },
+      { user: "Bea Ost", isMe: false },
+      { user: "ada", isMe: true },
       null,
       null,
     ]);
@@ -75,7 +75,7 @@ describe("who writes into a record", () => {
     expect(claim.lost).toBe(false);
     there(7, "other", "bea");
     expect(claim.lost).toBe(true);
-    claim.take_over();
+    claim.takeOver();
     expect(said.at(-1)).toEqual({ table: 4, key: 7, editing: true, take_over: true });
     expect(claim.other).toBe(null);
     there(7, "me", "ada");

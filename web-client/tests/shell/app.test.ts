@@ -1,20 +1,20 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { BrushSettings } from "../../src/features/painting/brush-settings";
-import { describe_value, value_problem } from "../../src/session/layer-values";
+import { describeValue, valueProblem } from "../../src/session/layer-values";
 import type { DroppedFile } from "../../src/ui/drop";
-import { choose_scans } from "../../src/features/home/imports";
-import { arrow_step } from "../../src/ui/keyboard";
-import { layer_changes } from "../../src/features/layers/layer-changes";
+import { chooseScans } from "../../src/features/home/imports";
+import { arrowStep } from "../../src/ui/keyboard";
+import { layerChanges } from "../../src/features/layers/layer-changes";
 import { notices } from "../../src/ui/notices";
 import { PickProbe, type PickPurpose } from "../../src/session/pick-probe";
-import { path_of_project, route_of } from "../../src/ui/routes";
+import { pathOfProject, routeOf } from "../../src/ui/routes";
 import { texts } from "../../src/texts";
 import {
-  class_palette,
-  measurement_palette,
-  presence_palette,
-  record_palette,
+  classPalette,
+  measurementPalette,
+  presencePalette,
+  recordPalette,
 } from "../../src/domain/palette";
 import type { Layer, Palette, ValueType } from "../../src/core/types";
 
@@ -39,7 +39,7 @@ const layer = (type: ValueType, palette: Palette, unit = ""): Layer => ({
   order: 0,
   sequence: 0,
 });
-const classes = class_palette([
+const classes = classPalette([
   { at: 2, label: "Plaster", color: "#ffffffff" },
   { at: 5, label: "", color: "#000000ff" },
 ]);
@@ -47,59 +47,57 @@ const classes = class_palette([
 describe("the brush's value", () => {
   it("starts with the first class, presence, or the middle of a measurement", () => {
     const brush = new BrushSettings();
-    expect(brush.value_of(layer("u8", classes))).toBe(2);
-    expect(new BrushSettings().value_of(layer("u8", presence_palette("Salt", "#ffffffff")))).toBe(
-      1,
-    );
-    expect(new BrushSettings().value_of(layer("f32", measurement_palette(0, 0.3)))).toBe(0.15);
-    expect(new BrushSettings().value_of(layer("i16", measurement_palette(0, 5)))).toBe(3);
+    expect(brush.valueFor(layer("u8", classes))).toBe(2);
+    expect(new BrushSettings().valueFor(layer("u8", presencePalette("Salt", "#ffffffff")))).toBe(1);
+    expect(new BrushSettings().valueFor(layer("f32", measurementPalette(0, 0.3)))).toBe(0.15);
+    expect(new BrushSettings().valueFor(layer("i16", measurementPalette(0, 5)))).toBe(3);
   });
   it("is kept per layer", () => {
     const brush = new BrushSettings();
     const one = layer("u8", classes);
-    brush.set_value(one, 5);
-    expect(brush.value_of(one)).toBe(5);
-    expect(brush.value_of({ ...one, id: 8 })).toBe(2);
+    brush.setValue(one, 5);
+    expect(brush.valueFor(one)).toBe(5);
+    expect(brush.valueFor({ ...one, id: 8 })).toBe(2);
   });
   it("is refused in plain words where the layer cannot hold it", () => {
-    expect(value_problem(layer("u8", classes), 256)).toBe(texts.brush.out_of_range("0", "255"));
-    expect(value_problem(layer("u8", classes), 1.5)).toBe(texts.brush.whole_number);
-    expect(value_problem(layer("f32", classes), Number.NaN)).toBe(texts.brush.bad_value);
-    expect(value_problem(layer("f32", classes), 1.5)).toBeNull();
+    expect(valueProblem(layer("u8", classes), 256)).toBe(texts.brush.out_of_range("0", "255"));
+    expect(valueProblem(layer("u8", classes), 1.5)).toBe(texts.brush.whole_number);
+    expect(valueProblem(layer("f32", classes), Number.NaN)).toBe(texts.brush.bad_value);
+    expect(valueProblem(layer("f32", classes), 1.5)).toBeNull();
   });
   it("is told by its label, or with its unit", () => {
-    expect(describe_value(layer("u8", classes), 2)).toBe("Plaster");
-    expect(describe_value(layer("u8", classes), 5)).toBe("Class 5");
-    expect(describe_value(layer("f32", measurement_palette(0, 1), "%"), 12.3456)).toBe("12.35 %");
+    expect(describeValue(layer("u8", classes), 2)).toBe("Plaster");
+    expect(describeValue(layer("u8", classes), 5)).toBe("Class 5");
+    expect(describeValue(layer("f32", measurementPalette(0, 1), "%"), 12.3456)).toBe("12.35 %");
   });
   it("a width stays within its limits, and each step of the keys changes it", () => {
     const brush = new BrushSettings();
-    brush.set_width("px", 1e9);
+    brush.setWidth("px", 1e9);
     expect(brush.width.px).toBe(2000);
-    brush.set_width("px", Number.NaN);
+    brush.setWidth("px", Number.NaN);
     expect(brush.width.px).toBe(2000);
-    brush.set_width("px", 2);
-    brush.step_width(1);
+    brush.setWidth("px", 2);
+    brush.stepWidth(1);
     expect(brush.width.px).toBeGreaterThan(2);
     brush.unit = "mm";
-    brush.set_width("mm", 10);
-    brush.step_width(-1);
+    brush.setWidth("mm", 10);
+    brush.stepWidth(-1);
     expect(brush.width.mm).toBeLessThan(10);
   });
 });
 
 describe("records", () => {
   it("are painted by number, and told by it", () => {
-    const finds: Layer = { ...layer("u32", record_palette()), kind: "database" };
-    expect(new BrushSettings().value_of(finds)).toBe(1);
-    expect(describe_value(finds, 4711)).toBe("Record 4711");
+    const finds: Layer = { ...layer("u32", recordPalette()), kind: "database" };
+    expect(new BrushSettings().valueFor(finds)).toBe(1);
+    expect(describeValue(finds, 4711)).toBe("Record 4711");
     const names = {
       label: (table: number, key: number) => (table === 3 && key === 4711 ? "Fibula" : null),
       term: () => null,
     };
-    expect(describe_value({ ...finds, table: 3 }, 4711, names)).toBe("Fibula");
-    expect(describe_value({ ...finds, table: 3 }, 4712, names)).toBe("Record 4712");
-    expect(value_problem(finds, 4_294_967_296)).not.toBeNull();
+    expect(describeValue({ ...finds, table: 3 }, 4711, names)).toBe("Fibula");
+    expect(describeValue({ ...finds, table: 3 }, 4712, names)).toBe("Record 4712");
+    expect(valueProblem(finds, 4_294_967_296)).not.toBeNull();
   });
 });
 
@@ -111,46 +109,46 @@ describe("a changed layer", () => {
     description: "",
     labels: {},
     descriptions: {},
-    palette: class_palette(classes.points as never),
+    palette: classPalette(classes.points as never),
     visibility: "public" as const,
   };
   it("sends only what was changed", () => {
-    expect(layer_changes(old, same)).toEqual({});
-    expect(layer_changes(old, { ...same, description: "by eye" })).toEqual({
+    expect(layerChanges(old, same)).toEqual({});
+    expect(layerChanges(old, { ...same, description: "by eye" })).toEqual({
       description: "by eye",
     });
-    expect(layer_changes(old, { ...same, visibility: "team" })).toEqual({ visibility: "team" });
+    expect(layerChanges(old, { ...same, visibility: "team" })).toEqual({ visibility: "team" });
     expect(
-      layer_changes(old, {
+      layerChanges(old, {
         ...same,
         labels: { de: "Ebene" },
         descriptions: { de: "nach Augenschein" },
       }),
     ).toEqual({ labels: { de: "Ebene" }, descriptions: { de: "nach Augenschein" } });
-    const palette = class_palette([{ at: 2, label: "Lime", color: "#ffffffff" }]);
-    expect(layer_changes(old, { ...same, name: "M", palette })).toEqual({ name: "M", palette });
+    const palette = classPalette([{ at: 2, label: "Lime", color: "#ffffffff" }]);
+    expect(layerChanges(old, { ...same, name: "M", palette })).toEqual({ name: "M", palette });
   });
 });
 
 describe("radio buttons", () => {
   it("the arrow keys go round, other keys are not theirs", () => {
     expect(
-      ["ArrowRight", "ArrowDown", "ArrowLeft", "ArrowUp"].map((key) => arrow_step(key, 0, 3)),
+      ["ArrowRight", "ArrowDown", "ArrowLeft", "ArrowUp"].map((key) => arrowStep(key, 0, 3)),
     ).toEqual([1, 1, 2, 2]);
-    expect(arrow_step("ArrowRight", 2, 3)).toBe(0);
-    expect(arrow_step("Home", 0, 3)).toBeNull();
+    expect(arrowStep("ArrowRight", 2, 3)).toBe(0);
+    expect(arrowStep("Home", 0, 3)).toBeNull();
   });
 });
 
 describe("addresses", () => {
   it("name the gallery or a model", () => {
-    expect(route_of("/")).toEqual({ page: "home", project: null });
-    expect(route_of("/projects/villa-giulia")).toEqual({ page: "home", project: "villa-giulia" });
-    expect(route_of(path_of_project("Día 2/3"))).toEqual({ page: "home", project: "Día 2/3" });
-    expect(route_of("/projects/%")).toEqual({ page: "home", project: null });
-    expect(route_of("/models/12")).toEqual({ page: "model", model: "12" });
-    expect(route_of("/models/muro%203/")).toEqual({ page: "model", model: "muro 3" });
-    expect(route_of("/models/%")).toEqual({ page: "home", project: null });
+    expect(routeOf("/")).toEqual({ page: "home", project: null });
+    expect(routeOf("/projects/villa-giulia")).toEqual({ page: "home", project: "villa-giulia" });
+    expect(routeOf(pathOfProject("Día 2/3"))).toEqual({ page: "home", project: "Día 2/3" });
+    expect(routeOf("/projects/%")).toEqual({ page: "home", project: null });
+    expect(routeOf("/models/12")).toEqual({ page: "model", model: "12" });
+    expect(routeOf("/models/muro%203/")).toEqual({ page: "model", model: "muro 3" });
+    expect(routeOf("/models/%")).toEqual({ page: "home", project: null });
   });
 });
 
@@ -158,9 +156,9 @@ describe("dropped files", () => {
   const named = (...paths: string[]): DroppedFile[] =>
     paths.map((path) => ({ path, file: { name: path.split("/").at(-1)! } as File }));
   const chosen = (...paths: string[]): string[][] =>
-    choose_scans(named(...paths)).map((scan) => scan.files.map(({ path }) => path));
+    chooseScans(named(...paths)).map((scan) => scan.files.map(({ path }) => path));
   const names = (...paths: string[]): string[] =>
-    choose_scans(named(...paths)).map((scan) => scan.name);
+    chooseScans(named(...paths)).map((scan) => scan.name);
   const told = (): string => {
     let titles = "";
     notices.subscribe((shown) => (titles = shown.map((notice) => notice.title).join()))();

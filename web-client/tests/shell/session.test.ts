@@ -2,10 +2,10 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { OpenModelSession } from "../../src/shell/open-model-session";
 import { notices } from "../../src/ui/notices";
-import { check_connections, discard_unsaved, unsaved_changes } from "../../src/session/sessions";
+import { checkConnections, discardUnsaved, unsavedChanges } from "../../src/session/sessions";
 import { texts } from "../../src/texts";
 import { Api } from "../../src/net/api";
-import { presence_palette } from "../../src/domain/palette";
+import { presencePalette } from "../../src/domain/palette";
 import type { Role, Welcome } from "../../src/core/protocol.gen";
 import type { Layer } from "../../src/core/types";
 import { FakeSocket, welcome } from "../fake-socket";
@@ -30,7 +30,7 @@ const layer = (id: number, order: number): Layer => ({
   description: "",
   labels: {},
   descriptions: {},
-  palette: presence_palette("x", "#ff0000ff"),
+  palette: presencePalette("x", "#ff0000ff"),
   opacity: 1,
   visible: true,
   locked: false,
@@ -52,7 +52,7 @@ const settle = (): Promise<unknown> => vi.advanceTimersByTimeAsync(0);
 
 async function open(role: Role = "owner"): Promise<void> {
   await session.open();
-  session.view.set_viewport(800, 600, 1);
+  session.view.setViewport(800, 600, 1);
   join(role);
 }
 function join(role: Role = "owner", layers = [layer(7, 0), layer(8, 1)]): void {
@@ -61,9 +61,9 @@ function join(role: Role = "owner", layers = [layer(7, 0), layer(8, 1)]): void {
 }
 /** A dab in the newest layer, not saved yet. Returns what saves it. */
 function paint(): () => void {
-  session.choose_tool("brush");
-  session.gestures.tool_down({ x: 5, y: 5 });
-  session.gestures.tool_up();
+  session.chooseTool("brush");
+  session.gestures.toolDown({ x: 5, y: 5 });
+  session.gestures.toolUp();
   const { stroke } = socket().of("stroke.begin").at(-1)!;
   return () => socket().receive({ op: "saved", stroke, n: 0, sequence: 1 });
 }
@@ -92,7 +92,7 @@ beforeEach(() => {
   unsubscribe = notices.subscribe((shown) => (told = shown.map((notice) => notice.title)));
 });
 afterEach(() => {
-  discard_unsaved();
+  discardUnsaved();
   vi.advanceTimersByTime(60_000); // notices go
   unsubscribe();
   vi.unstubAllGlobals();
@@ -119,18 +119,18 @@ describe("leaving a model", () => {
     const save = paint();
     session.close();
     expect(socket().closed).toBe(false);
-    expect(unsaved_changes()).toBe(1);
+    expect(unsavedChanges()).toBe(1);
     save();
     expect(socket().closed).toBe(true);
-    expect(unsaved_changes()).toBe(0);
+    expect(unsavedChanges()).toBe(0);
     expect(told).toEqual([]);
   });
 
   it("ends the stroke that is being drawn, and its last points go out", async () => {
     await open();
-    session.choose_tool("brush");
-    session.gestures.tool_down({ x: 5, y: 5 });
-    session.gestures.tool_move([{ x: 90, y: 5 }]);
+    session.chooseTool("brush");
+    session.gestures.toolDown({ x: 5, y: 5 });
+    session.gestures.toolMove([{ x: 90, y: 5 }]);
     session.close();
     expect(
       socket()
@@ -163,13 +163,13 @@ describe("leaving a model", () => {
     answers.set("GET /api/v1/models/1", [401, { title: "Not signed in" }]);
     socket().lose();
     await settle();
-    expect(session.signed_out).toBe(true);
+    expect(session.signedOut).toBe(true);
     session.close(); // the page shows the sign-in
-    check_connections();
+    checkConnections();
     join();
-    expect(session.signed_out).toBe(false);
+    expect(session.signedOut).toBe(false);
     expect(socket().of("stroke.extend").length).toBe(1);
-    expect(discard_unsaved()).toBe(1);
+    expect(discardUnsaved()).toBe(1);
     expect(socket().closed).toBe(true);
   });
 
@@ -178,7 +178,7 @@ describe("leaving a model", () => {
     paint();
     socket().receive({ op: "model", event: "deleted", model: 1 } as never);
     expect(told).toEqual([texts.saving.lost_with_model(1, "Pot")]);
-    expect([session.deleted, unsaved_changes()]).toEqual([true, 0]);
+    expect([session.deleted, unsavedChanges()]).toEqual([true, 0]);
     session.close();
     expect(told.length).toBe(1);
   });
@@ -187,22 +187,22 @@ describe("leaving a model", () => {
 describe("the camera in mid-stroke", () => {
   it("stays, whatever is pressed; a new size of the stage waits", async () => {
     await open();
-    session.choose_tool("brush");
-    session.gestures.tool_down({ x: 5, y: 5 });
+    session.chooseTool("brush");
+    session.gestures.toolDown({ x: 5, y: 5 });
     const before = session.view.camera.message();
-    session.view.standard_view("top");
+    session.view.standardView("top");
     session.view.fit();
-    session.view.set_perspective(false);
+    session.view.setPerspective(false);
     session.gestures.zoom(0.5, 9, 9);
-    session.view.set_viewport(400, 300, 1);
+    session.view.setViewport(400, 300, 1);
     expect(session.view.camera.message()).toEqual(before);
-    session.gestures.tool_up();
+    session.gestures.toolUp();
     expect([
       session.view.camera.width,
       session.view.camera.height,
       session.view.camera.perspective,
     ]).toEqual([400, 300, true]);
-    session.view.standard_view("top");
+    session.view.standardView("top");
     expect(session.view.camera.elevation).toBeCloseTo(Math.PI / 2);
   });
 });
@@ -215,15 +215,15 @@ describe("edits of whole areas", () => {
 
   it("a polygon is sent with the camera that it was drawn in, which stays meanwhile", async () => {
     await open();
-    session.choose_tool("polygon");
+    session.chooseTool("polygon");
     const camera = session.view.camera.message();
     for (const [x, y] of [
       [5, 5],
       [200, 5],
       [200, 200],
     ] as const) {
-      session.gestures.tool_down({ x, y });
-      session.gestures.tool_up();
+      session.gestures.toolDown({ x, y });
+      session.gestures.toolUp();
       session.gestures.zoom(0.5, 9, 9);
     }
     session.tools.key("Enter");
@@ -246,14 +246,14 @@ describe("edits of whole areas", () => {
 
   it("the bucket fills what its panel says, or erases it", async () => {
     await open();
-    session.choose_tool("bucket");
+    session.chooseTool("bucket");
     const at = { camera: session.view.camera.message(), x: 40, y: 50 };
     const press = (): void => {
-      session.gestures.tool_down({ x: 40, y: 50 });
-      session.gestures.tool_up();
+      session.gestures.toolDown({ x: 40, y: 50 });
+      session.gestures.toolUp();
     };
     press();
-    session.painting.set_brush((brush) => (brush.areas = { erases: true, reach: "island" }));
+    session.painting.setBrush((brush) => (brush.areas = { erases: true, reach: "island" }));
     press();
     expect(edits()).toEqual([
       { op: "fill", value: 1, mode: "connected", at },
@@ -298,8 +298,8 @@ describe("edits of whole areas", () => {
 
   it("a viewer is refused before anything is drawn", async () => {
     await open("viewer");
-    session.choose_tool("lasso");
-    session.gestures.tool_down({ x: 5, y: 5 });
+    session.chooseTool("lasso");
+    session.gestures.toolDown({ x: 5, y: 5 });
     expect(session.tools.outline).toBe(null);
     expect(told).toEqual([texts.brush.viewer_only]);
   });
@@ -308,19 +308,19 @@ describe("edits of whole areas", () => {
 describe("what this person shows and hides", () => {
   it("of a deleted layer is forgotten at once", async () => {
     await open();
-    session.layers.set_visible(session.layers.all[0]!, false);
-    session.layers.set_opacity(session.layers.all[1]!, 0.5);
+    session.layers.setVisible(session.layers.all[0]!, false);
+    session.layers.setOpacity(session.layers.all[1]!, 0.5);
     socket().receive({ op: "layer", event: "deleted", layer_id: 7 } as never);
     expect(socket().of("layers").at(-1)!.layers).toEqual([{ layer: 8, opacity: 0.5 }]);
   });
   it("of a layer that was deleted while the connection was lost is forgotten, too", async () => {
     await open();
-    session.layers.set_visible(session.layers.all[0]!, false);
+    session.layers.setVisible(session.layers.all[0]!, false);
     socket().lose();
     await vi.advanceTimersByTimeAsync(1000);
     join("owner", [layer(8, 1)]);
     expect(socket().of("layers")).toEqual([]);
-    session.layers.set_opacity(session.layers.all[0]!, 0.5);
+    session.layers.setOpacity(session.layers.all[0]!, 0.5);
     expect(socket().of("layers").at(-1)!.layers).toEqual([{ layer: 8, opacity: 0.5 }]);
   });
 });
@@ -334,7 +334,7 @@ describe("roles", () => {
     ["owner", true, true],
   ])("%s", async (role, paints, curates) => {
     await open(role);
-    expect([session.can_paint, session.can_curate]).toEqual([paints, curates]);
+    expect([session.canPaint, session.canCurate]).toEqual([paints, curates]);
   });
 
   it("who paints on a layer that is locked sends nothing more, is told once, and goes on when it is unlocked", async () => {
@@ -346,31 +346,31 @@ describe("roles", () => {
         layer: { ...layer(id, id - 7), locked },
       });
     await open("annotator");
-    session.choose_tool("brush");
-    session.gestures.tool_down({ x: 5, y: 5 });
+    session.chooseTool("brush");
+    session.gestures.toolDown({ x: 5, y: 5 });
     expect(session.painting.stroking).toBe(true);
     lock(8, true);
     expect(told).toEqual([texts.layers.locked]);
-    expect(session.locked_target?.id).toBe(8);
+    expect(session.lockedTarget?.id).toBe(8);
     expect(session.painting.stroking).toBe(false);
     const changes = (): string[] =>
       socket()
-        .sent_ops()
+        .sentOps()
         .filter((op) => /^(stroke|edit|undo|redo)/.test(op));
-    const until_now = changes();
-    session.gestures.tool_move([{ x: 90, y: 5 }]);
-    session.gestures.tool_up();
+    const untilNow = changes();
+    session.gestures.toolMove([{ x: 90, y: 5 }]);
+    session.gestures.toolUp();
     for (const name of ["brush", "eraser", "polygon", "lasso", "bucket"] as const) {
-      session.choose_tool(name);
-      session.gestures.tool_down({ x: 5, y: 5 });
-      session.gestures.tool_up();
+      session.chooseTool(name);
+      session.gestures.toolDown({ x: 5, y: 5 });
+      session.gestures.toolUp();
       expect(session.tools.outline).toBe(null);
     }
     session.undo();
     session.redo();
     session.painting.fill(session.layers.find(8)!);
-    expect(changes()).toEqual(until_now);
-    expect(until_now.at(-1)).toBe("stroke.end");
+    expect(changes()).toEqual(untilNow);
+    expect(untilNow.at(-1)).toBe("stroke.end");
     expect(told).toEqual([texts.layers.locked]);
     // What was on its way is refused in the server's words: they say nothing new.
     socket().receive({
@@ -383,59 +383,59 @@ describe("roles", () => {
     expect(told).toEqual([texts.layers.locked]);
 
     session.layers.select(session.layers.find(7)!);
-    expect(session.locked_target).toBe(null);
+    expect(session.lockedTarget).toBe(null);
     session.layers.select(session.layers.find(8)!);
-    session.choose_tool("orbit"); // who only looks is not in the way of a lock
-    expect(session.locked_target).toBe(null);
+    session.chooseTool("orbit"); // who only looks is not in the way of a lock
+    expect(session.lockedTarget).toBe(null);
     lock(8, false);
     paint()();
-    expect(changes().length).toBe(until_now.length + 3);
+    expect(changes().length).toBe(untilNow.length + 3);
   });
 
   it("a curator paints on a locked layer", async () => {
     await session.open();
     join("curator", [{ ...layer(7, 0), locked: true }]);
-    session.view.set_viewport(800, 600, 1);
+    session.view.setViewport(800, 600, 1);
     paint()();
-    expect(session.locked_target).toBe(null);
+    expect(session.lockedTarget).toBe(null);
     expect(told).toEqual([]);
   });
 
   it("who may only look chooses no tool that changes anything, takes nothing back, and is told why", async () => {
     await open("viewer");
     for (const name of ["brush", "eraser", "polygon", "lasso", "bucket", "line", "point"] as const)
-      session.choose_tool(name);
+      session.chooseTool(name);
     expect(session.tools.active).toBe("orbit");
     session.undo();
     session.redo();
     expect(
       socket()
-        .sent_ops()
+        .sentOps()
         .filter((op) => op === "undo" || op === "redo"),
     ).toEqual([]);
     expect(told).toEqual([texts.brush.viewer_only]);
-    session.choose_tool("pick");
+    session.chooseTool("pick");
     expect(session.tools.active).toBe("pick");
   });
 
   it("before the server has said who this is, tools that change anything wait, and nothing is said", async () => {
     await session.open();
-    session.choose_tool("brush");
+    session.chooseTool("brush");
     expect([session.tools.active, told.length]).toEqual(["orbit", 0]);
   });
 
   it("that changes while a model is open is told, and puts the brush away where it may no longer be used", async () => {
     await open("annotator");
-    session.choose_tool("brush");
+    session.chooseTool("brush");
     socket().lose();
     await vi.advanceTimersByTimeAsync(1000);
     join("viewer");
-    expect([session.can_paint, session.tools.active]).toEqual([false, "orbit"]);
+    expect([session.canPaint, session.tools.active]).toEqual([false, "orbit"]);
     expect(told).toEqual([texts.people.role_now("viewer")]);
     socket().lose();
     await vi.advanceTimersByTimeAsync(10_000);
     join("curator");
-    expect(session.can_curate).toBe(true);
+    expect(session.canCurate).toBe(true);
     expect(told.at(-1)).toBe(texts.people.role_now("curator"));
   });
 });
@@ -448,13 +448,13 @@ describe("how a person shows the layers", () => {
       session.layers.visible(layer),
       session.layers.opacity(layer),
     ]);
-  const told_server = (): unknown => socket().of("layers").at(-1)?.layers;
+  const toldServer = (): unknown => socket().of("layers").at(-1)?.layers;
 
   it("is kept for them alone, and what is as everybody has it is not kept", async () => {
     await open();
     answers.set(kKeep, [200, { layers: [] }]);
-    session.layers.set_visible(session.layers.all[0]!, false);
-    session.layers.set_opacity(session.layers.all[1]!, 0.4);
+    session.layers.setVisible(session.layers.all[0]!, false);
+    session.layers.setOpacity(session.layers.all[1]!, 0.4);
     expect(kept).toEqual([]);
     await vi.advanceTimersByTimeAsync(1000);
     expect(kept).toEqual([
@@ -465,11 +465,11 @@ describe("how a person shows the layers", () => {
         ],
       },
     ]);
-    session.layers.set_visible(session.layers.all[0]!, true);
+    session.layers.setVisible(session.layers.all[0]!, true);
     session.layers.flush();
     await settle();
     expect(kept.at(-1)).toEqual({ layers: [{ layer: 8, opacity: 0.4 }] });
-    session.layers.reset_overrides();
+    session.layers.resetOverrides();
     session.close(); // at once
     await settle();
     expect(kept.at(-1)).toEqual({ layers: [] });
@@ -477,7 +477,7 @@ describe("how a person shows the layers", () => {
 
   it("is there when the model is opened, and what this page has not sent yet is newer", async () => {
     await session.open();
-    session.view.set_viewport(800, 600, 1);
+    session.view.setViewport(800, 600, 1);
     const again = (): void => {
       socket().open();
       socket().receive({
@@ -493,8 +493,8 @@ describe("how a person shows the layers", () => {
       [8, true, 1],
       [7, false, 1],
     ]);
-    expect(told_server()).toEqual([{ layer: 7, visible: false, order: 4 }]);
-    session.layers.set_visible(session.layers.find(7)!, true);
+    expect(toldServer()).toEqual([{ layer: 7, visible: false, order: 4 }]);
+    session.layers.setVisible(session.layers.find(7)!, true);
     await vi.advanceTimersByTimeAsync(1000); // refused: the server is away
     socket().lose();
     await vi.advanceTimersByTimeAsync(1000);
@@ -522,13 +522,13 @@ describe("how a person shows the layers", () => {
         ],
       },
     ]);
-    expect(session.layers.has_overrides).toBe(true);
+    expect(session.layers.hasOverrides).toBe(true);
   });
 
   it("is not what a named view shows, but for what they change there", async () => {
     await open();
     answers.set(kKeep, [200, { layers: [] }]);
-    const back = session.layers.show_view({
+    const back = session.layers.showView({
       layers: [
         { layer: 7, visible: false },
         { layer: 8, opacity: 0.2 },
@@ -536,7 +536,7 @@ describe("how a person shows the layers", () => {
     });
     await vi.advanceTimersByTimeAsync(1000);
     expect(kept).toEqual([]);
-    session.layers.set_visible(session.layers.find(8)!, false);
+    session.layers.setVisible(session.layers.find(8)!, false);
     await vi.advanceTimersByTimeAsync(1000);
     expect(kept).toEqual([{ layers: [{ layer: 8, visible: false }] }]);
     back();

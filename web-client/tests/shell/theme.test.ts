@@ -2,19 +2,19 @@ import { readdirSync, readFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import { describe, expect, it } from "vitest";
 
-import { theme_of } from "../../src/ui/preferences";
+import { themeOf } from "../../src/ui/preferences";
 
 const kSource = join(__dirname, "../../src");
 const css = readFileSync(join(kSource, "shell", "theme.css"), "utf8");
 /** The files of the page; the kiosk has colours of its own. */
-const page_files = ["ui", "session", "features", "shell"].flatMap((folder) =>
+const pageFiles = ["ui", "session", "features", "shell"].flatMap((folder) =>
   readdirSync(join(kSource, folder), { recursive: true, encoding: "utf8" }).map((name) =>
     join(kSource, folder, name),
   ),
 );
 
 /** The colours of a theme, those that it takes from the light one included. */
-function colors_of(theme: "light" | "dark" | "contrast"): Map<string, string> {
+function colorsOf(theme: "light" | "dark" | "contrast"): Map<string, string> {
   const block = (head: string): [string, string][] => {
     const start = css.indexOf(head);
     expect(start, head).toBeGreaterThanOrEqual(0);
@@ -43,10 +43,10 @@ function contrast(a: string, b: string): number {
 
 describe("themes", () => {
   it("are chosen, or follow the system, where more contrast goes before dark", () => {
-    expect(theme_of("system", { dark: false, contrast: false })).toBe("light");
-    expect(theme_of("system", { dark: true, contrast: false })).toBe("dark");
-    expect(theme_of("system", { dark: true, contrast: true })).toBe("contrast");
-    expect(theme_of("light", { dark: true, contrast: true })).toBe("light");
+    expect(themeOf("system", { dark: false, contrast: false })).toBe("light");
+    expect(themeOf("system", { dark: true, contrast: false })).toBe("dark");
+    expect(themeOf("system", { dark: true, contrast: true })).toBe("contrast");
+    expect(themeOf("light", { dark: true, contrast: true })).toBe("light");
   });
 
   it.each([
@@ -56,7 +56,7 @@ describe("themes", () => {
   ] as const)(
     "%s: words and the lines of fields stand out from what is below them",
     (theme, words, lines) => {
-      const colors = colors_of(theme);
+      const colors = colorsOf(theme);
       const ratio = (a: string, b: string): number => contrast(colors.get(a)!, colors.get(b)!);
       for (const ground of ["--paper", "--surface", "--raised"]) {
         for (const ink of ["--ink", "--ink-soft", "--accent", "--danger"])
@@ -91,7 +91,7 @@ describe("themes", () => {
       "legend.ts: #009e73",
       "legend.ts: #cc79a7",
     ];
-    const files = page_files.filter(
+    const files = pageFiles.filter(
       (path) => /\.(ts|css)$/.test(path) && basename(path) !== "theme.css",
     );
     const found = files.flatMap((path) => {
@@ -107,7 +107,7 @@ describe("themes", () => {
   });
 
   it("set the strength of all lines in their colours", () => {
-    const files = page_files.filter((path) => path.endsWith(".ts"));
+    const files = pageFiles.filter((path) => path.endsWith(".ts"));
     const found = files.filter((path) =>
       /\d(px)? (solid|dashed) var\(--line\)/.test(readFileSync(path, "utf8")),
     );

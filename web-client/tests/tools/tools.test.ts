@@ -27,17 +27,17 @@ beforeEach(() => {
     begun: [],
     ended: 0,
     refuse: false,
-    begin_stroke(erase) {
+    beginStroke(erase) {
       if (this.refuse) return null;
       this.begun.push(erase);
       return new StrokeHandle("s", 4096, (message) => void messages.push(message));
     },
-    stroke_ended() {
+    strokeEnded() {
       this.ended += 1;
     },
-    radius_px: () => 20,
-    width_of: (pressure) => pressure / 2,
-    next_frame: (callback) => void frames.push(callback),
+    radiusPx: () => 20,
+    widthOf: (pressure) => pressure / 2,
+    nextFrame: (callback) => void frames.push(callback),
   };
 });
 
@@ -211,22 +211,22 @@ describe("navigation and pick", () => {
 
 describe("outlines", () => {
   let outlines: [number, number][][];
-  let outline_host: OutlineHost & { open: number; refuse: boolean };
+  let outlineHost: OutlineHost & { open: number; refuse: boolean };
   beforeEach(() => {
     outlines = [];
-    outline_host = {
+    outlineHost = {
       open: 0,
       refuse: false,
-      begin_outline() {
+      beginOutline() {
         if (!this.refuse) this.open += 1;
         return !this.refuse;
       },
-      finish_outline: (path) => void outlines.push(path),
-      outline_ended() {
+      finishOutline: (path) => void outlines.push(path),
+      outlineEnded() {
         this.open -= 1;
       },
       scale: () => 2,
-      outline_changed: () => {},
+      outlineChanged: () => {},
     };
   });
   const press = (tool: Tool, ...points: [number, number][]): void => {
@@ -241,10 +241,10 @@ describe("outlines", () => {
     ["the last corner again", (tool) => press(tool, [101, 99])],
     ["Enter", (tool) => tool.key("Enter")],
   ])("a polygon is closed by %s", (_, close) => {
-    const polygon = new PolygonTool(outline_host);
+    const polygon = new PolygonTool(outlineHost);
     press(polygon, [10, 10], [100, 10], [100, 100]);
     expect(outlines).toEqual([]);
-    expect(outline_host.open).toBe(1);
+    expect(outlineHost.open).toBe(1);
     close(polygon);
     expect(outlines).toEqual([
       [
@@ -253,11 +253,11 @@ describe("outlines", () => {
         [100, 100],
       ],
     ]);
-    expect([outline_host.open, polygon.outline]).toEqual([0, null]);
+    expect([outlineHost.open, polygon.outline]).toEqual([0, null]);
   });
 
   it("a polygon of two corners is not closed", () => {
-    const polygon = new PolygonTool(outline_host);
+    const polygon = new PolygonTool(outlineHost);
     press(polygon, [10, 10], [100, 10], [10, 10]);
     polygon.key("Enter");
     expect(outlines).toEqual([]);
@@ -265,7 +265,7 @@ describe("outlines", () => {
   });
 
   it("Backspace takes corners back, Escape all of them; without any, keys mean nothing to it", () => {
-    const polygon = new PolygonTool(outline_host);
+    const polygon = new PolygonTool(outlineHost);
     for (const key of ["Escape", "Backspace", "Enter"]) expect(polygon.key(key)).toBe(false);
     press(polygon, [10, 10], [100, 10], [100, 100]);
     expect(polygon.key("b")).toBe(false);
@@ -275,14 +275,14 @@ describe("outlines", () => {
       [100, 10],
     ]);
     expect(polygon.key("Escape")).toBe(true);
-    expect([outline_host.open, polygon.outline, outlines.length]).toEqual([0, null, 0]);
+    expect([outlineHost.open, polygon.outline, outlines.length]).toEqual([0, null, 0]);
     press(polygon, [10, 10]);
     polygon.key("Backspace");
-    expect(outline_host.open).toBe(0);
+    expect(outlineHost.open).toBe(0);
   });
 
   it("a line leads to the pointer, and the first corner says when it closes", () => {
-    const polygon = new PolygonTool(outline_host);
+    const polygon = new PolygonTool(outlineHost);
     press(polygon, [10, 10], [100, 10]);
     polygon.hover({ x: 50, y: 60 });
     expect(polygon.outline).toMatchObject({ pointer: [50, 60], closable: false });
@@ -292,7 +292,7 @@ describe("outlines", () => {
   });
 
   it("a second finger takes back the corner of the first", () => {
-    const polygon = new PolygonTool(outline_host);
+    const polygon = new PolygonTool(outlineHost);
     press(polygon, [10, 10], [100, 10]);
     polygon.down({ x: 300, y: 300 });
     polygon.cancel();
@@ -300,7 +300,7 @@ describe("outlines", () => {
   });
 
   it("a lasso is what the drag went round; a click is none", () => {
-    const lasso = new LassoTool(outline_host);
+    const lasso = new LassoTool(outlineHost);
     lasso.down({ x: 0, y: 0 });
     lasso.move([
       { x: 1, y: 0 },
@@ -318,11 +318,11 @@ describe("outlines", () => {
       ],
     ]);
     press(lasso, [5, 5]);
-    expect([outlines.length, outline_host.open]).toEqual([1, 0]);
+    expect([outlines.length, outlineHost.open]).toEqual([1, 0]);
   });
 
   it("a lasso that is given up paints nothing", () => {
-    const lasso = new LassoTool(outline_host);
+    const lasso = new LassoTool(outlineHost);
     for (const end of [() => lasso.cancel(), () => lasso.key("Escape"), () => lasso.deactivate()]) {
       lasso.down({ x: 0, y: 0 });
       lasso.move([
@@ -331,11 +331,11 @@ describe("outlines", () => {
       ]);
       end();
     }
-    expect([outlines.length, outline_host.open]).toEqual([0, 0]);
+    expect([outlines.length, outlineHost.open]).toEqual([0, 0]);
   });
 
   it("a very long lasso keeps its shape in as many points as an edit may have", () => {
-    const lasso = new LassoTool(outline_host);
+    const lasso = new LassoTool(outlineHost);
     lasso.down({ x: 1000, y: 0 });
     for (let i = 1; i <= 20_000; ++i)
       lasso.move([{ x: 1000 * Math.cos(i / 50), y: 1000 * Math.sin(i / 50) }]);
@@ -345,26 +345,26 @@ describe("outlines", () => {
   });
 
   it("where nothing can be painted no outline begins", () => {
-    outline_host.refuse = true;
-    const [lasso, polygon] = [new LassoTool(outline_host), new PolygonTool(outline_host)];
+    outlineHost.refuse = true;
+    const [lasso, polygon] = [new LassoTool(outlineHost), new PolygonTool(outlineHost)];
     press(lasso, [1, 1]);
     press(polygon, [1, 1]);
     polygon.key("Enter");
-    expect([lasso.outline, polygon.outline, outline_host.open]).toEqual([null, null, 0]);
+    expect([lasso.outline, polygon.outline, outlineHost.open]).toEqual([null, null, 0]);
   });
 
   it("choosing another tool gives the outline up", () => {
-    const polygon = new PolygonTool(outline_host);
+    const polygon = new PolygonTool(outlineHost);
     const manager = new ToolManager([polygon, new PickTool(() => {})], "polygon");
     press(polygon, [10, 10], [100, 10], [100, 100]);
     expect(manager.outline?.points.length).toBe(3);
     manager.choose("pick");
-    expect([manager.outline, outline_host.open, outlines.length]).toEqual([null, 0, 0]);
+    expect([manager.outline, outlineHost.open, outlines.length]).toEqual([null, 0, 0]);
     expect(manager.key("Enter")).toBe(false);
   });
 
   it("a drag is a line, finished when it is let go", () => {
-    const tool = new LineTool(outline_host);
+    const tool = new LineTool(outlineHost);
     tool.down({ x: 0, y: 0 });
     tool.move([{ x: 4, y: 0 }]); // a hand trembles
     tool.move([
@@ -381,14 +381,14 @@ describe("outlines", () => {
         [60, 9],
       ],
     ]);
-    expect([outline_host.open, tool.outline]).toEqual([0, null]);
+    expect([outlineHost.open, tool.outline]).toEqual([0, null]);
   });
 
   it.each<[string, (tool: LineTool) => unknown]>([
     ["one more press on the last place", (tool) => press(tool, [101, 50])],
     ["Enter", (tool) => tool.key("Enter")],
   ])("presses are places of a line, and %s ends it", (_, end) => {
-    const tool = new LineTool(outline_host);
+    const tool = new LineTool(outlineHost);
     press(tool, [10, 10], [100, 10]);
     tool.hover({ x: 50, y: 60 });
     expect(tool.outline).toMatchObject({
@@ -399,7 +399,7 @@ describe("outlines", () => {
       pointer: [50, 60],
     });
     press(tool, [100, 50]);
-    expect([outlines, outline_host.open]).toEqual([[], 1]);
+    expect([outlines, outlineHost.open]).toEqual([[], 1]);
     end(tool);
     expect(outlines).toEqual([
       [
@@ -408,13 +408,13 @@ describe("outlines", () => {
         [100, 50],
       ],
     ]);
-    expect(outline_host.open).toBe(0);
+    expect(outlineHost.open).toBe(0);
   });
 
   it("a double click alone is no line, and a drag after presses goes on with it", () => {
-    const tool = new LineTool(outline_host);
+    const tool = new LineTool(outlineHost);
     press(tool, [10, 10], [10, 11]);
-    expect([outlines.length, outline_host.open]).toEqual([0, 1]);
+    expect([outlines.length, outlineHost.open]).toEqual([0, 1]);
     tool.down({ x: 100, y: 10 });
     tool.move([{ x: 150, y: 10 }]);
     tool.up();
@@ -430,7 +430,7 @@ describe("outlines", () => {
   });
 
   it("places of a line are taken back, by a key or where a second finger came", () => {
-    const tool = new LineTool(outline_host);
+    const tool = new LineTool(outlineHost);
     press(tool, [10, 10], [100, 10]);
     tool.down({ x: 200, y: 10 });
     tool.move([{ x: 260, y: 10 }]);
@@ -448,16 +448,16 @@ describe("outlines", () => {
     tool.key("Backspace");
     expect(tool.outline?.points).toEqual([[10, 10]]);
     tool.key("Enter");
-    expect([outlines.length, outline_host.open, tool.outline]).toEqual([0, 0, null]);
+    expect([outlines.length, outlineHost.open, tool.outline]).toEqual([0, 0, null]);
     press(tool, [10, 10], [100, 10]);
     tool.key("Escape");
     tool.down({ x: 5, y: 5 });
     tool.cancel();
-    expect([outlines.length, outline_host.open, tool.outline]).toEqual([0, 0, null]);
+    expect([outlines.length, outlineHost.open, tool.outline]).toEqual([0, 0, null]);
   });
 
   it("a line has no more places than the server looks at, however long it is drawn", () => {
-    const tool = new LineTool(outline_host);
+    const tool = new LineTool(outlineHost);
     tool.down({ x: 0, y: 0 });
     for (let at = 1; at < 5000; ++at) tool.move([{ x: 10 * at, y: 0 }]);
     tool.up();
@@ -466,10 +466,10 @@ describe("outlines", () => {
   });
 
   it("where there is no record to draw for no line begins", () => {
-    outline_host.refuse = true;
-    const tool = new LineTool(outline_host);
+    outlineHost.refuse = true;
+    const tool = new LineTool(outlineHost);
     press(tool, [10, 10], [100, 10]);
-    expect([tool.outline, outline_host.open, tool.key("Escape")]).toEqual([null, 0, false]);
+    expect([tool.outline, outlineHost.open, tool.key("Escape")]).toEqual([null, 0, false]);
   });
 });
 

@@ -51,17 +51,17 @@ beforeEach(() => {
   vi.useFakeTimers();
   element = new FakeElement();
   handler = {
-    tool_down: vi.fn(),
-    tool_move: vi.fn(),
-    tool_up: vi.fn(),
-    tool_cancel: vi.fn(),
+    toolDown: vi.fn(),
+    toolMove: vi.fn(),
+    toolUp: vi.fn(),
+    toolCancel: vi.fn(),
     orbit: vi.fn(),
     pan: vi.fn(),
     zoom: vi.fn(),
     twist: vi.fn(),
     hover: vi.fn(),
-    free_mouse: vi.fn(),
-    tool_is_for_pen: vi.fn(() => true),
+    freeMouse: vi.fn(),
+    toolIsForPen: vi.fn(() => true),
   };
   input = new StageInput(element as unknown as HTMLElement, handler, () => 2);
 });
@@ -75,9 +75,9 @@ describe("mouse", () => {
     element.fire("pointerdown", mouse(0, 10, 20));
     element.fire("pointermove", mouse(0, 11, 22));
     element.fire("pointerup", mouse(0, 11, 22));
-    expect(handler.tool_down.mock.calls).toEqual([[{ x: 20, y: 40 }]]);
-    expect(handler.tool_move.mock.calls).toEqual([[[{ x: 22, y: 44 }]]]);
-    expect(handler.tool_up).toHaveBeenCalledTimes(1);
+    expect(handler.toolDown.mock.calls).toEqual([[{ x: 20, y: 40 }]]);
+    expect(handler.toolMove.mock.calls).toEqual([[[{ x: 22, y: 44 }]]]);
+    expect(handler.toolUp).toHaveBeenCalledTimes(1);
   });
 
   it("is free where nothing is pressed, until something is", () => {
@@ -85,14 +85,14 @@ describe("mouse", () => {
     element.fire("pointerdown", mouse(2, 10, 20, { buttons: 2 }));
     element.fire("pointermove", mouse(2, 11, 22, { buttons: 2 }));
     element.fire("pointermove", { ...mouse(0, 12, 20, { buttons: 0 }), pointerType: "pen" });
-    expect(handler.free_mouse.mock.calls).toEqual([[{ x: 20, y: 40 }], [null], [null], [null]]);
+    expect(handler.freeMouse.mock.calls).toEqual([[{ x: 20, y: 40 }], [null], [null], [null]]);
   });
 
   it("all the points between two pictures are kept", () => {
     element.fire("pointerdown", mouse(0, 0, 0));
     const between = [mouse(0, 1, 0), mouse(0, 2, 0), mouse(0, 3, 0)];
     element.fire("pointermove", mouse(0, 3, 0, { getCoalescedEvents: () => between }));
-    expect(handler.tool_move.mock.calls[0]![0].map(({ x }) => x)).toEqual([2, 4, 6]);
+    expect(handler.toolMove.mock.calls[0]![0].map(({ x }) => x)).toEqual([2, 4, 6]);
   });
 
   it("right turns, middle and shift-right move, held space makes left turn", () => {
@@ -104,7 +104,7 @@ describe("mouse", () => {
     drag(2);
     drag(1);
     drag(2, { shiftKey: true });
-    input.orbit_held = true;
+    input.orbitHeld = true;
     drag(0);
     expect(handler.orbit.mock.calls).toEqual([
       [6, 2],
@@ -114,7 +114,7 @@ describe("mouse", () => {
       [6, 2],
       [6, 2],
     ]);
-    expect(handler.tool_down).not.toHaveBeenCalled();
+    expect(handler.toolDown).not.toHaveBeenCalled();
   });
 
   it("the wheel zooms where the pointer is: up comes nearer", () => {
@@ -139,32 +139,32 @@ describe("mouse", () => {
 describe("touch", () => {
   it("one finger drags the tool once it has moved", () => {
     element.fire("pointerdown", touch(1, 10, 10));
-    expect(handler.tool_down).not.toHaveBeenCalled();
+    expect(handler.toolDown).not.toHaveBeenCalled();
     element.fire("pointermove", touch(1, 12, 10));
-    expect(handler.tool_down).not.toHaveBeenCalled();
+    expect(handler.toolDown).not.toHaveBeenCalled();
     element.fire("pointermove", touch(1, 30, 10));
     element.fire("pointerup", touch(1, 30, 10));
-    expect(handler.tool_down.mock.calls).toEqual([[{ x: 20, y: 20 }]]);
-    expect(handler.tool_move).toHaveBeenCalled();
-    expect(handler.tool_up).toHaveBeenCalledTimes(1);
+    expect(handler.toolDown.mock.calls).toEqual([[{ x: 20, y: 20 }]]);
+    expect(handler.toolMove).toHaveBeenCalled();
+    expect(handler.toolUp).toHaveBeenCalledTimes(1);
   });
 
   it("a finger that rests starts the tool, a tap is one dab", () => {
     element.fire("pointerdown", touch(1, 10, 10));
     vi.advanceTimersByTime(200);
-    expect(handler.tool_down).toHaveBeenCalledTimes(1);
+    expect(handler.toolDown).toHaveBeenCalledTimes(1);
     element.fire("pointerup", touch(1, 10, 10));
     element.fire("pointerdown", touch(2, 10, 10));
     element.fire("pointerup", touch(2, 10, 10));
-    expect(handler.tool_down).toHaveBeenCalledTimes(2);
-    expect(handler.tool_up).toHaveBeenCalledTimes(2);
+    expect(handler.toolDown).toHaveBeenCalledTimes(2);
+    expect(handler.toolUp).toHaveBeenCalledTimes(2);
   });
 
   it("two fingers never paint: they move, zoom and twist", () => {
     element.fire("pointerdown", touch(1, 100, 100));
     element.fire("pointerdown", touch(2, 200, 100));
     element.fire("pointermove", touch(2, 300, 100));
-    expect(handler.tool_down).not.toHaveBeenCalled();
+    expect(handler.toolDown).not.toHaveBeenCalled();
     expect(handler.pan.mock.calls).toEqual([[100, 0]]);
     expect(handler.zoom.mock.calls).toEqual([[0.5, 400, 200]]);
     element.fire("pointermove", touch(2, 100, 300));
@@ -172,17 +172,17 @@ describe("touch", () => {
     element.fire("pointerup", touch(2, 100, 300));
     element.fire("pointermove", touch(1, 0, 0));
     element.fire("pointerup", touch(1, 0, 0));
-    expect(handler.tool_down).not.toHaveBeenCalled();
+    expect(handler.toolDown).not.toHaveBeenCalled();
   });
 
   it("a second finger cancels what the first began", () => {
     element.fire("pointerdown", touch(1, 10, 10));
     element.fire("pointermove", touch(1, 40, 10));
     element.fire("pointerdown", touch(2, 200, 100));
-    expect(handler.tool_cancel).toHaveBeenCalledTimes(1);
+    expect(handler.toolCancel).toHaveBeenCalledTimes(1);
     element.fire("pointerup", touch(2, 200, 100));
     element.fire("pointerup", touch(1, 40, 10));
-    expect(handler.tool_up).not.toHaveBeenCalled();
+    expect(handler.toolUp).not.toHaveBeenCalled();
   });
 });
 
@@ -193,7 +193,7 @@ describe("pen", () => {
     element.fire("pointerup", pen(x + 5, 10));
   };
   const leaves = (): void => element.fire("pointerleave", pen(0, 0, hovering));
-  const palm_drags = (pointer: number): void => {
+  const palmDrags = (pointer: number): void => {
     element.fire("pointerdown", touch(pointer, 200, 200));
     vi.advanceTimersByTime(200);
     element.fire("pointermove", touch(pointer, 240, 230));
@@ -206,7 +206,7 @@ describe("pen", () => {
     element.fire("pointerup", touch(2, 300, 100));
     element.fire("pointerup", touch(1, 100, 100));
   };
-  const nothing_moved = (): void => {
+  const nothingMoved = (): void => {
     for (const name of ["orbit", "pan", "zoom", "twist"] as const)
       expect(handler[name], name).not.toHaveBeenCalled();
   };
@@ -219,19 +219,19 @@ describe("pen", () => {
     element.fire("pointermove", pen(15, 10));
     element.fire("pointerup", touch(1, 230, 220));
     element.fire("pointerup", pen(15, 10));
-    expect(handler.tool_down.mock.calls).toEqual([[{ x: 20, y: 20 }]]);
-    expect(handler.tool_move.mock.calls).toEqual([[[{ x: 30, y: 20 }]]]);
-    expect(handler.tool_up).toHaveBeenCalledTimes(1);
-    expect(handler.tool_cancel).not.toHaveBeenCalled();
-    nothing_moved();
+    expect(handler.toolDown.mock.calls).toEqual([[{ x: 20, y: 20 }]]);
+    expect(handler.toolMove.mock.calls).toEqual([[[{ x: 30, y: 20 }]]]);
+    expect(handler.toolUp).toHaveBeenCalledTimes(1);
+    expect(handler.toolCancel).not.toHaveBeenCalled();
+    nothingMoved();
   });
 
   it("in range is enough: also two parts of the hand neither paint nor move", () => {
     element.fire("pointermove", pen(10, 10, hovering));
-    palm_drags(1);
+    palmDrags(1);
     pinch();
-    expect(handler.tool_down).not.toHaveBeenCalled();
-    nothing_moved();
+    expect(handler.toolDown).not.toHaveBeenCalled();
+    nothingMoved();
   });
 
   it("takes over from a hand that was there before it, which counts only after it was lifted", () => {
@@ -243,8 +243,8 @@ describe("pen", () => {
     leaves();
     vi.advanceTimersByTime(10_000);
     element.fire("pointermove", touch(1, 100, 100));
-    expect(handler.tool_down).toHaveBeenCalledTimes(1);
-    nothing_moved();
+    expect(handler.toolDown).toHaveBeenCalledTimes(1);
+    nothingMoved();
     element.fire("pointerup", touch(1, 100, 100));
     element.fire("pointerup", touch(2, 300, 240));
     pinch();
@@ -254,15 +254,15 @@ describe("pen", () => {
   it("ends what a finger has begun, and the finger's rest paints nothing", () => {
     element.fire("pointerdown", touch(1, 10, 10));
     element.fire("pointermove", touch(1, 40, 10));
-    expect(handler.tool_down).toHaveBeenCalledTimes(1);
+    expect(handler.toolDown).toHaveBeenCalledTimes(1);
     element.fire("pointerdown", pen(100, 100));
-    expect(handler.tool_cancel).toHaveBeenCalledTimes(1);
+    expect(handler.toolCancel).toHaveBeenCalledTimes(1);
     element.fire("pointermove", touch(1, 80, 10));
     element.fire("pointerup", touch(1, 80, 10));
     element.fire("pointermove", pen(110, 100));
-    expect(handler.tool_move.mock.calls.slice(1)).toEqual([[[{ x: 220, y: 200 }]]]);
+    expect(handler.toolMove.mock.calls.slice(1)).toEqual([[[{ x: 220, y: 200 }]]]);
     element.fire("pointerup", pen(110, 100));
-    expect(handler.tool_up).toHaveBeenCalledTimes(1);
+    expect(handler.toolUp).toHaveBeenCalledTimes(1);
   });
 
   it("a touch that only waits when the pen comes is no dab", () => {
@@ -270,7 +270,7 @@ describe("pen", () => {
     element.fire("pointermove", pen(10, 10, hovering));
     vi.advanceTimersByTime(500);
     element.fire("pointerup", touch(1, 200, 200));
-    expect(handler.tool_down).not.toHaveBeenCalled();
+    expect(handler.toolDown).not.toHaveBeenCalled();
   });
 
   it("counts as there between two strokes, and two fingers move the model as soon as it is away", () => {
@@ -278,19 +278,19 @@ describe("pen", () => {
     leaves();
     vi.advanceTimersByTime(300);
     pinch();
-    nothing_moved();
+    nothingMoved();
     vi.advanceTimersByTime(200);
     pinch();
     expect(handler.zoom.mock.calls).toEqual([[0.5, 400, 200]]);
     expect(handler.pan.mock.calls).toEqual([[100, 0]]);
-    expect(handler.tool_down).toHaveBeenCalledTimes(1);
+    expect(handler.toolDown).toHaveBeenCalledTimes(1);
   });
 
   it("that is gone without a word does not keep the fingers out, one that rests on the glass does", () => {
     element.fire("pointerdown", pen(10, 10));
     vi.advanceTimersByTime(60_000);
     pinch();
-    nothing_moved();
+    nothingMoved();
     element.fire("pointerup", pen(10, 10));
     vi.advanceTimersByTime(5000);
     pinch();
@@ -298,21 +298,21 @@ describe("pen", () => {
   });
 
   it("once used has the tools that change something: one finger turns then, and a tap paints nothing", () => {
-    palm_drags(1);
-    expect(handler.tool_down).toHaveBeenCalledTimes(1); // a finger paints where there is no pen
+    palmDrags(1);
+    expect(handler.toolDown).toHaveBeenCalledTimes(1); // a finger paints where there is no pen
     stroke(10);
     leaves();
     vi.advanceTimersByTime(1000);
-    palm_drags(1);
-    expect(handler.tool_down).toHaveBeenCalledTimes(2);
+    palmDrags(1);
+    expect(handler.toolDown).toHaveBeenCalledTimes(2);
     expect(handler.orbit.mock.calls).toEqual([[80, 60]]);
     element.fire("pointerdown", touch(1, 10, 10));
     element.fire("pointerup", touch(1, 10, 10));
-    expect(handler.tool_down).toHaveBeenCalledTimes(2);
-    handler.tool_is_for_pen.mockReturnValue(false);
+    expect(handler.toolDown).toHaveBeenCalledTimes(2);
+    handler.toolIsForPen.mockReturnValue(false);
     element.fire("pointerdown", touch(1, 10, 10));
     element.fire("pointerup", touch(1, 10, 10));
-    expect(handler.tool_down).toHaveBeenCalledTimes(3);
+    expect(handler.toolDown).toHaveBeenCalledTimes(3);
   });
 
   it("leaves no circle of the brush behind", () => {

@@ -2,38 +2,38 @@ import type { ReactiveController } from "lit";
 import { afterEach, describe, expect, it, vi } from "vitest";
 import { FileDrop } from "../../src/ui/drop";
 import { growing, growth } from "../../src/ui/growth";
-import { has_fingers_only } from "../../src/ui/pointers";
-import { hidden_ends } from "../../src/ui/scroll-fade";
+import { hasFingersOnly } from "../../src/ui/pointers";
+import { hiddenEnds } from "../../src/ui/scroll-fade";
 
 afterEach(() => vi.unstubAllGlobals());
 
 describe("a row that scrolls", () => {
   it("hides nothing where all fits", () => {
-    expect(hidden_ends(0, 300, 300)).toEqual({ before: false, after: false });
+    expect(hiddenEnds(0, 300, 300)).toEqual({ before: false, after: false });
   });
   it("hides what lies beyond its end, its beginning, or both", () => {
-    expect(hidden_ends(0, 300, 500)).toEqual({ before: false, after: true });
-    expect(hidden_ends(100, 300, 500)).toEqual({ before: true, after: true });
-    expect(hidden_ends(200, 300, 500)).toEqual({ before: true, after: false });
+    expect(hiddenEnds(0, 300, 500)).toEqual({ before: false, after: true });
+    expect(hiddenEnds(100, 300, 500)).toEqual({ before: true, after: true });
+    expect(hiddenEnds(200, 300, 500)).toEqual({ before: true, after: false });
   });
   it("is at its end also where browsers round", () => {
-    expect(hidden_ends(1, 300, 500).before).toBe(false);
-    expect(hidden_ends(198.6, 300, 500).after).toBe(false);
+    expect(hiddenEnds(1, 300, 500).before).toBe(false);
+    expect(hiddenEnds(198.6, 300, 500).after).toBe(false);
   });
 });
 
 describe("pointers", () => {
-  const with_pointers = (...matching: string[]): void => {
+  const withPointers = (...matching: string[]): void => {
     vi.stubGlobal("matchMedia", (query: string) => ({ matches: matching.includes(query) }));
   };
 
   it("are fingers only where nothing finer is there", () => {
-    with_pointers("(pointer: coarse)");
-    expect(has_fingers_only()).toBe(true);
-    with_pointers("(pointer: coarse)", "(any-pointer: fine)");
-    expect(has_fingers_only()).toBe(false);
-    with_pointers("(any-pointer: fine)");
-    expect(has_fingers_only()).toBe(false);
+    withPointers("(pointer: coarse)");
+    expect(hasFingersOnly()).toBe(true);
+    withPointers("(pointer: coarse)", "(any-pointer: fine)");
+    expect(hasFingersOnly()).toBe(false);
+    withPointers("(any-pointer: fine)");
+    expect(hasFingersOnly()).toBe(false);
   });
 });
 

@@ -50,9 +50,9 @@ beforeEach(async () => {
   vi.stubGlobal("location", tab.location);
   vi.stubGlobal("addEventListener", (_name: string, listener: () => void) => (tab.told = listener));
   routes = await import("../../src/ui/routes");
-  routes.on_navigate(() => seen.push(routes.path_now()));
+  routes.onNavigate(() => seen.push(routes.pathNow()));
   routes.navigate("/models/pot");
-  routes.put_hash("#view=rim");
+  routes.putHash("#view=rim");
 });
 afterEach(() => void vi.unstubAllGlobals());
 
@@ -60,13 +60,13 @@ const answered = (): Promise<void> => new Promise((resolve) => void setTimeout(r
 
 describe("a page that is held", () => {
   it("is left at once where nothing holds it", () => {
-    routes.hold_page(() => Promise.resolve(false))();
+    routes.holdPage(() => Promise.resolve(false))();
     tab.back();
     expect(seen).toEqual(["/models/pot", "/"]);
   });
   it("stays where the question is answered with no, by a link or by going back", async () => {
     const ask = vi.fn(() => Promise.resolve(false));
-    routes.hold_page(ask);
+    routes.holdPage(ask);
     routes.navigate("/");
     await answered();
     tab.back();
@@ -78,7 +78,7 @@ describe("a page that is held", () => {
   });
   it("is left by a link after a yes, and holds nothing then", async () => {
     const ask = vi.fn(() => Promise.resolve(true));
-    routes.hold_page(ask);
+    routes.holdPage(ask);
     routes.navigate("/projects/demo");
     expect(seen).toEqual(["/models/pot"]);
     await answered();
@@ -88,11 +88,11 @@ describe("a page that is held", () => {
   });
   it("is left forward and back after a yes, to where the browser was", async () => {
     routes.navigate("/projects/demo");
-    routes.hold_page(() => Promise.resolve(true));
+    routes.holdPage(() => Promise.resolve(true));
     tab.back();
     await answered();
     expect(tab.location.pathname).toBe("/models/pot");
-    routes.hold_page(() => Promise.resolve(true));
+    routes.holdPage(() => Promise.resolve(true));
     tab.forward();
     await answered();
     expect(seen).toEqual(["/models/pot", "/projects/demo", "/models/pot", "/projects/demo"]);
@@ -100,7 +100,7 @@ describe("a page that is held", () => {
   it("asks once at a time", async () => {
     let answer: (yes: boolean) => void = () => {};
     const ask = vi.fn(() => new Promise<boolean>((resolve) => (answer = resolve)));
-    routes.hold_page(ask);
+    routes.holdPage(ask);
     tab.back();
     tab.back();
     routes.navigate("/projects/demo");
@@ -111,23 +111,23 @@ describe("a page that is held", () => {
   });
   it("is not left by what is looked at on it", () => {
     const ask = vi.fn(() => Promise.resolve(false));
-    routes.hold_page(ask);
+    routes.holdPage(ask);
     routes.navigate("/models/pot#comment=3");
     tab.back();
     expect(ask).not.toHaveBeenCalled();
     expect(seen).toEqual(["/models/pot", "/models/pot", "/models/pot"]);
   });
   it("is asked about by what takes it away without going anywhere", async () => {
-    expect(await routes.may_leave_page()).toBe(true);
-    const let_go = routes.hold_page(() => Promise.resolve(false));
-    expect(await routes.may_leave_page()).toBe(false);
-    let_go();
-    expect(await routes.may_leave_page()).toBe(true);
+    expect(await routes.mayLeavePage()).toBe(true);
+    const letGo = routes.holdPage(() => Promise.resolve(false));
+    expect(await routes.mayLeavePage()).toBe(false);
+    letGo();
+    expect(await routes.mayLeavePage()).toBe(true);
   });
   it("is let go of only by who holds it", async () => {
-    const let_go = routes.hold_page(() => Promise.resolve(true));
-    routes.hold_page(() => Promise.resolve(false));
-    let_go();
-    expect(await routes.may_leave_page()).toBe(false);
+    const letGo = routes.holdPage(() => Promise.resolve(true));
+    routes.holdPage(() => Promise.resolve(false));
+    letGo();
+    expect(await routes.mayLeavePage()).toBe(false);
   });
 });

@@ -45,10 +45,10 @@ describe("what a dialog sends", () => {
     void sending.run(begin);
     void sending.run(begin);
     expect(cancel).toHaveBeenCalledTimes(1);
-    sending.gives_up = false;
+    sending.givesUp = false;
     sending.hostDisconnected();
     expect(cancel).toHaveBeenCalledTimes(1);
-    sending.gives_up = true;
+    sending.givesUp = true;
     sending.hostDisconnected();
     expect(cancel).toHaveBeenCalledTimes(2);
     expect(sending.busy).toBe(false);

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
-import { tell_binned, told_restored, type BinApi } from "../../src/ui/trash";
+import { tellBinned, toldRestored, type BinApi } from "../../src/ui/trash";
 import { notices, type Notice } from "../../src/ui/notices";
 import { ApiError } from "../../src/net/api";
 import type { BinRestored } from "../../src/core/protocol.gen";
@@ -19,7 +19,7 @@ describe("what was deleted", () => {
   const asked: string[] = [];
   let answer: () => Promise<BinRestored>;
   const api = {
-    restore_from_bin: (project: string, entry: string) => {
+    restoreFromBin: (project: string, entry: string) => {
       asked.push(`${project}/${entry}`);
       return answer();
     },
@@ -45,7 +45,7 @@ describe("what was deleted", () => {
 
   it("comes back by the notice's button, and that is said", async () => {
     const back: BinRestored[] = [];
-    tell_binned(
+    tellBinned(
       api,
       { kind: "layer", entry: "layer-3", name: "Cracks", project: "villa" },
       (restored) => back.push(restored),
@@ -62,7 +62,7 @@ describe("what was deleted", () => {
       Promise.reject(
         new ApiError({ status: 409, title: "Cannot be restored", detail: "SU 1 is taken." }),
       );
-    tell_binned(api, { kind: "record", entry: "record-5-1", name: "SU 1", project: "villa" }, () =>
+    tellBinned(api, { kind: "record", entry: "record-5-1", name: "SU 1", project: "villa" }, () =>
       expect.unreachable(),
     );
     await undo();
@@ -70,8 +70,8 @@ describe("what was deleted", () => {
   });
 
   it("is told with its new short name where that changed", () => {
-    expect(told_restored(cracks)).not.toContain("cracks-2");
-    expect(told_restored({ ...cracks, slug: "cracks-2", former_slug: "cracks" })).toContain(
+    expect(toldRestored(cracks)).not.toContain("cracks-2");
+    expect(toldRestored({ ...cracks, slug: "cracks-2", former_slug: "cracks" })).toContain(
       "cracks-2",
     );
   });

@@ -5,24 +5,24 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../../net/api";
-import { format_list } from "../../core/locale";
+import { formatList } from "../../core/locale";
 import {
-  browser_of,
+  browserOf,
   kLeastPasswordLength,
-  password_mistake,
-  roles_of_tokens,
-  roles_of_tokens_in,
+  passwordMistake,
+  rolesOfTokens,
+  rolesOfTokensIn,
 } from "../../domain/people";
 import type { Project, ScriptToken, ScriptTokenMade, SignInSession } from "../../core/protocol.gen";
 import { kRoles, type Me, type Role } from "../../core/types";
 import "../../ui/copy-field";
 import { ask } from "../../ui/dialog";
-import { password_words } from "./entry";
+import { passwordWords } from "./entry";
 import { icon } from "../../ui/icons";
-import { password_field, password_styles } from "./password-field";
-import { chip_styles, choices_styles, shared_styles } from "../../ui/styles";
+import { passwordField, passwordStyles } from "./password-field";
+import { chipStyles, choicesStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
-import { told_date, told_time } from "../../domain/times";
+import { toldDate, toldTime } from "../../domain/times";
 
 const words = texts.account;
 const kUsualDays = 365;
@@ -34,23 +34,23 @@ type Section = "name" | "password" | "sessions" | "tokens";
 export class StrataAccountDialog extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) me!: Me;
-  @state() private projects_: Project[] = []; // that they see
-  @state() private sessions_: SignInSession[] = [];
-  @state() private tokens_: ScriptToken[] | null = null;
-  @state() private made_: ScriptTokenMade | null = null;
-  @state() private adding_ = false;
-  @state() private role_: Role = "viewer"; // of the token that is added
-  @state() private only_ = ""; // slug of the project that it is for; empty: all
-  @state() private field_problems_: Partial<Record<Field, string>> = {};
-  @state() private note_: { section: Section; kind: "error" | "done"; text: string } | null = null;
-  @state() private busy_ = false;
-  @query("form.password-change") private password_form_!: HTMLFormElement;
+  @state() private _projects: Project[] = []; // that they see
+  @state() private _sessions: SignInSession[] = [];
+  @state() private _tokens: ScriptToken[] | null = null;
+  @state() private _made: ScriptTokenMade | null = null;
+  @state() private _adding = false;
+  @state() private _role: Role = "viewer"; // of the token that is added
+  @state() private _only = ""; // slug of the project that it is for; empty: all
+  @state() private _fieldProblems: Partial<Record<Field, string>> = {};
+  @state() private _note: { section: Section; kind: "error" | "done"; text: string } | null = null;
+  @state() private _busy = false;
+  @query("form.password-change") private _passwordForm!: HTMLFormElement;
 
   static override styles = [
-    shared_styles,
-    chip_styles,
-    choices_styles,
-    password_styles,
+    sharedStyles,
+    chipStyles,
+    choicesStyles,
+    passwordStyles,
     css`
       section {
         display: grid;
@@ -138,54 +138,54 @@ export class StrataAccountDialog extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     void this.attempt("sessions", () =>
-      Promise.all([this.read_projects(), this.read_sessions(), this.read_tokens()]),
+      Promise.all([this.readProjects(), this.readSessions(), this.readTokens()]),
     );
   }
 
-  private async read_projects(): Promise<void> {
-    this.projects_ = await this.api.projects();
+  private async readProjects(): Promise<void> {
+    this._projects = await this.api.projects();
   }
-  private async read_sessions(): Promise<void> {
-    this.sessions_ = await this.api.sign_in_sessions();
+  private async readSessions(): Promise<void> {
+    this._sessions = await this.api.signInSessions();
   }
-  private async read_tokens(): Promise<void> {
-    this.tokens_ = await this.api.script_tokens();
+  private async readTokens(): Promise<void> {
+    this._tokens = await this.api.scriptTokens();
   }
 
   override render(): TemplateResult {
     const { me } = this;
     const rank = (role: Role | undefined): number => kRoles.indexOf(role ?? "guest");
     // than everywhere
-    const with_more = this.projects_.filter(({ role }) => rank(role) > rank(me.role));
+    const withMore = this._projects.filter(({ role }) => rank(role) > rank(me.role));
     return html`<strata-dialog wide heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <section>
         <p class="hint">${words.about(me.user, texts.roles[me.role])}</p>
         ${
-          with_more.length > 0
+          withMore.length > 0
             ? html`<p class="caption" id="in_projects">${words.in_projects}</p>
               <ul aria-labelledby="in_projects">
-              ${with_more.map((project) => this.project_row(project))}
+              ${withMore.map((project) => this.projectRow(project))}
             </ul>`
             : nothing
         }
-        ${this.name_form(me)} ${this.note("name")}
+        ${this.nameForm(me)} ${this.note("name")}
       </section>
       <section aria-labelledby="password_heading">
         <h3 id="password_heading">${words.password}</h3>
-        ${this.password_form(me)} ${this.note("password")}
+        ${this.passwordForm(me)} ${this.note("password")}
       </section>
       <section aria-labelledby="sessions">
         <h3 id="sessions">${words.sessions}</h3>
         <ul>
           ${repeat(
-            this.sessions_,
+            this._sessions,
             ({ id }) => id,
-            (session) => this.session_row(session),
+            (session) => this.sessionRow(session),
           )}
         </ul>
         ${
-          this.sessions_.length > 1
-            ? html`<button class="end" ?disabled=${this.busy_} @click=${() => void this.end_others()}>${words.sign_out_others}</button>`
+          this._sessions.length > 1
+            ? html`<button class="end" ?disabled=${this._busy} @click=${() => void this.endOthers()}>${words.sign_out_others}</button>`
             : nothing
         }
         ${this.note("sessions")}
@@ -193,27 +193,27 @@ export class StrataAccountDialog extends LitElement {
       <section aria-labelledby="tokens">
         <h3 id="tokens">${words.tokens}</h3>
         <p class="hint">${words.tokens_lead}</p>
-        ${this.made_ ? this.made(this.made_) : nothing}
-        ${this.tokens_?.length === 0 && !this.adding_ ? html`<p class="hint">${words.no_tokens}</p>` : nothing}
+        ${this._made ? this.made(this._made) : nothing}
+        ${this._tokens?.length === 0 && !this._adding ? html`<p class="hint">${words.no_tokens}</p>` : nothing}
         <ul>
           ${repeat(
-            this.tokens_ ?? [],
+            this._tokens ?? [],
             ({ id }) => id,
-            (token) => this.token_row(token),
+            (token) => this.tokenRow(token),
           )}
         </ul>
         ${
-          this.adding_
-            ? this.token_form()
-            : html`<button class="end" @click=${this.begin_to_add}>${icon("plus")}${words.token_new}</button>`
+          this._adding
+            ? this.tokenForm()
+            : html`<button class="end" @click=${this.beginToAdd}>${icon("plus")}${words.token_new}</button>`
         }
         ${this.note("tokens")}
       </section>
     </strata-dialog>`;
   }
 
-  private name_form(me: Me): TemplateResult {
-    return html`<form @submit=${this.on_name} novalidate>
+  private nameForm(me: Me): TemplateResult {
+    return html`<form @submit=${this.onName} novalidate>
       <div class="beside">
         <label class="field">
           <span>${words.full_name}</span>
@@ -223,22 +223,22 @@ export class StrataAccountDialog extends LitElement {
             maxlength="200"
             autocomplete="name"
             .value=${me.full_name}
-            aria-invalid=${this.field_problems_.full_name ? "true" : "false"}
+            aria-invalid=${this._fieldProblems.full_name ? "true" : "false"}
           />
         </label>
-        <button ?disabled=${this.busy_}>${texts.save}</button>
+        <button ?disabled=${this._busy}>${texts.save}</button>
       </div>
       ${this.mistake("full_name")}
     </form>`;
   }
 
-  private password_form(me: Me): TemplateResult {
-    const problems = this.field_problems_;
-    return html`<form class="password-change" @submit=${this.on_password} novalidate>
+  private passwordForm(me: Me): TemplateResult {
+    const problems = this._fieldProblems;
+    return html`<form class="password-change" @submit=${this.onPassword} novalidate>
       <input type="text" name="user" autocomplete="username" hidden .value=${me.user} />
       ${
         me.has_password
-          ? password_field({
+          ? passwordField({
               name: "current",
               label: words.current,
               autocomplete: "current-password",
@@ -246,61 +246,61 @@ export class StrataAccountDialog extends LitElement {
             })
           : html`<p class="hint">${words.password_set}</p>`
       }
-      ${password_field({
+      ${passwordField({
         name: "password",
         label: words.new,
         autocomplete: "new-password",
         hint: texts.password.hint(kLeastPasswordLength),
         problem: problems.password ?? "",
       })}
-      ${password_field({ name: "repeat", label: words.repeat, autocomplete: "new-password", problem: problems.repeat ?? "" })}
-      <button ?disabled=${this.busy_}>${me.has_password ? words.password_change : words.password_choose}</button>
+      ${passwordField({ name: "repeat", label: words.repeat, autocomplete: "new-password", problem: problems.repeat ?? "" })}
+      <button ?disabled=${this._busy}>${me.has_password ? words.password_change : words.password_choose}</button>
     </form>`;
   }
 
   /** Where a role comes from, too, so that they know whom to ask. */
-  private project_row({ name, role, groups }: Project): TemplateResult {
+  private projectRow({ name, role, groups }: Project): TemplateResult {
     const told = texts.roles[role ?? "guest"];
     return html`<li>
-      <div class="grow"><b>${name}</b> <span class="hint">${groups ? words.role_by_groups(told, format_list(groups)) : told}</span></div>
+      <div class="grow"><b>${name}</b> <span class="hint">${groups ? words.role_by_groups(told, formatList(groups)) : told}</span></div>
     </li>`;
   }
 
-  private session_row(session: SignInSession): TemplateResult {
-    const { browser, system } = browser_of(session.agent);
+  private sessionRow(session: SignInSession): TemplateResult {
+    const { browser, system } = browserOf(session.agent);
     const where = words.browser(browser, system);
     const when = session.last_used
-      ? words.last_used(told_time(session.last_used))
-      : words.since(told_time(session.created));
+      ? words.last_used(toldTime(session.last_used))
+      : words.since(toldTime(session.created));
     return html`<li>
       <div class="grow"><b title=${session.agent}>${where}</b> <span class="hint">${when}</span></div>
       ${
         session.current
           ? html`<span class="chip">${words.this_browser}</span>`
-          : html`<button ?disabled=${this.busy_} aria-label=${words.sign_out_of(where)} @click=${() => void this.end_session(session)}>${words.sign_out}</button>`
+          : html`<button ?disabled=${this._busy} aria-label=${words.sign_out_of(where)} @click=${() => void this.endSession(session)}>${words.sign_out}</button>`
       }
     </li>`;
   }
 
-  private token_row(token: ScriptToken): TemplateResult {
+  private tokenRow(token: ScriptToken): TemplateResult {
     const expired = token.expires !== undefined && new Date(token.expires) < new Date();
     const until =
       token.expires === undefined
         ? ""
-        : (expired ? words.token_expired : words.token_until)(told_date(token.expires));
+        : (expired ? words.token_expired : words.token_until)(toldDate(token.expires));
     const used =
       token.last_used === undefined
         ? words.token_unused
-        : words.token_used(told_time(token.last_used));
+        : words.token_used(toldTime(token.last_used));
     const where =
       token.project === undefined
         ? ""
         : words.token_only(
-            this.projects_.find(({ slug }) => slug === token.project)?.name ?? token.project,
+            this._projects.find(({ slug }) => slug === token.project)?.name ?? token.project,
           );
     return html`<li>
       <div class="grow"><b>${token.name}</b> <span class="hint">${words.token_line(texts.roles[token.role], where, until, used)}</span></div>
-      <button ?disabled=${this.busy_} aria-label=${words.token_revoke(token.name)} @click=${() => void this.revoke(token)}>${words.revoke}</button>
+      <button ?disabled=${this._busy} aria-label=${words.token_revoke(token.name)} @click=${() => void this.revoke(token)}>${words.revoke}</button>
     </li>`;
   }
 
@@ -313,20 +313,20 @@ export class StrataAccountDialog extends LitElement {
     </div>`;
   }
 
-  private roles_of_token(): Role[] {
-    const only = this.projects_.find(({ slug }) => slug === this.only_);
-    return only ? roles_of_tokens_in(only.role ?? "guest") : roles_of_tokens(this.me.role);
+  private rolesOfToken(): Role[] {
+    const only = this._projects.find(({ slug }) => slug === this._only);
+    return only ? rolesOfTokensIn(only.role ?? "guest") : rolesOfTokens(this.me.role);
   }
 
-  private choose_project(slug: string): void {
-    this.only_ = slug;
-    const roles = this.roles_of_token();
-    if (!roles.includes(this.role_)) this.role_ = roles.at(-1) ?? "viewer";
+  private chooseProject(slug: string): void {
+    this._only = slug;
+    const roles = this.rolesOfToken();
+    if (!roles.includes(this._role)) this._role = roles.at(-1) ?? "viewer";
   }
 
-  private token_form(): TemplateResult {
-    const roles = this.roles_of_token();
-    return html`<form @submit=${this.on_token} novalidate>
+  private tokenForm(): TemplateResult {
+    const roles = this.rolesOfToken();
+    return html`<form @submit=${this.onToken} novalidate>
       <label class="field">
         <span>${words.token_name}</span>
         <input
@@ -335,26 +335,26 @@ export class StrataAccountDialog extends LitElement {
           maxlength="200"
           autocomplete="off"
           placeholder=${words.token_name_hint}
-          aria-invalid=${this.field_problems_.name ? "true" : "false"}
+          aria-invalid=${this._fieldProblems.name ? "true" : "false"}
         />
       </label>
       ${this.mistake("name")}
       <div class="choices">
         <label class="field">
           <span>${words.token_where}</span>
-          <select name="project" @change=${(event: Event) => this.choose_project((event.target as HTMLSelectElement).value)}>
-            <option value="" ?selected=${this.only_ === ""}>${words.token_everywhere}</option>
-            ${this.projects_.map(({ slug, name }) => html`<option value=${slug} ?selected=${slug === this.only_}>${name}</option>`)}
+          <select name="project" @change=${(event: Event) => this.chooseProject((event.target as HTMLSelectElement).value)}>
+            <option value="" ?selected=${this._only === ""}>${words.token_everywhere}</option>
+            ${this._projects.map(({ slug, name }) => html`<option value=${slug} ?selected=${slug === this._only}>${name}</option>`)}
           </select>
         </label>
         <div>
           <label class="field">
             <span>${words.token_role}</span>
-            <select name="role" aria-describedby="role_hint" @change=${(event: Event) => (this.role_ = (event.target as HTMLSelectElement).value as Role)}>
-              ${roles.map((role) => html`<option value=${role} ?selected=${role === this.role_}>${texts.roles[role]}</option>`)}
+            <select name="role" aria-describedby="role_hint" @change=${(event: Event) => (this._role = (event.target as HTMLSelectElement).value as Role)}>
+              ${roles.map((role) => html`<option value=${role} ?selected=${role === this._role}>${texts.roles[role]}</option>`)}
             </select>
           </label>
-          <small class="hint" id="role_hint">${texts.role_hints[this.role_]}</small>
+          <small class="hint" id="role_hint">${texts.role_hints[this._role]}</small>
         </div>
         <label class="field">
           <span>${words.token_days}</span>
@@ -364,101 +364,101 @@ export class StrataAccountDialog extends LitElement {
         </label>
       </div>
       <div class="row">
-        <button class="primary" ?disabled=${this.busy_}>${words.token_make}</button>
-        <button type="button" class="quiet" @click=${() => (this.adding_ = false)}>${texts.cancel}</button>
+        <button class="primary" ?disabled=${this._busy}>${words.token_make}</button>
+        <button type="button" class="quiet" @click=${() => (this._adding = false)}>${texts.cancel}</button>
       </div>
     </form>`;
   }
 
   private note(section: Section): TemplateResult | typeof nothing {
-    const note = this.note_;
+    const note = this._note;
     if (note?.section !== section) return nothing;
     return html`<p class=${note.kind} role=${note.kind === "error" ? "alert" : "status"}>${note.text}</p>`;
   }
 
   private mistake(field: Field): TemplateResult {
-    const problem = this.field_problems_[field] ?? "";
+    const problem = this._fieldProblems[field] ?? "";
     return html`<p class="error" role="alert" ?hidden=${!problem}>${problem}</p>`;
   }
 
   private refuse(field: Field, problem: string): void {
-    this.field_problems_ = { [field]: problem };
+    this._fieldProblems = { [field]: problem };
     this.renderRoot.querySelector<HTMLInputElement>(`input[name=${field}]`)?.focus();
   }
 
-  private on_name(event: Event): void {
+  private onName(event: Event): void {
     event.preventDefault();
-    const full_name = text_of(event, "full_name").trim();
+    const fullName = textOf(event, "full_name").trim();
     void this.attempt("name", async () => {
-      this.changed(await this.api.change_me({ full_name }));
-      this.note_ = { section: "name", kind: "done", text: words.full_name_saved };
+      this.changed(await this.api.changeMe({ full_name: fullName }));
+      this._note = { section: "name", kind: "done", text: words.full_name_saved };
     });
   }
 
-  private on_password(event: Event): void {
+  private onPassword(event: Event): void {
     event.preventDefault();
     const { me } = this;
-    const current = text_of(event, "current");
-    const password = text_of(event, "password");
-    const mistake = password_mistake(me.user, password, text_of(event, "repeat"));
+    const current = textOf(event, "current");
+    const password = textOf(event, "password");
+    const mistake = passwordMistake(me.user, password, textOf(event, "repeat"));
     if (me.has_password && current === "") this.refuse("current", words.current_missing);
-    else if (mistake) this.refuse(mistake.field, password_words(mistake));
+    else if (mistake) this.refuse(mistake.field, passwordWords(mistake));
     else
       void this.attempt("password", () =>
-        this.set_password({ password, ...(me.has_password ? { current } : {}) }),
+        this.setPassword({ password, ...(me.has_password ? { current } : {}) }),
       );
   }
 
-  private async set_password(change: { password: string; current?: string }): Promise<void> {
-    await this.api.change_password(change);
-    this.password_form_.reset();
+  private async setPassword(change: { password: string; current?: string }): Promise<void> {
+    await this.api.changePassword(change);
+    this._passwordForm.reset();
     this.changed({ ...this.me, has_password: true });
-    this.note_ = { section: "password", kind: "done", text: words.password_saved };
-    await this.read_sessions();
+    this._note = { section: "password", kind: "done", text: words.password_saved };
+    await this.readSessions();
   }
 
-  private begin_to_add(): void {
-    this.adding_ = true;
-    this.role_ = "viewer";
-    this.only_ = "";
-    this.made_ = null;
+  private beginToAdd(): void {
+    this._adding = true;
+    this._role = "viewer";
+    this._only = "";
+    this._made = null;
     void this.updateComplete.then(() =>
       this.renderRoot.querySelector<HTMLInputElement>("input[name=name]")?.focus(),
     );
   }
 
-  private on_token(event: Event): void {
+  private onToken(event: Event): void {
     event.preventDefault();
-    const name = text_of(event, "name").trim();
-    const [role, only, days] = [this.role_, this.only_, Number(text_of(event, "days"))];
+    const name = textOf(event, "name").trim();
+    const [role, only, days] = [this._role, this._only, Number(textOf(event, "days"))];
     if (name === "") {
       this.refuse("name", words.token_name_missing);
       return;
     }
     void this.attempt("tokens", async () => {
-      this.made_ = await this.api.create_token({
+      this._made = await this.api.createToken({
         name,
         role,
         days,
         ...(only ? { project: only } : {}),
       });
-      this.adding_ = false;
-      await this.read_tokens();
+      this._adding = false;
+      await this.readTokens();
     });
   }
 
-  private async end_session({ id }: SignInSession): Promise<void> {
+  private async endSession({ id }: SignInSession): Promise<void> {
     await this.attempt("sessions", async () => {
-      await this.api.end_session(id).catch(unless_gone);
-      await this.read_sessions();
+      await this.api.endSession(id).catch(unlessGone);
+      await this.readSessions();
     });
   }
 
-  private async end_others(): Promise<void> {
+  private async endOthers(): Promise<void> {
     await this.attempt("sessions", async () => {
-      await this.api.end_other_sessions();
-      await this.read_sessions();
-      this.note_ = { section: "sessions", kind: "done", text: words.signed_out_others };
+      await this.api.endOtherSessions();
+      await this.readSessions();
+      this._note = { section: "sessions", kind: "done", text: words.signed_out_others };
     });
   }
 
@@ -473,9 +473,9 @@ export class StrataAccountDialog extends LitElement {
     )
       return;
     await this.attempt("tokens", async () => {
-      await this.api.revoke_token(id).catch(unless_gone);
-      if (this.made_?.token.id === id) this.made_ = null;
-      await this.read_tokens();
+      await this.api.revokeToken(id).catch(unlessGone);
+      if (this._made?.token.id === id) this._made = null;
+      await this.readTokens();
     });
   }
 
@@ -484,16 +484,16 @@ export class StrataAccountDialog extends LitElement {
   }
 
   private async attempt(section: Section, task: () => Promise<unknown>): Promise<void> {
-    this.busy_ = true;
-    this.note_ = null;
-    this.field_problems_ = {};
+    this._busy = true;
+    this._note = null;
+    this._fieldProblems = {};
     try {
       await task();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this.refused(section, error);
     } finally {
-      this.busy_ = false;
+      this._busy = false;
     }
   }
 
@@ -502,14 +502,14 @@ export class StrataAccountDialog extends LitElement {
     if (field === "full_name" || field === "current" || field === "password" || field === "name")
       this.refuse(field, error.message);
     else if (error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
-    else this.note_ = { section, kind: "error", text: error.message };
+    else this._note = { section, kind: "error", text: error.message };
   }
 }
 
-const text_of = (event: Event, name: string): string =>
+const textOf = (event: Event, name: string): string =>
   String(new FormData(event.target as HTMLFormElement).get(name) ?? "");
 
 /** What was to be ended has ended by itself. */
-function unless_gone(error: unknown): void {
+function unlessGone(error: unknown): void {
   if (!(error instanceof ApiError) || error.status !== 404) throw error;
 }

@@ -2,7 +2,7 @@
 
 import { css } from "lit";
 
-export const entry_styles = css`
+export const entryStyles = css`
   :host {
     display: grid;
     place-items: center;

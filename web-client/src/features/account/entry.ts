@@ -5,7 +5,7 @@ import { kLeastPasswordLength, type PasswordMistake } from "../../domain/people"
 import { texts } from "../../texts";
 
 /** The path to open for a pasted owner link; null when it is not one. */
-export function login_path_of(pasted: string): string | null {
+export function loginPathOf(pasted: string): string | null {
   const found = /\/login\?link=[A-Za-z0-9._~%-]+/.exec(pasted);
   return found ? found[0] : null;
 }
@@ -13,20 +13,19 @@ export function login_path_of(pasted: string): string | null {
 /**
  * The secret in the fragment of an address, which browsers send to no server; empty: there is none.
  */
-export const invitation_of = (hash: string): string =>
-  /^#([A-Za-z0-9._~-]+)$/.exec(hash)?.[1] ?? "";
+export const invitationOf = (hash: string): string => /^#([A-Za-z0-9._~-]+)$/.exec(hash)?.[1] ?? "";
 
 /**
  * `by` is what was given. Others, such as too many tries, the server puts into plain words itself.
  */
-export function sign_in_problem(error: ApiError, by: "password" | "token"): string {
+export function signInProblem(error: ApiError, by: "password" | "token"): string {
   if (by === "password") return error.status === 401 ? texts.sign_in.wrong : error.message;
   return [400, 401, 422].includes(error.status) ? texts.sign_in.token_wrong : error.message;
 }
 
 /** Whether the link that somebody came by is good for nothing, whatever they write. */
-export const is_useless_link = ({ status, problem }: ApiError): boolean =>
+export const isUselessLink = ({ status, problem }: ApiError): boolean =>
   status === 401 || status === 404 || problem.field === "invitation";
 
-export const password_words = ({ kind }: PasswordMistake): string =>
+export const passwordWords = ({ kind }: PasswordMistake): string =>
   kind === "too_short" ? texts.password.too_short(kLeastPasswordLength) : texts.password[kind];

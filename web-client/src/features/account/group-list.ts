@@ -6,12 +6,12 @@ import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../../net/api";
 import type { Group, Person } from "../../core/protocol.gen";
-import { ask, ask_text } from "../../ui/dialog";
+import { ask, askText } from "../../ui/dialog";
 import "./group-members-dialog";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
 import "./project-roles-dialog";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.groups;
@@ -20,16 +20,16 @@ const words = texts.groups;
 export class StrataGroupList extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) people!: readonly Person[];
-  @state() private groups_: Group[] | null = null;
-  @state() private name_problem_ = "";
-  @state() private problem_ = "";
-  @state() private row_problem_: { id: number; text: string } | null = null;
-  @state() private members_of_: Group | null = null;
-  @state() private roles_of_: Group | null = null;
-  @query("input[name=name]") private name_!: HTMLInputElement;
+  @state() private _groups: Group[] | null = null;
+  @state() private _nameProblem = "";
+  @state() private _problem = "";
+  @state() private _rowProblem: { id: number; text: string } | null = null;
+  @state() private _membersOf: Group | null = null;
+  @state() private _rolesOf: Group | null = null;
+  @query("input[name=name]") private _name!: HTMLInputElement;
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: grid;
@@ -78,17 +78,17 @@ export class StrataGroupList extends LitElement {
   }
 
   private async read(): Promise<void> {
-    this.problem_ = "";
+    this._problem = "";
     try {
-      this.groups_ = await this.api.groups();
+      this._groups = await this.api.groups();
     } catch (error) {
-      this.problem_ = this.told(error);
+      this._problem = this.told(error);
     }
   }
 
   override render(): TemplateResult {
     return html`<p class="hint">${words.lead}</p>
-      <form @submit=${this.on_make} novalidate>
+      <form @submit=${this.onMake} novalidate>
         <label class="field">
           <span>${words.new_name}</span>
           <input
@@ -97,53 +97,53 @@ export class StrataGroupList extends LitElement {
             maxlength="100"
             autocomplete="off"
             placeholder=${words.name_hint}
-            aria-invalid=${this.name_problem_ ? "true" : "false"}
+            aria-invalid=${this._nameProblem ? "true" : "false"}
             aria-describedby="name_problem"
-            @input=${() => (this.name_problem_ = "")}
+            @input=${() => (this._nameProblem = "")}
           />
         </label>
         <button>${icon("plus")}${words.make}</button>
-        <small class="error" id="name_problem" role="alert" ?hidden=${!this.name_problem_}>${this.name_problem_}</small>
+        <small class="error" id="name_problem" role="alert" ?hidden=${!this._nameProblem}>${this._nameProblem}</small>
       </form>
       ${
-        this.problem_
-          ? html`<p class="error" role="alert">${this.problem_}</p>
+        this._problem
+          ? html`<p class="error" role="alert">${this._problem}</p>
             <button @click=${() => void this.read()}>${texts.try_again}</button>`
-          : this.groups_ === null
+          : this._groups === null
             ? html`<p class="hint" role="status">${texts.loading}</p>`
-            : this.groups_.length === 0
+            : this._groups.length === 0
               ? html`<p class="hint">${words.none}</p>`
               : html`<ul aria-label=${words.title}>
                 ${repeat(
-                  this.groups_,
+                  this._groups,
                   ({ id }) => id,
                   (group) => this.row(group),
                 )}
               </ul>`
       }
       ${
-        this.members_of_
-          ? html`<strata-group-members-dialog .api=${this.api} .group=${this.members_of_} .people=${this.people} @closed=${() => this.closed()}></strata-group-members-dialog>`
+        this._membersOf
+          ? html`<strata-group-members-dialog .api=${this.api} .group=${this._membersOf} .people=${this.people} @closed=${() => this.closed()}></strata-group-members-dialog>`
           : nothing
       }
       ${
-        this.roles_of_
-          ? html`<strata-project-roles-dialog .api=${this.api} .group=${this.roles_of_} @closed=${() => this.closed()}></strata-project-roles-dialog>`
+        this._rolesOf
+          ? html`<strata-project-roles-dialog .api=${this.api} .group=${this._rolesOf} @closed=${() => this.closed()}></strata-project-roles-dialog>`
           : nothing
       }`;
   }
 
   private row(group: Group): TemplateResult {
     const { id, name, people, projects } = group;
-    const problem = this.row_problem_?.id === id ? this.row_problem_.text : "";
+    const problem = this._rowProblem?.id === id ? this._rowProblem.text : "";
     return html`<li>
       <div><b>${name}</b><span class="hint numeric">${words.about(people, projects)}</span></div>
       <strata-menu label=${words.options(name)}>
-        <button class="quiet" role="menuitem" @click=${() => (this.members_of_ = group)}>${icon("people")}${words.members}</button>
-        <button class="quiet" role="menuitem" @click=${() => (this.roles_of_ = group)}>${icon("layers")}${texts.site_people.projects}</button>
+        <button class="quiet" role="menuitem" @click=${() => (this._membersOf = group)}>${icon("people")}${words.members}</button>
+        <button class="quiet" role="menuitem" @click=${() => (this._rolesOf = group)}>${icon("layers")}${texts.site_people.projects}</button>
         <button class="quiet" role="menuitem" @click=${() => void this.rename(group)}>${icon("edit")}${words.rename}</button>
         <hr />
-        <button class="quiet" role="menuitem" @click=${() => void this.delete_group(group)}>${icon("trash")}${texts.site_people.delete}</button>
+        <button class="quiet" role="menuitem" @click=${() => void this.deleteGroup(group)}>${icon("trash")}${texts.site_people.delete}</button>
       </strata-menu>
       ${problem ? html`<span class="error" role="alert">${problem}</span>` : nothing}
     </li>`;
@@ -151,7 +151,7 @@ export class StrataGroupList extends LitElement {
 
   /** Of what a dialog changed. */
   private closed(): void {
-    this.members_of_ = this.roles_of_ = null;
+    this._membersOf = this._rolesOf = null;
     this.regrouped();
   }
 
@@ -160,35 +160,35 @@ export class StrataGroupList extends LitElement {
     void this.read();
   }
 
-  private readonly on_make = async (event: Event): Promise<void> => {
+  private readonly onMake = async (event: Event): Promise<void> => {
     event.preventDefault();
-    const name = this.name_.value.trim();
-    this.name_problem_ = name === "" ? words.name_empty : "";
-    if (name === "") return this.name_.focus();
+    const name = this._name.value.trim();
+    this._nameProblem = name === "" ? words.name_empty : "";
+    if (name === "") return this._name.focus();
     try {
-      const { id } = await this.api.create_group({ name });
-      this.name_.value = "";
+      const { id } = await this.api.createGroup({ name });
+      this._name.value = "";
       await this.read();
       // nobody is in it yet
-      this.members_of_ = this.groups_?.find((group) => group.id === id) ?? null;
+      this._membersOf = this._groups?.find((group) => group.id === id) ?? null;
     } catch (error) {
-      this.name_problem_ = this.told(error);
-      this.name_.focus();
+      this._nameProblem = this.told(error);
+      this._name.focus();
     }
   };
 
   private async rename({ id, name }: Group): Promise<void> {
-    const next = await ask_text({
+    const next = await askText({
       heading: words.rename_title(name),
       label: words.name,
       text: name,
       yes: texts.save,
     });
     if (next === null || next === name) return;
-    await this.change(id, () => this.api.change_group(id, { name: next }));
+    await this.change(id, () => this.api.changeGroup(id, { name: next }));
   }
 
-  private async delete_group({ id, name }: Group): Promise<void> {
+  private async deleteGroup({ id, name }: Group): Promise<void> {
     await this.change(id, async () => {
       const { losing, members } = await this.api.group(id);
       if (
@@ -200,17 +200,17 @@ export class StrataGroupList extends LitElement {
         }))
       )
         return;
-      await this.api.delete_group(id);
+      await this.api.deleteGroup(id);
     });
   }
 
   private async change(id: number, task: () => Promise<unknown>): Promise<void> {
-    this.row_problem_ = null;
+    this._rowProblem = null;
     try {
       await task();
       this.regrouped();
     } catch (error) {
-      this.row_problem_ = { id, text: this.told(error) };
+      this._rowProblem = { id, text: this.told(error) };
     }
   }
 

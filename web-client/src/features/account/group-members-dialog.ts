@@ -5,10 +5,10 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../../net/api";
-import { called, find_people } from "../../domain/people";
+import { called, findPeople } from "../../domain/people";
 import type { Group, Person } from "../../core/protocol.gen";
 import "../../ui/dialog";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.groups;
@@ -18,15 +18,15 @@ export class StrataGroupMembersDialog extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) group!: Group;
   @property({ attribute: false }) people!: readonly Person[];
-  @state() private inside_: ReadonlySet<string> | null = null; // names for signing in
-  @state() private filter_ = "";
-  @state() private note_: { user: string; kind: "error" | "done"; text: string } | null = null;
-  @state() private problem_ = "";
+  @state() private _inside: ReadonlySet<string> | null = null; // names for signing in
+  @state() private _filter = "";
+  @state() private _note: { user: string; kind: "error" | "done"; text: string } | null = null;
+  @state() private _problem = "";
   // one after the other, in the order of the clicks
-  private last_: Promise<void> = Promise.resolve();
+  private _last: Promise<void> = Promise.resolve();
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       ul {
         display: grid;
@@ -73,30 +73,30 @@ export class StrataGroupMembersDialog extends LitElement {
   }
 
   private async read(): Promise<void> {
-    this.problem_ = "";
+    this._problem = "";
     try {
-      this.inside_ = new Set((await this.api.group(this.group.id)).members.map(({ user }) => user));
+      this._inside = new Set((await this.api.group(this.group.id)).members.map(({ user }) => user));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.problem_ = error.message;
+      this._problem = error.message;
     }
   }
 
   override render(): TemplateResult {
     return html`<strata-dialog heading=${words.members_of(this.group.name)} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       ${
-        this.problem_
-          ? html`<p class="error" role="alert">${this.problem_}</p>
+        this._problem
+          ? html`<p class="error" role="alert">${this._problem}</p>
             <button @click=${() => void this.read()}>${texts.try_again}</button>`
-          : this.inside_
-            ? this.content(this.inside_)
+          : this._inside
+            ? this.content(this._inside)
             : html`<p class="hint" role="status">${texts.loading}</p>`
       }
     </strata-dialog>`;
   }
 
   private content(inside: ReadonlySet<string>): TemplateResult {
-    const shown = find_people(this.people, this.filter_, () => "");
+    const shown = findPeople(this.people, this._filter, () => "");
     return html`<p class="hint numeric" role="status">${words.inside(inside.size)}</p>
       <input
         type="text"
@@ -105,8 +105,8 @@ export class StrataGroupMembersDialog extends LitElement {
         spellcheck="false"
         aria-label=${texts.site_people.filter}
         placeholder=${words.find_hint}
-        .value=${this.filter_}
-        @input=${(event: Event) => (this.filter_ = (event.target as HTMLInputElement).value)}
+        .value=${this._filter}
+        @input=${(event: Event) => (this._filter = (event.target as HTMLInputElement).value)}
       />
       ${
         shown.length === 0
@@ -121,11 +121,11 @@ export class StrataGroupMembersDialog extends LitElement {
       }`;
   }
 
-  private row(person: Person, is_inside: boolean): TemplateResult {
-    const note = this.note_?.user === person.user ? this.note_ : null;
+  private row(person: Person, isInside: boolean): TemplateResult {
+    const note = this._note?.user === person.user ? this._note : null;
     return html`<li>
       <label>
-        <input type="checkbox" .checked=${is_inside} @change=${(event: Event) => this.choose(person, event.target as HTMLInputElement)} />
+        <input type="checkbox" .checked=${isInside} @change=${(event: Event) => this.choose(person, event.target as HTMLInputElement)} />
         <span class="grow"><b>${called(person)}</b> ${person.full_name.trim() ? html`<span class="hint">${person.user}</span>` : nothing}</span>
       </label>
       ${note ? html`<span class=${note.kind} role=${note.kind === "error" ? "alert" : "status"}>${note.text}</span>` : nothing}
@@ -133,30 +133,30 @@ export class StrataGroupMembersDialog extends LitElement {
   }
 
   private choose(person: Person, box: HTMLInputElement): void {
-    const is_in = box.checked;
-    this.last_ = this.last_.then(() => this.put({ user: person.user, is_in, box }));
+    const isIn = box.checked;
+    this._last = this._last.then(() => this.put({ user: person.user, isIn, box }));
   }
 
   private async put({
     user,
-    is_in,
+    isIn,
     box,
   }: {
     user: string;
-    is_in: boolean;
+    isIn: boolean;
     box: HTMLInputElement;
   }): Promise<void> {
     try {
-      const { members } = await this.api.change_group(
+      const { members } = await this.api.changeGroup(
         this.group.id,
-        is_in ? { add: [user] } : { remove: [user] },
+        isIn ? { add: [user] } : { remove: [user] },
       );
-      this.inside_ = new Set(members.map((member) => member.user));
-      this.note_ = { user, kind: "done", text: is_in ? words.put_in : words.taken_out };
+      this._inside = new Set(members.map((member) => member.user));
+      this._note = { user, kind: "done", text: isIn ? words.put_in : words.taken_out };
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      box.checked = !is_in;
-      this.note_ = { user, kind: "error", text: error.message };
+      box.checked = !isIn;
+      this._note = { user, kind: "error", text: error.message };
     }
   }
 }

@@ -3,17 +3,17 @@
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError, type Api } from "../../net/api";
-import { format_list } from "../../core/locale";
-import { called, kLeastPasswordLength, password_mistake } from "../../domain/people";
+import { formatList } from "../../core/locale";
+import { called, kLeastPasswordLength, passwordMistake } from "../../domain/people";
 import type { Person } from "../../core/protocol.gen";
 import type { Me } from "../../core/types";
-import { is_useless_link, password_words } from "./entry";
-import { entry_styles } from "./entry-styles";
+import { isUselessLink, passwordWords } from "./entry";
+import { entryStyles } from "./entry-styles";
 import { logo } from "../../ui/icons";
-import { password_field, password_styles } from "./password-field";
+import { passwordField, passwordStyles } from "./password-field";
 import "./preferences-fields";
 import { follow } from "../../ui/routes";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.join;
@@ -25,15 +25,15 @@ export class StrataJoinPage extends LitElement {
   @property() invitation = "";
   /** Who is signed in at this browser. */
   @property({ attribute: false }) me: Me | null = null;
-  @state() private person_: Person | null = null;
-  @state() private useless_ = false;
-  @state() private problem_ = "";
-  @state() private field_problems_: Partial<Record<"password" | "repeat" | "full_name", string>> =
+  @state() private _person: Person | null = null;
+  @state() private _useless = false;
+  @state() private _problem = "";
+  @state() private _fieldProblems: Partial<Record<"password" | "repeat" | "full_name", string>> =
     {};
-  @state() private busy_ = false;
-  @query("form") private form_!: HTMLFormElement | null;
+  @state() private _busy = false;
+  @query("form") private _form!: HTMLFormElement | null;
 
-  static override styles = [shared_styles, entry_styles, password_styles];
+  static override styles = [sharedStyles, entryStyles, passwordStyles];
 
   override connectedCallback(): void {
     super.connectedCallback();
@@ -42,9 +42,9 @@ export class StrataJoinPage extends LitElement {
   }
 
   private async look(): Promise<void> {
-    this.problem_ = "";
+    this._problem = "";
     try {
-      this.person_ = await this.api.show_invitation(this.invitation);
+      this._person = await this.api.showInvitation(this.invitation);
     } catch (error) {
       this.refused(error);
     }
@@ -53,14 +53,14 @@ export class StrataJoinPage extends LitElement {
   private refused(error: unknown): void {
     if (!(error instanceof ApiError)) throw error;
     const { field } = error.problem;
-    if (is_useless_link(error)) this.useless_ = true;
+    if (isUselessLink(error)) this._useless = true;
     else if (field === "password" || field === "full_name") this.refuse(field, error.message);
-    else this.problem_ = error.message;
+    else this._problem = error.message;
   }
 
   private refuse(field: "password" | "repeat" | "full_name", problem: string): void {
-    this.field_problems_ = { [field]: problem };
-    this.form_?.querySelector<HTMLInputElement>(`input[name=${field}]`)?.focus();
+    this._fieldProblems = { [field]: problem };
+    this._form?.querySelector<HTMLInputElement>(`input[name=${field}]`)?.focus();
   }
 
   override render(): TemplateResult {
@@ -75,20 +75,20 @@ export class StrataJoinPage extends LitElement {
   }
 
   private content(): TemplateResult {
-    const { person_: person, me } = this;
-    if (!this.invitation) return this.dead_end(words.incomplete_title, words.incomplete_lead);
-    if (this.useless_) return this.dead_end(words.useless_title, words.useless_lead);
+    const { _person: person, me } = this;
+    if (!this.invitation) return this.deadEnd(words.incomplete_title, words.incomplete_lead);
+    if (this._useless) return this.deadEnd(words.useless_title, words.useless_lead);
     if (!person) {
-      return this.problem_
-        ? html`<p class="error" role="alert">${this.problem_}</p>
+      return this._problem
+        ? html`<p class="error" role="alert">${this._problem}</p>
             <button @click=${() => void this.look()}>${texts.try_again}</button>`
         : html`<p class="hint" role="status">${words.looking}</p>`;
     }
-    if (me && me.user !== person.user) return this.somebody_else(me, person);
+    if (me && me.user !== person.user) return this.somebodyElse(me, person);
     return this.form(person);
   }
 
-  private dead_end(title: string, lead: string): TemplateResult {
+  private deadEnd(title: string, lead: string): TemplateResult {
     return html`<div>
         <h1>${title}</h1>
         <p role="alert">${lead}</p>
@@ -96,7 +96,7 @@ export class StrataJoinPage extends LitElement {
       <a class="button" href="/" @click=${follow}>${this.me ? texts.model.back : words.to_sign_in}</a>`;
   }
 
-  private somebody_else(me: Me, person: Person): TemplateResult {
+  private somebodyElse(me: Me, person: Person): TemplateResult {
     return html`<div>
         <h1>${words.greeting(called(person))}</h1>
         <p role="alert">${words.other_person(called(me), called(person))}</p>
@@ -105,13 +105,13 @@ export class StrataJoinPage extends LitElement {
   }
 
   private form(person: Person): TemplateResult {
-    const problems = this.field_problems_;
+    const problems = this._fieldProblems;
     return html`<div>
         <h1>${words.greeting(called(person))}</h1>
         <p>${person.state === "invited" ? words.lead(texts.roles[person.role]) : words.lead_again}</p>
-        ${person.groups.length > 0 ? html`<p>${words.groups(format_list(person.groups))}</p>` : nothing}
+        ${person.groups.length > 0 ? html`<p>${words.groups(formatList(person.groups))}</p>` : nothing}
       </div>
-      <form @submit=${this.on_submit} novalidate>
+      <form @submit=${this.onSubmit} novalidate>
         <label class="field">
           <span>${words.user}</span>
           <input type="text" name="user" autocomplete="username" readonly .value=${person.user} />
@@ -129,34 +129,34 @@ export class StrataJoinPage extends LitElement {
           />
         </label>
         ${problems.full_name ? html`<p class="error" id="full_name_problem" role="alert">${problems.full_name}</p>` : nothing}
-        ${password_field({
+        ${passwordField({
           name: "password",
           label: words.password,
           autocomplete: "new-password",
           hint: texts.password.hint(kLeastPasswordLength),
           problem: problems.password ?? "",
         })}
-        ${password_field({ name: "repeat", label: words.repeat, autocomplete: "new-password", problem: problems.repeat ?? "" })}
-        <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
-        <button class="primary" ?disabled=${this.busy_}>${words.button}</button>
+        ${passwordField({ name: "repeat", label: words.repeat, autocomplete: "new-password", problem: problems.repeat ?? "" })}
+        <p class="error" role="alert" ?hidden=${!this._problem}>${this._problem}</p>
+        <button class="primary" ?disabled=${this._busy}>${words.button}</button>
       </form>`;
   }
 
-  private async on_submit(event: Event): Promise<void> {
+  private async onSubmit(event: Event): Promise<void> {
     event.preventDefault();
-    if (this.busy_ || !this.person_) return;
+    if (this._busy || !this._person) return;
     const data = new FormData(event.target as HTMLFormElement);
     const password = String(data.get("password") ?? "");
-    this.problem_ = "";
-    this.field_problems_ = {};
-    const mistake = password_mistake(this.person_.user, password, String(data.get("repeat") ?? ""));
+    this._problem = "";
+    this._fieldProblems = {};
+    const mistake = passwordMistake(this._person.user, password, String(data.get("repeat") ?? ""));
     if (mistake) {
-      this.refuse(mistake.field, password_words(mistake));
+      this.refuse(mistake.field, passwordWords(mistake));
       return;
     }
-    this.busy_ = true;
+    this._busy = true;
     try {
-      await this.api.accept_invitation({
+      await this.api.acceptInvitation({
         invitation: this.invitation,
         password,
         full_name: String(data.get("full_name") ?? "").trim(),
@@ -165,7 +165,7 @@ export class StrataJoinPage extends LitElement {
     } catch (error) {
       this.refused(error);
     } finally {
-      this.busy_ = false;
+      this._busy = false;
     }
   }
 }

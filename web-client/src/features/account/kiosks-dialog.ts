@@ -5,22 +5,17 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../../net/api";
-import { kSilent_ms, state_of_kiosk } from "../../domain/kiosks";
-import { read_number } from "../../core/locale";
+import { kSilentMs, stateOfKiosk } from "../../domain/kiosks";
+import { readNumber } from "../../core/locale";
 import type { Kiosk, KioskMade } from "../../core/protocol.gen";
 import "../../ui/copy-field";
 import { ask } from "../../ui/dialog";
 import { icon } from "../../ui/icons";
-import { number_input } from "../../ui/number-input";
-import { follow, path_of_model } from "../../ui/routes";
-import {
-  chip_styles,
-  link_making_styles,
-  number_field_styles,
-  shared_styles,
-} from "../../ui/styles";
+import { numberInput } from "../../ui/number-input";
+import { follow, pathOfModel } from "../../ui/routes";
+import { chipStyles, linkMakingStyles, numberFieldStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
-import { told_ago, told_date } from "../../domain/times";
+import { toldAgo, toldDate } from "../../domain/times";
 
 const words = texts.kiosks;
 const kDays = [1, 3650] as const;
@@ -37,21 +32,21 @@ export class StrataKiosksDialog extends LitElement {
     slug: string;
     name: string;
   } | null = null;
-  @state() private kiosks_: readonly Kiosk[] | null = null;
-  @state() private making_ = false;
-  @state() private made_: KioskMade | null = null;
-  @state() private days_ = "365";
-  @state() private wrong_: { field: Field; text: string } | null = null;
-  @state() private note_: { id: number; kind: "error" | "done"; text: string } | null = null;
-  @state() private problem_ = "";
-  @state() private busy_ = false;
-  private timer_ = 0;
+  @state() private _kiosks: readonly Kiosk[] | null = null;
+  @state() private _making = false;
+  @state() private _made: KioskMade | null = null;
+  @state() private _days = "365";
+  @state() private _wrong: { field: Field; text: string } | null = null;
+  @state() private _note: { id: number; kind: "error" | "done"; text: string } | null = null;
+  @state() private _problem = "";
+  @state() private _busy = false;
+  private _timer = 0;
 
   static override styles = [
-    shared_styles,
-    chip_styles,
-    link_making_styles,
-    number_field_styles,
+    sharedStyles,
+    chipStyles,
+    linkMakingStyles,
+    numberFieldStyles,
     css`
       .fields {
         grid-template-columns: minmax(0, 1fr) 9.375rem;
@@ -134,18 +129,18 @@ export class StrataKiosksDialog extends LitElement {
     super.connectedCallback();
     void this.attempt(() => this.read());
     // what could not be read is read the next time
-    this.timer_ = window.setInterval(() => void this.read().catch(() => {}), kSilent_ms / 6);
+    this._timer = window.setInterval(() => void this.read().catch(() => {}), kSilentMs / 6);
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    clearInterval(this.timer_);
+    clearInterval(this._timer);
   }
 
   private async read(): Promise<void> {
     const { tour } = this;
     const all = await this.api.kiosks();
-    this.kiosks_ = tour
+    this._kiosks = tour
       ? all.filter(
           (each) =>
             each.project === tour.project && each.model === tour.model && each.tour === tour.slug,
@@ -154,11 +149,11 @@ export class StrataKiosksDialog extends LitElement {
   }
 
   override render(): TemplateResult {
-    const { tour, kiosks_: kiosks } = this;
+    const { tour, _kiosks: kiosks } = this;
     return html`<strata-dialog broad heading=${tour ? words.title_of(tour.name) : words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <p class="hint">${tour ? words.lead_of : words.lead}</p>
-      ${tour && !this.making_ ? html`<button class="new ${this.made_ ? "" : "primary"}" @click=${this.begin}>${icon("plus")}${words.new}</button>` : nothing}
-      ${this.making_ ? this.form() : nothing} ${this.made_ ? this.link(this.made_) : nothing}
+      ${tour && !this._making ? html`<button class="new ${this._made ? "" : "primary"}" @click=${this.begin}>${icon("plus")}${words.new}</button>` : nothing}
+      ${this._making ? this.form() : nothing} ${this._made ? this.link(this._made) : nothing}
       ${
         kiosks
           ? kiosks.length === 0
@@ -170,11 +165,11 @@ export class StrataKiosksDialog extends LitElement {
                 (kiosk) => this.row(kiosk),
               )}
             </ul>`
-          : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`
+          : html`<p class="hint" role="status" ?hidden=${this._problem !== ""}>${texts.loading}</p>`
       }
       ${
-        this.problem_
-          ? html`<p class="error" role="alert">${this.problem_}</p>
+        this._problem
+          ? html`<p class="error" role="alert">${this._problem}</p>
             <div><button @click=${() => void this.attempt(() => this.read())}>${texts.try_again}</button></div>`
           : nothing
       }
@@ -182,9 +177,9 @@ export class StrataKiosksDialog extends LitElement {
   }
 
   private row(kiosk: Kiosk): TemplateResult {
-    const state = state_of_kiosk(kiosk);
+    const state = stateOfKiosk(kiosk);
     const ended = state === "revoked" || state === "expired";
-    const note = this.note_?.id === kiosk.id ? this.note_ : null;
+    const note = this._note?.id === kiosk.id ? this._note : null;
     return html`<li aria-label=${kiosk.name}>
       <div class="about">
         <div class="row">
@@ -195,7 +190,7 @@ export class StrataKiosksDialog extends LitElement {
         ${
           this.tour
             ? nothing
-            : html`<span class="hint">${kiosk.tour_name} · <a class="text" href=${path_of_model(kiosk.model)} @click=${this.on_link}>${kiosk.model_name}</a></span>`
+            : html`<span class="hint">${kiosk.tour_name} · <a class="text" href=${pathOfModel(kiosk.model)} @click=${this.onLink}>${kiosk.model_name}</a></span>`
         }
         <span class="hint">${this.told(kiosk)}</span>
       </div>
@@ -211,28 +206,28 @@ export class StrataKiosksDialog extends LitElement {
     </li>`;
   }
 
-  private on_link(event: MouseEvent): void {
+  private onLink(event: MouseEvent): void {
     follow(event);
     // or it opens in another tab
     if (event.defaultPrevented) this.dispatchEvent(new CustomEvent("closed"));
   }
 
-  private told({ last_seen, expires, revoked, created, user }: Kiosk): string {
-    const seen = last_seen ? words.seen(told_ago(last_seen)) : words.never_seen;
+  private told({ last_seen: lastSeen, expires, revoked, created, user }: Kiosk): string {
+    const seen = lastSeen ? words.seen(toldAgo(lastSeen)) : words.never_seen;
     const ends = revoked
-      ? words.revoked_on(told_date(revoked))
+      ? words.revoked_on(toldDate(revoked))
       : expires
-        ? words.expires_on(told_date(expires))
+        ? words.expires_on(toldDate(expires))
         : words.no_end;
-    return [seen, ends, words.made_by(user, told_date(created))].join(" · ");
+    return [seen, ends, words.made_by(user, toldDate(created))].join(" · ");
   }
 
   // ── a new one
   // ─────────────────────────────────────────────────────────────────────────────────────────────────────
 
   private form(): TemplateResult {
-    const wrong = (field: Field): string => (this.wrong_?.field === field ? this.wrong_.text : "");
-    return html`<form @submit=${this.on_submit} @input=${() => (this.wrong_ = null)} novalidate>
+    const wrong = (field: Field): string => (this._wrong?.field === field ? this._wrong.text : "");
+    return html`<form @submit=${this.onSubmit} @input=${() => (this._wrong = null)} novalidate>
       <div class="fields">
         <label class="field">
           <span>${words.name}</span>
@@ -240,13 +235,13 @@ export class StrataKiosksDialog extends LitElement {
         </label>
         <label class="field">
           <span>${words.days}</span>
-          <span class="number">${number_input({ value: this.days_, name: "days", placeholder: words.days_hint, min: kDays[0], max: kDays[1], wrong: wrong("days") !== "", typed: (text) => (this.days_ = text) })}<span>${words.days_unit}</span></span>
+          <span class="number">${numberInput({ value: this._days, name: "days", placeholder: words.days_hint, min: kDays[0], max: kDays[1], wrong: wrong("days") !== "", typed: (text) => (this._days = text) })}<span>${words.days_unit}</span></span>
         </label>
       </div>
-      ${this.wrong_ ? html`<p class="error" role="alert">${this.wrong_.text}</p>` : html`<p class="hint">${words.days_lead}</p>`}
+      ${this._wrong ? html`<p class="error" role="alert">${this._wrong.text}</p>` : html`<p class="hint">${words.days_lead}</p>`}
       <div class="row">
-        <button class="primary" ?disabled=${this.busy_}>${words.make}</button>
-        <button type="button" class="quiet" @click=${() => (this.making_ = false)}>${texts.cancel}</button>
+        <button class="primary" ?disabled=${this._busy}>${words.make}</button>
+        <button type="button" class="quiet" @click=${() => (this._making = false)}>${texts.cancel}</button>
       </div>
     </form>`;
   }
@@ -259,43 +254,43 @@ export class StrataKiosksDialog extends LitElement {
         <p>${words.link_lead}</p>
       </div>
       <strata-copy-field follows_form label=${title} .text=${new URL(path, location.origin).href}></strata-copy-field>
-      <button @click=${() => (this.made_ = null)}>${words.link_done}</button>
+      <button @click=${() => (this._made = null)}>${words.link_done}</button>
     </div>`;
   }
 
   private begin(): void {
-    this.making_ = true;
-    this.made_ = null;
-    this.wrong_ = null;
+    this._making = true;
+    this._made = null;
+    this._wrong = null;
     void this.updateComplete.then(() =>
       this.renderRoot.querySelector<HTMLInputElement>("input[name=name]")?.focus(),
     );
   }
 
   private refuse(field: Field, text: string): void {
-    this.wrong_ = { field, text };
+    this._wrong = { field, text };
     this.renderRoot.querySelector<HTMLElement>(`input[name=${field}]`)?.focus();
   }
 
-  private on_submit(event: Event): void {
+  private onSubmit(event: Event): void {
     event.preventDefault();
     const { tour } = this;
     const name =
       this.renderRoot.querySelector<HTMLInputElement>("input[name=name]")?.value.trim() ?? "";
-    const days = read_number(this.days_);
-    if (!tour || this.busy_) return;
+    const days = readNumber(this._days);
+    if (!tour || this._busy) return;
     if (name === "") return this.refuse("name", words.name_missing);
     if (
-      this.days_.trim() !== "" &&
+      this._days.trim() !== "" &&
       !(Number.isInteger(days) && days >= kDays[0] && days <= kDays[1])
     )
       return this.refuse("days", words.days_wrong(...kDays));
     void this.attempt(async () => {
-      this.made_ = await this.api.create_kiosk(tour.model, tour.slug, {
+      this._made = await this.api.createKiosk(tour.model, tour.slug, {
         name,
-        ...(this.days_.trim() === "" ? {} : { days }),
+        ...(this._days.trim() === "" ? {} : { days }),
       });
-      this.making_ = false;
+      this._making = false;
       await this.read();
     });
   }
@@ -305,9 +300,9 @@ export class StrataKiosksDialog extends LitElement {
 
   private async reload(kiosk: Kiosk): Promise<void> {
     await this.change(kiosk, async () => {
-      const now = await this.api.reload_kiosk(kiosk.id);
-      this.kiosks_ = (this.kiosks_ ?? []).map((each) => (each.id === now.id ? now : each));
-      this.note_ = { id: kiosk.id, kind: "done", text: words.reload_asked };
+      const now = await this.api.reloadKiosk(kiosk.id);
+      this._kiosks = (this._kiosks ?? []).map((each) => (each.id === now.id ? now : each));
+      this._note = { id: kiosk.id, kind: "done", text: words.reload_asked };
     });
   }
 
@@ -322,38 +317,38 @@ export class StrataKiosksDialog extends LitElement {
     )
       return;
     await this.change(kiosk, async () => {
-      await this.api.revoke_kiosk(kiosk.id);
-      if (this.made_?.kiosk.id === kiosk.id) this.made_ = null;
+      await this.api.revokeKiosk(kiosk.id);
+      if (this._made?.kiosk.id === kiosk.id) this._made = null;
       await this.read();
     });
   }
 
   /** What is refused is said in the kiosk's row. */
   private async change({ id }: Kiosk, task: () => Promise<void>): Promise<void> {
-    this.note_ = null;
+    this._note = null;
     try {
       await task();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
-      this.note_ = { id, kind: "error", text: error.message };
+      this._note = { id, kind: "error", text: error.message };
     }
   }
 
   private async attempt(task: () => Promise<void>): Promise<void> {
-    this.busy_ = true;
-    this.problem_ = "";
+    this._busy = true;
+    this._problem = "";
     try {
       await task();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       const { field } = error.problem;
       if (error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
-      else if (this.making_ && (field === "name" || field === "days"))
+      else if (this._making && (field === "name" || field === "days"))
         this.refuse(field, error.message);
-      else this.problem_ = error.message;
+      else this._problem = error.message;
     } finally {
-      this.busy_ = false;
+      this._busy = false;
     }
   }
 }

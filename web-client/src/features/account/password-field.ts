@@ -11,11 +11,11 @@ export interface PasswordField {
   autocomplete: "current-password" | "new-password";
   problem?: string;
   /** The id of what says that it is wrong, where that stands elsewhere. */
-  wrong_by?: string;
+  wrongBy?: string;
   hint?: string;
 }
 
-export const password_styles = css`
+export const passwordStyles = css`
   .password {
     display: grid;
     gap: 5px;
@@ -41,12 +41,12 @@ export const password_styles = css`
   }
 `;
 
-export function password_field({
+export function passwordField({
   name,
   label,
   autocomplete,
   problem = "",
-  wrong_by = "",
+  wrongBy = "",
   hint = "",
 }: PasswordField): TemplateResult {
   return html`<div class="password">
@@ -60,8 +60,8 @@ export function password_field({
         autocapitalize="off"
         spellcheck="false"
         maxlength="1024"
-        aria-invalid=${problem || wrong_by ? "true" : "false"}
-        aria-describedby="${name}_hint ${name}_problem ${wrong_by}"
+        aria-invalid=${problem || wrongBy ? "true" : "false"}
+        aria-describedby="${name}_hint ${name}_problem ${wrongBy}"
       />
       <button type="button" class="icon quiet" aria-pressed="false" aria-label=${texts.password.show} title=${texts.password.show} @click=${toggle}>
         ${icon("eye")}

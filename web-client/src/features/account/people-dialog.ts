@@ -5,7 +5,7 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../../net/api";
-import { called, find_people, is_user_name, may_change, roles_to_give } from "../../domain/people";
+import { called, findPeople, isUserName, mayChange, rolesToGive } from "../../domain/people";
 import type { Group, Invitation, Person, PersonPatch } from "../../core/protocol.gen";
 import type { Me, Role } from "../../core/types";
 import "../../ui/copy-field";
@@ -14,10 +14,10 @@ import "./group-list";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
 import "./project-roles-dialog";
-import { radio_group } from "../../ui/radio-group";
-import { chip_styles, link_making_styles, shared_styles } from "../../ui/styles";
+import { radioGroup } from "../../ui/radio-group";
+import { chipStyles, linkMakingStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
-import { told_time } from "../../domain/times";
+import { toldTime } from "../../domain/times";
 
 const words = texts.site_people;
 const kUsualRole: Role = "annotator";
@@ -29,23 +29,23 @@ type Part = "people" | "groups";
 export class StrataPeopleDialog extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) me!: Me;
-  @state() private people_: Person[] | null = null;
-  @state() private part_: Part = "people";
-  @state() private groups_: readonly Group[] = []; // that who is invited may be put into
-  @state() private filter_ = "";
-  @state() private inviting_ = false;
-  @state() private role_: Role = kUsualRole; // of who is invited
-  @state() private invitation_: Invitation | null = null;
-  @state() private field_problems_: Partial<Record<Field, string>> = {};
-  @state() private row_note_: { id: number; kind: "error" | "done"; text: string } | null = null;
-  @state() private problem_ = "";
-  @state() private busy_ = false;
-  @state() private in_projects_: Person | null = null; // whose roles in projects are shown
+  @state() private _people: Person[] | null = null;
+  @state() private _part: Part = "people";
+  @state() private _groups: readonly Group[] = []; // that who is invited may be put into
+  @state() private _filter = "";
+  @state() private _inviting = false;
+  @state() private _role: Role = kUsualRole; // of who is invited
+  @state() private _invitation: Invitation | null = null;
+  @state() private _fieldProblems: Partial<Record<Field, string>> = {};
+  @state() private _rowNote: { id: number; kind: "error" | "done"; text: string } | null = null;
+  @state() private _problem = "";
+  @state() private _busy = false;
+  @state() private _inProjects: Person | null = null; // whose roles in projects are shown
 
   static override styles = [
-    shared_styles,
-    chip_styles,
-    link_making_styles,
+    sharedStyles,
+    chipStyles,
+    linkMakingStyles,
     css`
       .bar {
         position: sticky;
@@ -213,37 +213,37 @@ export class StrataPeopleDialog extends LitElement {
   }
 
   private async read(): Promise<void> {
-    this.people_ = await this.api.people();
+    this._people = await this.api.people();
   }
 
   override render(): TemplateResult {
     return html`<strata-dialog broad heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
-      ${radio_group<Part>({
+      ${radioGroup<Part>({
         label: words.parts,
         class: "segments parts",
         choices: [
           { value: "people", content: words.people },
           { value: "groups", content: texts.groups.title },
         ],
-        chosen: this.part_,
-        choose: (part) => (this.part_ = part),
+        chosen: this._part,
+        choose: (part) => (this._part = part),
       })}
-      ${this.people_ ? (this.part_ === "groups" ? this.group_list(this.people_) : this.content(this.people_)) : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`}
+      ${this._people ? (this._part === "groups" ? this.groupList(this._people) : this.content(this._people)) : html`<p class="hint" role="status" ?hidden=${this._problem !== ""}>${texts.loading}</p>`}
       ${
-        this.problem_
-          ? html`<p class="error" role="alert">${this.problem_}</p>
+        this._problem
+          ? html`<p class="error" role="alert">${this._problem}</p>
             <button @click=${() => void this.attempt(() => this.read())}>${texts.try_again}</button>`
           : nothing
       }
       ${
-        this.in_projects_
-          ? html`<strata-project-roles-dialog .api=${this.api} .person=${this.in_projects_} @closed=${() => (this.in_projects_ = null)}></strata-project-roles-dialog>`
+        this._inProjects
+          ? html`<strata-project-roles-dialog .api=${this.api} .person=${this._inProjects} @closed=${() => (this._inProjects = null)}></strata-project-roles-dialog>`
           : nothing
       }
     </strata-dialog>`;
   }
 
-  private group_list(people: readonly Person[]): TemplateResult {
+  private groupList(people: readonly Person[]): TemplateResult {
     return html`<strata-group-list
       .api=${this.api}
       .people=${people}
@@ -253,9 +253,9 @@ export class StrataPeopleDialog extends LitElement {
   }
 
   private content(people: readonly Person[]): TemplateResult {
-    const shown = find_people(
+    const shown = findPeople(
       people,
-      this.filter_,
+      this._filter,
       ({ role, state, groups }) =>
         `${texts.roles[role]} ${words.states[state]} ${groups.join(" ")}`,
     );
@@ -267,13 +267,13 @@ export class StrataPeopleDialog extends LitElement {
           spellcheck="false"
           aria-label=${words.filter}
           placeholder=${words.filter_hint}
-          .value=${this.filter_}
-          @input=${(event: Event) => (this.filter_ = (event.target as HTMLInputElement).value)}
+          .value=${this._filter}
+          @input=${(event: Event) => (this._filter = (event.target as HTMLInputElement).value)}
         />
         <span class="hint numeric grow" role="status">${shown.length === people.length ? words.count(people.length) : words.count_of(shown.length, people.length)}</span>
-        <button class=${this.inviting_ || this.invitation_ ? "" : "primary"} ?disabled=${this.inviting_} @click=${this.begin_to_invite}>${icon("plus")}${words.invite}</button>
+        <button class=${this._inviting || this._invitation ? "" : "primary"} ?disabled=${this._inviting} @click=${this.beginToInvite}>${icon("plus")}${words.invite}</button>
       </div>
-      ${this.inviting_ ? this.invite_form() : nothing} ${this.invitation_ ? this.link(this.invitation_) : nothing}
+      ${this._inviting ? this.inviteForm() : nothing} ${this._invitation ? this.link(this._invitation) : nothing}
       ${
         shown.length === 0
           ? html`<p class="hint">${words.none_found}</p>`
@@ -299,14 +299,14 @@ export class StrataPeopleDialog extends LitElement {
   }
 
   private row(person: Person): TemplateResult {
-    const { id, user, full_name, role, state, groups } = person;
+    const { id, user, full_name: fullName, role, state, groups } = person;
     const name = called(person);
-    const changeable = may_change(this.me, person);
-    const note = this.row_note_?.id === id ? this.row_note_ : null;
+    const changeable = mayChange(this.me, person);
+    const note = this._rowNote?.id === id ? this._rowNote : null;
     return html`<tr>
       <td class="name">
         <b>${name}</b> ${user === this.me.user ? html`<span class="chip you">${words.you}</span>` : nothing}
-        ${full_name.trim() ? html`<span class="hint">${user}</span>` : nothing}
+        ${fullName.trim() ? html`<span class="hint">${user}</span>` : nothing}
         ${
           groups.length > 0
             ? html`<span class="groups" aria-label=${texts.groups.of(name)} role="group">${groups.map((group) => html`<span class="chip group">${group}</span>`)}</span>`
@@ -317,8 +317,8 @@ export class StrataPeopleDialog extends LitElement {
       <td class="role">
         ${
           changeable
-            ? html`<select aria-label=${words.role_of(name)} title=${texts.role_hints[role]} @change=${(event: Event) => void this.change_role(person, event.target as HTMLSelectElement)}>
-              ${roles_to_give(this.me.role).map((each) => html`<option value=${each} ?selected=${each === role}>${texts.roles[each]}</option>`)}
+            ? html`<select aria-label=${words.role_of(name)} title=${texts.role_hints[role]} @change=${(event: Event) => void this.changeRole(person, event.target as HTMLSelectElement)}>
+              ${rolesToGive(this.me.role).map((each) => html`<option value=${each} ?selected=${each === role}>${texts.roles[each]}</option>`)}
             </select>`
             : html`<span title=${texts.role_hints[role]}>${texts.roles[role]}</span>`
         }
@@ -330,7 +330,7 @@ export class StrataPeopleDialog extends LitElement {
             : html`<span class="chip ${state}" title=${words.state_hints[state]}>${words.states[state]}</span>`
         }
       </td>
-      <td class="seen" data-label=${words.last_seen}>${person.last_seen ? told_time(person.last_seen) : words.never}</td>
+      <td class="seen" data-label=${words.last_seen}>${person.last_seen ? toldTime(person.last_seen) : words.never}</td>
       <td>${changeable ? this.options(person, name) : nothing}</td>
     </tr>`;
   }
@@ -338,11 +338,11 @@ export class StrataPeopleDialog extends LitElement {
   private options(person: Person, name: string): TemplateResult {
     const disabled = person.state === "disabled";
     return html`<strata-menu label=${words.options(name)}>
-      <button class="quiet" role="menuitem" @click=${() => (this.in_projects_ = person)}>${icon("layers")}${words.projects}</button>
+      <button class="quiet" role="menuitem" @click=${() => (this._inProjects = person)}>${icon("layers")}${words.projects}</button>
       ${
         disabled
           ? nothing
-          : html`<button class="quiet" role="menuitem" @click=${() => void this.make_link(person)}>${icon("link")}${words.new_link}</button>`
+          : html`<button class="quiet" role="menuitem" @click=${() => void this.makeLink(person)}>${icon("link")}${words.new_link}</button>`
       }
       ${
         disabled
@@ -350,13 +350,13 @@ export class StrataPeopleDialog extends LitElement {
           : html`<button class="quiet" role="menuitem" @click=${() => void this.disable(person)}>${icon("leave")}${words.disable}</button>`
       }
       <hr />
-      <button class="quiet" role="menuitem" @click=${() => void this.delete_person(person)}>${icon("trash")}${words.delete}</button>
+      <button class="quiet" role="menuitem" @click=${() => void this.deletePerson(person)}>${icon("trash")}${words.delete}</button>
     </strata-menu>`;
   }
 
-  private invite_form(): TemplateResult {
-    const problems = this.field_problems_;
-    const text_field = (
+  private inviteForm(): TemplateResult {
+    const problems = this._fieldProblems;
+    const textField = (
       name: "user" | "full_name",
       label: string,
       placeholder: string,
@@ -379,32 +379,32 @@ export class StrataPeopleDialog extends LitElement {
         </label>
         <small class="error" id="${name}_problem" role="alert" ?hidden=${!problems[name]}>${problems[name] ?? ""}</small>
       </div>`;
-    return html`<form @submit=${this.on_invite} novalidate>
+    return html`<form @submit=${this.onInvite} novalidate>
       <p class="hint">${words.invite_lead}</p>
       <div class="fields">
-        ${text_field("user", words.invite_user, words.invite_user_hint, 64)} ${text_field("full_name", words.full_name, "", 200)}
+        ${textField("user", words.invite_user, words.invite_user_hint, 64)} ${textField("full_name", words.full_name, "", 200)}
         <div>
           <label class="field">
             <span>${words.role}</span>
-            <select name="role" aria-describedby="role_hint role_problem" @change=${(event: Event) => (this.role_ = (event.target as HTMLSelectElement).value as Role)}>
-              ${roles_to_give(this.me.role).map((role) => html`<option value=${role} ?selected=${role === this.role_}>${texts.roles[role]}</option>`)}
+            <select name="role" aria-describedby="role_hint role_problem" @change=${(event: Event) => (this._role = (event.target as HTMLSelectElement).value as Role)}>
+              ${rolesToGive(this.me.role).map((role) => html`<option value=${role} ?selected=${role === this._role}>${texts.roles[role]}</option>`)}
             </select>
           </label>
-          <small class="hint" id="role_hint">${texts.role_hints[this.role_]}</small>
+          <small class="hint" id="role_hint">${texts.role_hints[this._role]}</small>
           <small class="error" id="role_problem" role="alert" ?hidden=${!problems.role}>${problems.role ?? ""}</small>
         </div>
       </div>
       ${
-        this.groups_.length > 0
+        this._groups.length > 0
           ? html`<fieldset>
             <legend class="caption">${texts.groups.title}</legend>
-            ${this.groups_.map(({ id, name }) => html`<label><input type="checkbox" name="group" value=${id} />${name}</label>`)}
+            ${this._groups.map(({ id, name }) => html`<label><input type="checkbox" name="group" value=${id} />${name}</label>`)}
           </fieldset>`
           : nothing
       }
       <div class="row">
-        <button type="button" @click=${() => (this.inviting_ = false)}>${texts.cancel}</button>
-        <button class="primary" ?disabled=${this.busy_}>${words.invite_button}</button>
+        <button type="button" @click=${() => (this._inviting = false)}>${texts.cancel}</button>
+        <button class="primary" ?disabled=${this._busy}>${words.invite_button}</button>
       </div>
     </form>`;
   }
@@ -414,48 +414,48 @@ export class StrataPeopleDialog extends LitElement {
     return html`<div class="made" role="status">
       <div>
         <b>${title}</b>
-        <p>${words.link_lead(told_time(expires))}</p>
+        <p>${words.link_lead(toldTime(expires))}</p>
       </div>
       <strata-copy-field follows_form label=${title} .text=${new URL(path, location.origin).href}></strata-copy-field>
-      <button @click=${() => (this.invitation_ = null)}>${words.link_done}</button>
+      <button @click=${() => (this._invitation = null)}>${words.link_done}</button>
     </div>`;
   }
 
-  private begin_to_invite(): void {
-    this.inviting_ = true;
-    this.role_ = kUsualRole;
-    this.invitation_ = null;
-    this.field_problems_ = {};
+  private beginToInvite(): void {
+    this._inviting = true;
+    this._role = kUsualRole;
+    this._invitation = null;
+    this._fieldProblems = {};
     void this.updateComplete.then(() =>
       this.renderRoot.querySelector<HTMLInputElement>("input[name=user]")?.focus(),
     );
     void this.attempt(async () => {
-      this.groups_ = await this.api.groups();
+      this._groups = await this.api.groups();
     });
   }
 
   private refuse(field: Field, problem: string): void {
-    this.field_problems_ = { [field]: problem };
+    this._fieldProblems = { [field]: problem };
     this.renderRoot.querySelector<HTMLElement>(`form [name=${field}]`)?.focus();
   }
 
-  private on_invite(event: Event): void {
+  private onInvite(event: Event): void {
     event.preventDefault();
     const data = new FormData(event.target as HTMLFormElement);
     const text = (name: Field): string => String(data.get(name) ?? "").trim();
-    this.field_problems_ = {};
+    this._fieldProblems = {};
     if (text("user") === "") return this.refuse("user", words.user_missing);
-    if (!is_user_name(text("user"))) return this.refuse("user", words.user_wrong);
+    if (!isUserName(text("user"))) return this.refuse("user", words.user_wrong);
     void this.attempt(async () => {
       const groups = data.getAll("group").map(Number);
-      const asked = { user: text("user"), full_name: text("full_name"), role: this.role_ };
-      this.invitation_ = await this.api.invite(groups.length > 0 ? { ...asked, groups } : asked);
-      this.inviting_ = false;
+      const asked = { user: text("user"), full_name: text("full_name"), role: this._role };
+      this._invitation = await this.api.invite(groups.length > 0 ? { ...asked, groups } : asked);
+      this._inviting = false;
       await this.read();
     });
   }
 
-  private async make_link(person: Person): Promise<void> {
+  private async makeLink(person: Person): Promise<void> {
     const name = called(person);
     if (
       !(await ask({
@@ -465,15 +465,15 @@ export class StrataPeopleDialog extends LitElement {
       }))
     )
       return;
-    await this.change_row(person, async () => {
-      this.inviting_ = false;
-      this.invitation_ = await this.api.invite_again(person.user);
+    await this.changeRow(person, async () => {
+      this._inviting = false;
+      this._invitation = await this.api.inviteAgain(person.user);
       await this.updateComplete;
       this.renderRoot.querySelector(".made")?.scrollIntoView({ block: "nearest" });
     });
   }
 
-  private async change_role(person: Person, select: HTMLSelectElement): Promise<void> {
+  private async changeRole(person: Person, select: HTMLSelectElement): Promise<void> {
     const role = select.value as Role;
     const done = await this.change(person, { role }, words.role_changed(texts.roles[role]));
     if (!done) select.value = person.role;
@@ -497,7 +497,7 @@ export class StrataPeopleDialog extends LitElement {
     await this.change(person, { disabled: false }, words.enabled);
   }
 
-  private async delete_person(person: Person): Promise<void> {
+  private async deletePerson(person: Person): Promise<void> {
     const name = called(person);
     if (
       !(await ask({
@@ -508,51 +508,51 @@ export class StrataPeopleDialog extends LitElement {
       }))
     )
       return;
-    await this.change_row(person, async () => {
-      await this.api.delete_person(person.user);
-      if (this.invitation_?.user.id === person.id) this.invitation_ = null;
+    await this.changeRow(person, async () => {
+      await this.api.deletePerson(person.user);
+      if (this._invitation?.user.id === person.id) this._invitation = null;
       await this.read();
     });
   }
 
   private change(person: Person, change: PersonPatch, done: string): Promise<boolean> {
-    return this.change_row(person, async () => {
-      const now = await this.api.change_person(person.user, change);
-      this.people_ = (this.people_ ?? []).map((each) => (each.id === now.id ? now : each));
-      this.row_note_ = { id: now.id, kind: "done", text: done };
+    return this.changeRow(person, async () => {
+      const now = await this.api.changePerson(person.user, change);
+      this._people = (this._people ?? []).map((each) => (each.id === now.id ? now : each));
+      this._rowNote = { id: now.id, kind: "done", text: done };
     });
   }
 
   /** True: done. What is refused is said in the person's row. */
-  private async change_row({ id }: Person, task: () => Promise<void>): Promise<boolean> {
-    this.row_note_ = null;
+  private async changeRow({ id }: Person, task: () => Promise<void>): Promise<boolean> {
+    this._rowNote = null;
     try {
       await task();
       return true;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
-      this.row_note_ = { id, kind: "error", text: error.message };
+      this._rowNote = { id, kind: "error", text: error.message };
       return false;
     }
   }
 
   private async attempt(task: () => Promise<void>): Promise<void> {
-    this.busy_ = true;
-    this.problem_ = "";
+    this._busy = true;
+    this._problem = "";
     try {
       await task();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       const { field } = error.problem;
       if (error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
-      else if (this.inviting_ && (field === "full_name" || field === "role"))
+      else if (this._inviting && (field === "full_name" || field === "role"))
         this.refuse(field, error.message);
-      else if (this.inviting_ && (field === "user" || error.status === 409))
+      else if (this._inviting && (field === "user" || error.status === 409))
         this.refuse("user", error.message);
-      else this.problem_ = error.message;
+      else this._problem = error.message;
     } finally {
-      this.busy_ = false;
+      this._busy = false;
     }
   }
 }

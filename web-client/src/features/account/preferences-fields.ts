@@ -4,17 +4,17 @@
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, query } from "lit/decorators.js";
 import { kPageLanguages } from "../../core/locale";
-import { name_of_language } from "../../core/languages";
+import { nameOfLanguage } from "../../core/languages";
 import { ask } from "../../ui/dialog";
 import {
-  chosen_language,
-  chosen_theme,
-  keep_language,
-  keep_theme,
+  chosenLanguage,
+  chosenTheme,
+  keepLanguage,
+  keepTheme,
   kThemes,
 } from "../../ui/preferences";
-import { discard_unsaved, unsaved_changes } from "../../session/sessions";
-import { shared_styles } from "../../ui/styles";
+import { discardUnsaved, unsavedChanges } from "../../session/sessions";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 /** As at the head of a list: "Español". */
@@ -22,11 +22,11 @@ const titled = (name: string): string => name.slice(0, 1).toUpperCase() + name.s
 
 @customElement("strata-preferences")
 export class StrataPreferences extends LitElement {
-  @query("select[name=theme]") private theme_!: HTMLSelectElement;
-  @query("select[name=language]") private language_!: HTMLSelectElement;
+  @query("select[name=theme]") private _theme!: HTMLSelectElement;
+  @query("select[name=language]") private _language!: HTMLSelectElement;
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: grid;
@@ -38,30 +38,30 @@ export class StrataPreferences extends LitElement {
 
   override render(): TemplateResult {
     const words = texts.settings;
-    const chosen = chosen_language();
+    const chosen = chosenLanguage();
     return html`<label class="field">
       <span>${words.language}</span>
-      <select name="language" @change=${() => void this.change_language()}>
+      <select name="language" @change=${() => void this.changeLanguage()}>
         <option value="" ?selected=${chosen === null}>${words.as_browser}</option>
         ${kPageLanguages.map(
           (language) =>
-            html`<option value=${language} lang=${language} ?selected=${language === chosen}>${titled(name_of_language(language))}</option>`,
+            html`<option value=${language} lang=${language} ?selected=${language === chosen}>${titled(nameOfLanguage(language))}</option>`,
         )}
       </select>
     </label>
     <label class="field">
       <span>${words.theme}</span>
-      <select name="theme" @change=${() => keep_theme(kThemes.find((theme) => theme === this.theme_.value) ?? "system")}>
-        ${kThemes.map((theme) => html`<option value=${theme} ?selected=${theme === chosen_theme()}>${words.themes[theme]}</option>`)}
+      <select name="theme" @change=${() => keepTheme(kThemes.find((theme) => theme === this._theme.value) ?? "system")}>
+        ${kThemes.map((theme) => html`<option value=${theme} ?selected=${theme === chosenTheme()}>${words.themes[theme]}</option>`)}
       </select>
     </label>`;
   }
 
   /** All words are set while the page is loaded, so it is loaded anew. */
-  private async change_language(): Promise<void> {
+  private async changeLanguage(): Promise<void> {
     const words = texts.settings;
-    const wanted = kPageLanguages.find((language) => language === this.language_.value) ?? null;
-    const lost = unsaved_changes();
+    const wanted = kPageLanguages.find((language) => language === this._language.value) ?? null;
+    const lost = unsavedChanges();
     if (
       lost > 0 &&
       !(await ask({
@@ -71,18 +71,18 @@ export class StrataPreferences extends LitElement {
         danger: true,
       }))
     ) {
-      this.language_.value = chosen_language() ?? "";
+      this._language.value = chosenLanguage() ?? "";
       return;
     }
-    discard_unsaved();
-    keep_language(wanted);
+    discardUnsaved();
+    keepLanguage(wanted);
     location.reload();
   }
 }
 
 @customElement("strata-preferences-dialog")
 export class StrataPreferencesDialog extends LitElement {
-  static override styles = shared_styles;
+  static override styles = sharedStyles;
 
   override render(): TemplateResult {
     return html`<strata-dialog heading=${texts.settings.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>

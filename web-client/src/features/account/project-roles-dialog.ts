@@ -5,12 +5,12 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../../net/api";
-import { format_list } from "../../core/locale";
-import { called, role_by_groups } from "../../domain/people";
+import { formatList } from "../../core/locale";
+import { called, roleByGroups } from "../../domain/people";
 import type { Group, MemberList, Person, Project, ProjectRole } from "../../core/protocol.gen";
 import { kProjectRoles, kRoles } from "../../core/types";
 import "../../ui/dialog";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.project_roles;
@@ -18,7 +18,7 @@ const words = texts.project_roles;
 interface Row {
   project: Project;
   role: ProjectRole | null; // of their own
-  by_groups: ReturnType<typeof role_by_groups>;
+  by_groups: ReturnType<typeof roleByGroups>;
   note: { kind: "error" | "done"; text: string } | null;
 }
 
@@ -28,11 +28,11 @@ export class StrataProjectRolesDialog extends LitElement {
   /** One of both. */
   @property({ attribute: false }) person: Person | null = null;
   @property({ attribute: false }) group: Group | null = null;
-  @state() private rows_: readonly Row[] | null = null;
-  @state() private problem_ = "";
+  @state() private _rows: readonly Row[] | null = null;
+  @state() private _problem = "";
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       ul {
         display: grid;
@@ -73,28 +73,28 @@ export class StrataProjectRolesDialog extends LitElement {
   }
 
   private async read(): Promise<void> {
-    this.problem_ = "";
+    this._problem = "";
     try {
       const projects = await this.api.projects();
       const members = await Promise.all(projects.map(({ slug }) => this.api.members(slug)));
-      this.rows_ = projects.map((project, i) => ({
+      this._rows = projects.map((project, i) => ({
         project,
-        ...this.roles_in(members[i]!),
+        ...this.rolesIn(members[i]!),
         note: null,
       }));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.problem_ = error.message;
+      this._problem = error.message;
     }
   }
 
-  private roles_in({ members, groups }: MemberList): Pick<Row, "role" | "by_groups"> {
+  private rolesIn({ members, groups }: MemberList): Pick<Row, "role" | "by_groups"> {
     const { person, group } = this;
     if (group)
       return { role: groups.find(({ id }) => id === group.id)?.role ?? null, by_groups: null };
     return {
       role: members.find(({ user }) => user === person?.user)?.role ?? null,
-      by_groups: role_by_groups(groups, person?.groups ?? []),
+      by_groups: roleByGroups(groups, person?.groups ?? []),
     };
   }
 
@@ -104,13 +104,13 @@ export class StrataProjectRolesDialog extends LitElement {
     return html`<strata-dialog heading=${words.title(name)} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <p class="hint">${person ? words.lead(texts.roles[person.role]) : words.group_lead}</p>
       ${
-        this.problem_
-          ? html`<p class="error" role="alert">${this.problem_}</p>
+        this._problem
+          ? html`<p class="error" role="alert">${this._problem}</p>
             <button @click=${() => void this.read()}>${texts.try_again}</button>`
-          : this.rows_
+          : this._rows
             ? html`<ul>
               ${repeat(
-                this.rows_,
+                this._rows,
                 ({ project }) => project.id,
                 (row) => this.row(row),
               )}
@@ -134,19 +134,19 @@ export class StrataProjectRolesDialog extends LitElement {
   }
 
   /** What counts there, where that is what a group gives. */
-  private origin({ role, by_groups }: Row): TemplateResult | typeof nothing {
-    if (!by_groups || !this.person) return nothing;
+  private origin({ role, by_groups: byGroups }: Row): TemplateResult | typeof nothing {
+    if (!byGroups || !this.person) return nothing;
     const rank = (each: ProjectRole | Person["role"]): number => kRoles.indexOf(each);
-    const counts = rank(by_groups.role) > Math.max(rank(this.person.role), role ? rank(role) : -1);
+    const counts = rank(byGroups.role) > Math.max(rank(this.person.role), role ? rank(role) : -1);
     const told = counts ? words.by_groups : words.by_groups_also;
-    return html`<span class="hint">${told(texts.roles[by_groups.role], format_list(by_groups.groups))}</span>`;
+    return html`<span class="hint">${told(texts.roles[byGroups.role], formatList(byGroups.groups))}</span>`;
   }
 
   private async change(row: Row, select: HTMLSelectElement): Promise<void> {
     const { project, role: before } = row;
     const role = kProjectRoles.find((each) => each === select.value) ?? null;
     const say = (now: ProjectRole | null, kind: "error" | "done", text: string): void => {
-      this.rows_ = (this.rows_ ?? []).map((row) =>
+      this._rows = (this._rows ?? []).map((row) =>
         row.project.id === project.id ? { ...row, role: now, note: { kind, text } } : row,
       );
     };
@@ -170,9 +170,9 @@ export class StrataProjectRolesDialog extends LitElement {
 
   private async put(project: string, role: ProjectRole | null): Promise<void> {
     const { api, person, group } = this;
-    if (group && role) await api.put_project_group(project, group.id, role);
-    else if (group) await api.remove_project_group(project, group.id);
-    else if (person && role) await api.put_member(project, person.user, role);
-    else if (person) await api.remove_member(project, person.user);
+    if (group && role) await api.putProjectGroup(project, group.id, role);
+    else if (group) await api.removeProjectGroup(project, group.id);
+    else if (person && role) await api.putMember(project, person.user, role);
+    else if (person) await api.removeMember(project, person.user);
   }
 }

@@ -4,28 +4,28 @@
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError, type Api } from "../../net/api";
-import { login_path_of, sign_in_problem } from "./entry";
-import { entry_styles } from "./entry-styles";
+import { loginPathOf, signInProblem } from "./entry";
+import { entryStyles } from "./entry-styles";
 import { icon, logo } from "../../ui/icons";
-import { password_field, password_styles } from "./password-field";
+import { passwordField, passwordStyles } from "./password-field";
 import "./preferences-fields";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 @customElement("strata-sign-in")
 export class StrataSignIn extends LitElement {
   @property({ attribute: false }) api!: Api;
-  @state() private problem_ = "";
-  @state() private token_problem_ = "";
-  @state() private busy_ = false;
-  @query("input[name=user]") private user_!: HTMLInputElement;
-  @query("input[name=password]") private password_!: HTMLInputElement;
-  @query("input[name=token]") private token_!: HTMLInputElement;
+  @state() private _problem = "";
+  @state() private _tokenProblem = "";
+  @state() private _busy = false;
+  @query("input[name=user]") private _user!: HTMLInputElement;
+  @query("input[name=password]") private _password!: HTMLInputElement;
+  @query("input[name=token]") private _token!: HTMLInputElement;
 
   static override styles = [
-    shared_styles,
-    entry_styles,
-    password_styles,
+    sharedStyles,
+    entryStyles,
+    passwordStyles,
     css`
       details {
         padding-top: 16px;
@@ -57,7 +57,7 @@ export class StrataSignIn extends LitElement {
   ];
 
   override firstUpdated(): void {
-    this.user_.focus();
+    this._user.focus();
   }
 
   override render(): TemplateResult {
@@ -68,7 +68,7 @@ export class StrataSignIn extends LitElement {
         <div><b>${texts.product}</b><span>${texts.tagline}</span></div>
       </div>
       <h1>${words.title}</h1>
-      <form @submit=${this.on_submit} novalidate>
+      <form @submit=${this.onSubmit} novalidate>
         <label class="field">
           <span>${words.user}</span>
           <input
@@ -78,18 +78,18 @@ export class StrataSignIn extends LitElement {
             autocomplete="username"
             autocapitalize="off"
             spellcheck="false"
-            aria-invalid=${this.problem_ ? "true" : "false"}
+            aria-invalid=${this._problem ? "true" : "false"}
             aria-describedby="problem"
           />
         </label>
-        ${password_field({ name: "password", label: words.password, autocomplete: "current-password", wrong_by: this.problem_ ? "problem" : "" })}
-        <p class="error" id="problem" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
-        <button class="primary" ?disabled=${this.busy_}>${words.button}</button>
+        ${passwordField({ name: "password", label: words.password, autocomplete: "current-password", wrongBy: this._problem ? "problem" : "" })}
+        <p class="error" id="problem" role="alert" ?hidden=${!this._problem}>${this._problem}</p>
+        <button class="primary" ?disabled=${this._busy}>${words.button}</button>
         <p class="hint">${words.forgotten}</p>
       </form>
       <details>
         <summary>${icon("chevron")}${words.otherwise}</summary>
-        <form @submit=${this.on_token} novalidate>
+        <form @submit=${this.onToken} novalidate>
           <p class="hint">${words.otherwise_lead}</p>
           <label class="field">
             <span>${words.token}</span>
@@ -97,12 +97,12 @@ export class StrataSignIn extends LitElement {
               type="password"
               name="token"
               autocomplete="off"
-              aria-invalid=${this.token_problem_ ? "true" : "false"}
+              aria-invalid=${this._tokenProblem ? "true" : "false"}
               aria-describedby="token_problem"
             />
           </label>
-          <p class="error" id="token_problem" role="alert" ?hidden=${!this.token_problem_}>${this.token_problem_}</p>
-          <button ?disabled=${this.busy_}>${words.button}</button>
+          <p class="error" id="token_problem" role="alert" ?hidden=${!this._tokenProblem}>${this._tokenProblem}</p>
+          <button ?disabled=${this._busy}>${words.button}</button>
           <p class="hint">${words.token_hint} <code>${location.origin}/login?link=…</code></p>
         </form>
       </details>
@@ -110,44 +110,44 @@ export class StrataSignIn extends LitElement {
     </main>`;
   }
 
-  private async on_submit(event: Event): Promise<void> {
+  private async onSubmit(event: Event): Promise<void> {
     event.preventDefault();
-    if (this.busy_) return;
-    const user = this.user_.value.trim();
-    const password = this.password_.value; // spaces count
-    this.problem_ = this.token_problem_ = "";
+    if (this._busy) return;
+    const user = this._user.value.trim();
+    const password = this._password.value; // spaces count
+    this._problem = this._tokenProblem = "";
     if (user === "" || password === "") {
-      this.problem_ = texts.sign_in.empty;
-      (user === "" ? this.user_ : this.password_).focus();
+      this._problem = texts.sign_in.empty;
+      (user === "" ? this._user : this._password).focus();
       return;
     }
-    this.problem_ = await this.try_to("password", () => this.api.login({ user, password }));
-    if (this.problem_) this.password_.select();
+    this._problem = await this.tryTo("password", () => this.api.login({ user, password }));
+    if (this._problem) this._password.select();
   }
 
-  private async on_token(event: Event): Promise<void> {
+  private async onToken(event: Event): Promise<void> {
     event.preventDefault();
-    if (this.busy_) return;
-    const token = this.token_.value.trim();
-    const path = login_path_of(token);
-    this.problem_ = this.token_problem_ = "";
+    if (this._busy) return;
+    const token = this._token.value.trim();
+    const path = loginPathOf(token);
+    this._problem = this._tokenProblem = "";
     if (path) location.assign(path);
-    else if (token === "") this.token_problem_ = texts.sign_in.token_empty;
-    else this.token_problem_ = await this.try_to("token", () => this.api.login({ token }));
+    else if (token === "") this._tokenProblem = texts.sign_in.token_empty;
+    else this._tokenProblem = await this.tryTo("token", () => this.api.login({ token }));
   }
 
   /** What is wrong, or nothing. */
-  private async try_to(by: "password" | "token", login: () => Promise<unknown>): Promise<string> {
-    this.busy_ = true;
+  private async tryTo(by: "password" | "token", login: () => Promise<unknown>): Promise<string> {
+    this._busy = true;
     try {
       await login();
       this.dispatchEvent(new CustomEvent("signed-in"));
       return "";
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      return sign_in_problem(error, by);
+      return signInProblem(error, by);
     } finally {
-      this.busy_ = false;
+      this._busy = false;
     }
   }
 }

@@ -3,23 +3,23 @@
 import { css, html, nothing, type TemplateResult } from "lit";
 import { customElement } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { by_day } from "../../domain/activity";
-import { format_list } from "../../core/locale";
-import { format_area } from "../../domain/measure";
+import { byDay } from "../../domain/activity";
+import { formatList } from "../../core/locale";
+import { formatArea } from "../../domain/measure";
 import { called } from "../../domain/people";
 import type { Activity } from "../../core/protocol.gen";
-import { FoldingPanel, folding_styles } from "../../session/folding-panel";
+import { FoldingPanel, foldingStyles } from "../../session/folding-panel";
 import { icon } from "../../ui/icons";
-import { panel_line_styles } from "../../ui/panel-styles";
-import { person_mark, person_mark_styles } from "../../ui/person-mark";
-import { radio_group } from "../../ui/radio-group";
+import { panelLineStyles } from "../../ui/panel-styles";
+import { personMark, personMarkStyles } from "../../ui/person-mark";
+import { radioGroup } from "../../ui/radio-group";
 import { texts } from "../../texts";
-import { told_clock, told_day } from "../../domain/times";
+import { toldClock, toldDay } from "../../domain/times";
 
 const words = texts.activity;
 
 /** That of the first key which has one. */
-const text_of = (
+const textOf = (
   all: { readonly [key: string]: string; other: string },
   ...keys: string[]
 ): string => keys.map((key) => all[key]).find((text) => text !== undefined) ?? all.other;
@@ -33,9 +33,9 @@ export class StrataActivityPanel extends FoldingPanel {
   }
 
   static override styles = [
-    folding_styles,
-    panel_line_styles,
-    person_mark_styles,
+    foldingStyles,
+    panelLineStyles,
+    personMarkStyles,
     css`
       h3 {
         margin: 0.375rem 0 0;
@@ -66,7 +66,7 @@ export class StrataActivityPanel extends FoldingPanel {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    this.session.activity.watch(this.is_open);
+    this.session.activity.watch(this.isOpen);
   }
 
   override disconnectedCallback(): void {
@@ -75,12 +75,12 @@ export class StrataActivityPanel extends FoldingPanel {
   }
 
   protected override toggled(): void {
-    this.session.activity.watch(this.is_open);
+    this.session.activity.watch(this.isOpen);
   }
 
   protected content(): TemplateResult {
     const { activity } = this.session;
-    return html`${radio_group({
+    return html`${radioGroup({
       label: words.of,
       class: "segments",
       choices: [
@@ -97,7 +97,7 @@ export class StrataActivityPanel extends FoldingPanel {
           : nothing
       }
       ${activity.lines.length === 0 && !activity.failed ? html`<p class="hint">${activity.loaded ? words.none : texts.loading}</p>` : nothing}
-      ${by_day(activity.lines, (time) => told_day(time)).map(
+      ${byDay(activity.lines, (time) => toldDay(time)).map(
         ({ day, lines }) =>
           html`<h3>${day}</h3>
             <ul aria-label=${day}>
@@ -108,17 +108,17 @@ export class StrataActivityPanel extends FoldingPanel {
               )}
             </ul>`,
       )}
-      ${activity.has_more ? html`<button ?disabled=${activity.busy} @click=${() => void activity.more()}>${words.more}</button>` : nothing}`;
+      ${activity.hasMore ? html`<button ?disabled=${activity.busy} @click=${() => void activity.more()}>${words.more}</button>` : nothing}`;
   }
 
   private line(line: Activity): TemplateResult {
     const { activity } = this.session;
-    const content = html`${line.user === undefined ? html`<span class="server">${icon("cube")}</span>` : person_mark({ ...line, user: line.user })}
+    const content = html`${line.user === undefined ? html`<span class="server">${icon("cube")}</span>` : personMark({ ...line, user: line.user })}
       <span class="what"><b>${line.user === undefined ? words.server : called({ ...line, user: line.user })}</b> ${this.done(line)}</span>
-      <span class="hint numeric">${told_clock(line.time)}</span>
+      <span class="hint numeric">${toldClock(line.time)}</span>
       <span class="more-of-it hint">${this.details(line)}</span>`;
-    return activity.leads_somewhere(line)
-      ? html`<button class="quiet line" data-activity=${line.id} @click=${() => void activity.go_to(line)}>${content}</button>`
+    return activity.leadsSomewhere(line)
+      ? html`<button class="quiet line" data-activity=${line.id} @click=${() => void activity.goTo(line)}>${content}</button>`
       : html`<div class="line" data-activity=${line.id}>${content}</div>`;
   }
 
@@ -130,7 +130,7 @@ export class StrataActivityPanel extends FoldingPanel {
           : "in_group"
         : kind;
     const what = kind === "member" ? (person ?? group) : name;
-    return html`${text_of(words.done, `${about} ${op}`, kind)}${what === undefined ? nothing : html` <b>${what}</b>`}`;
+    return html`${textOf(words.done, `${about} ${op}`, kind)}${what === undefined ? nothing : html` <b>${what}</b>`}`;
   }
 
   private details(line: Activity): string {
@@ -138,35 +138,35 @@ export class StrataActivityPanel extends FoldingPanel {
       kind,
       op,
       count,
-      area_m2,
+      area_m2: areaM2,
       text,
       record,
       table,
       role,
       changed,
-      model_name,
+      model_name: modelName,
       model,
       person,
       group,
     } = line;
-    const is_elsewhere = model !== undefined && model !== this.session.model?.id;
+    const isElsewhere = model !== undefined && model !== this.session.model?.id;
     const parts = [
       kind === "edit" &&
         (op === "stroke" ? words.strokes(count) : count > 1 ? words.times(count) : ""),
-      kind === "edit" && area_m2 ? format_area(area_m2) : "",
+      kind === "edit" && areaM2 ? formatArea(areaM2) : "",
       kind === "records" &&
-        (record === undefined ? texts.tables.records(count) : this.record_name(table, record)),
+        (record === undefined ? texts.tables.records(count) : this.recordName(table, record)),
       kind === "columns" && words.columns(count),
       person !== undefined && group !== undefined ? group : "",
       kind === "member" && role ? texts.roles[role] : "",
-      changed ? format_list([...new Set(changed.map((each) => text_of(words.changed, each)))]) : "",
+      changed ? formatList([...new Set(changed.map((each) => textOf(words.changed, each)))]) : "",
       text ?? "",
-      is_elsewhere && kind !== "model" ? (model_name ?? "") : "",
+      isElsewhere && kind !== "model" ? (modelName ?? "") : "",
     ];
     return parts.filter(Boolean).join(" · ");
   }
 
-  private record_name(table: number | undefined, record: number): string {
+  private recordName(table: number | undefined, record: number): string {
     return (
       (table === undefined ? null : this.session.tables.label(table, record)) ??
       texts.tables.record(record)

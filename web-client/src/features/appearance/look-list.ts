@@ -4,30 +4,30 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import type { Look } from "../../core/protocol.gen";
-import { ask, ask_text } from "../../ui/dialog";
-import { follow_session } from "../../session/follow-session";
+import { ask, askText } from "../../ui/dialog";
+import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { list_head_styles } from "../../ui/panel-styles";
-import { shared_styles } from "../../ui/styles";
+import { listHeadStyles } from "../../ui/panel-styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 @customElement("strata-look-list")
 export class StrataLookList extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  @state() private adding_ = false;
-  @query("input[type=file]") private file_input_!: HTMLInputElement;
+  @state() private _adding = false;
+  @query("input[type=file]") private _fileInput!: HTMLInputElement;
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
-    list_head_styles,
+    sharedStyles,
+    listHeadStyles,
     css`
       ul {
         gap: 0.375rem;
@@ -84,30 +84,30 @@ export class StrataLookList extends LitElement {
     return html`<div class="row">
         <h3>${words.looks}</h3>
         ${
-          session.can_curate
-            ? html`<button class="quiet" ?disabled=${this.adding_} @click=${() => this.file_input_.click()}>
-                ${icon("plus")}${this.adding_ ? words.look_adding : words.look_add}
+          session.canCurate
+            ? html`<button class="quiet" ?disabled=${this._adding} @click=${() => this._fileInput.click()}>
+                ${icon("plus")}${this._adding ? words.look_adding : words.look_add}
               </button>
               <strata-menu label=${words.look_more}>
                 <button class="quiet" role="menuitem" @click=${() => this.dispatchEvent(new CustomEvent("orthophoto"))}>
                   ${icon("import")}${texts.orthophoto.open}
                 </button>
               </strata-menu>
-              <input type="file" accept="image/jpeg,image/png,image/tiff,image/webp,image/bmp,.tga" hidden aria-label=${words.look_add} @change=${this.on_file} />`
+              <input type="file" accept="image/jpeg,image/png,image/tiff,image/webp,image/bmp,.tga" hidden aria-label=${words.look_add} @change=${this.onFile} />`
             : nothing
         }
       </div>
       ${
         shown.length === 0
-          ? html`<p class="hint">${session.can_curate ? words.no_looks_curator : words.no_looks}</p>`
+          ? html`<p class="hint">${session.canCurate ? words.no_looks_curator : words.no_looks}</p>`
           : html`<ul>
             ${shown.map((look) => this.look(look))}
           </ul>`
       }
       ${
-        appearance.has_look_overrides && session.can_curate
+        appearance.hasLookOverrides && session.canCurate
           ? html`<div class="personal">
-            <button class="link" @click=${() => void this.save_default()}>${texts.layers.save_default}</button>
+            <button class="link" @click=${() => void this.saveDefault()}>${texts.layers.save_default}</button>
           </div>`
           : nothing
       }`;
@@ -126,38 +126,38 @@ export class StrataLookList extends LitElement {
         aria-pressed=${visible}
         aria-label=${label}
         title=${label}
-        @click=${() => appearance.set_visible(look, !visible)}
+        @click=${() => appearance.setVisible(look, !visible)}
       >
         ${icon(visible ? "eye" : "eye_off")}
       </button>
-      <img src="/api/v1/models/${session.model_id}/looks/${look.id}/picture?thumbnail=96" alt="" loading="lazy" />
+      <img src="/api/v1/models/${session.modelId}/looks/${look.id}/picture?thumbnail=96" alt="" loading="lazy" />
       <span class="name ellipsis" title=${look.description || look.name}>${look.name}</span>
       ${
-        session.can_curate
+        session.canCurate
           ? html`<strata-menu label=${texts.layers.options(look.name)}>
             <a
               class="button quiet"
               role="menuitem"
-              href="/api/v1/models/${session.model_id}/looks/${look.id}/picture"
+              href="/api/v1/models/${session.modelId}/looks/${look.id}/picture"
               download="${look.slug}.${look.media_type === "image/png" ? "png" : "jpg"}"
               >${icon("down")}${texts.view.look_download}</a
             >
-            <button class="quiet" role="menuitem" @click=${() => void this.rename_look(look)}>
+            <button class="quiet" role="menuitem" @click=${() => void this.renameLook(look)}>
               ${icon("edit")}${texts.view.look_rename}
             </button>
             <button
               class="quiet"
               role="menuitem"
               ?disabled=${place === appearance.looks.length - 1}
-              @click=${() => this.move_look(look, place + 1)}
+              @click=${() => this.moveLook(look, place + 1)}
             >
               ${icon("up")}${texts.layers.up}
             </button>
-            <button class="quiet" role="menuitem" ?disabled=${place === 0} @click=${() => this.move_look(look, place - 1)}>
+            <button class="quiet" role="menuitem" ?disabled=${place === 0} @click=${() => this.moveLook(look, place - 1)}>
               ${icon("down")}${texts.layers.down}
             </button>
             <hr />
-            <button class="quiet" role="menuitem" @click=${() => void this.delete_look(look)}>
+            <button class="quiet" role="menuitem" @click=${() => void this.deleteLook(look)}>
               ${icon("trash")}${texts.layers.delete}
             </button>
           </strata-menu>`
@@ -172,7 +172,7 @@ export class StrataLookList extends LitElement {
               max="100"
               .value=${String(percent)}
               aria-label=${texts.layers.opacity_of(look.name)}
-              @input=${(event: Event) => appearance.set_opacity(look, number_of(event) / 100)}
+              @input=${(event: Event) => appearance.setOpacity(look, numberOf(event) / 100)}
             />
             <output class="numeric">${percent} %</output>
           </div>`
@@ -181,23 +181,23 @@ export class StrataLookList extends LitElement {
     </li>`;
   }
 
-  private async on_file(): Promise<void> {
-    const file = this.file_input_.files?.[0];
-    this.file_input_.value = "";
+  private async onFile(): Promise<void> {
+    const file = this._fileInput.files?.[0];
+    this._fileInput.value = "";
     if (!file) return;
-    this.adding_ = true;
+    this._adding = true;
     try {
       await this.session.appearance.add(file);
     } catch (error) {
       notices.error(error);
     } finally {
-      this.adding_ = false;
+      this._adding = false;
     }
   }
 
-  private async rename_look(look: Look): Promise<void> {
+  private async renameLook(look: Look): Promise<void> {
     const words = texts.view;
-    const name = await ask_text({
+    const name = await askText({
       heading: words.look_rename_title(look.name),
       label: words.look_name,
       text: look.name,
@@ -209,11 +209,11 @@ export class StrataLookList extends LitElement {
       .catch((error: unknown) => notices.error(error));
   }
 
-  private move_look(look: Look, place: number): void {
+  private moveLook(look: Look, place: number): void {
     this.session.appearance.move(look, place).catch((error: unknown) => notices.error(error));
   }
 
-  private async delete_look(look: Look): Promise<void> {
+  private async deleteLook(look: Look): Promise<void> {
     const words = texts.view;
     const question = {
       heading: words.look_delete_title(look.name),
@@ -225,9 +225,9 @@ export class StrataLookList extends LitElement {
     await this.session.appearance.remove(look).catch((error: unknown) => notices.error(error));
   }
 
-  private async save_default(): Promise<void> {
+  private async saveDefault(): Promise<void> {
     try {
-      await this.session.appearance.save_as_default();
+      await this.session.appearance.saveAsDefault();
       notices.show("success", texts.layers.saved_default);
     } catch (error) {
       notices.error(error);
@@ -235,4 +235,4 @@ export class StrataLookList extends LitElement {
   }
 }
 
-const number_of = (event: Event): number => Number((event.target as HTMLInputElement).value);
+const numberOf = (event: Event): number => Number((event.target as HTMLInputElement).value);

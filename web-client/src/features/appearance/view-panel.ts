@@ -3,14 +3,14 @@
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { customElement } from "lit/decorators.js";
-import { format_length, metres_per } from "../../domain/measure";
+import { formatLength, metresPer } from "../../domain/measure";
 import type { LightMode, Point3 } from "../../core/protocol.gen";
-import { kAxes, with_box_side, world_position, type SectionMode } from "../../math/section";
-import { FoldingPanel, folding_styles } from "../../session/folding-panel";
+import { kAxes, withBoxSide, worldPosition, type SectionMode } from "../../math/section";
+import { FoldingPanel, foldingStyles } from "../../session/folding-panel";
 import { icon } from "../../ui/icons";
 import "../../ui/light-pad";
 import "./look-list";
-import { radio_group } from "../../ui/radio-group";
+import { radioGroup } from "../../ui/radio-group";
 import { texts } from "../../texts";
 import type { TourRequest } from "../../session/requests";
 import type { ViewRequest } from "../../session/requests";
@@ -28,7 +28,7 @@ export class StrataViewPanel extends FoldingPanel {
   }
 
   static override styles = [
-    folding_styles,
+    foldingStyles,
     css`
       h2 .dot {
         width: 0.5rem;
@@ -76,16 +76,16 @@ export class StrataViewPanel extends FoldingPanel {
     `,
   ];
 
-  protected override beside_heading(): unknown {
+  protected override besideHeading(): unknown {
     const { changed } = texts.view;
-    return this.session.appearance.is_default || this.is_open
+    return this.session.appearance.isDefault || this.isOpen
       ? nothing
       : html`<span class="dot" role="img" aria-label=${changed} title=${changed}></span>`;
   }
 
   protected override tools(): unknown {
     const { appearance } = this.session;
-    return this.is_open && !appearance.is_default
+    return this.isOpen && !appearance.isDefault
       ? html`<button class="link" @click=${() => appearance.reset()}>${texts.view.reset}</button>`
       : nothing;
   }
@@ -93,7 +93,7 @@ export class StrataViewPanel extends FoldingPanel {
   protected content(): TemplateResult[] {
     return [
       this.views(),
-      ...(this.session.can_curate ? [this.tours()] : []),
+      ...(this.session.canCurate ? [this.tours()] : []),
       this.looks(),
       this.light(),
       this.section(),
@@ -130,7 +130,7 @@ export class StrataViewPanel extends FoldingPanel {
     const words = texts.view;
     return html`<div class="part">
       <h3 id="light">${words.light}</h3>
-      ${radio_group({
+      ${radioGroup({
         label: { id: "light" },
         class: "segments",
         choices: kLights.map((mode) => ({
@@ -139,13 +139,13 @@ export class StrataViewPanel extends FoldingPanel {
           title: words.light_hints[mode],
         })),
         chosen: appearance.light.mode,
-        choose: (mode) => appearance.set_light({ mode }),
+        choose: (mode) => appearance.setLight({ mode }),
       })}
       ${
         appearance.light.mode === "raking"
           ? html`<strata-light-pad
             .direction=${appearance.light.direction}
-            @direction=${(event: CustomEvent<Point3>) => appearance.set_light({ direction: event.detail })}
+            @direction=${(event: CustomEvent<Point3>) => appearance.setLight({ direction: event.detail })}
           ></strata-light-pad>`
           : nothing
       }
@@ -158,7 +158,7 @@ export class StrataViewPanel extends FoldingPanel {
     const words = texts.view;
     return html`<div class="part">
       <h3 id="section">${words.section}</h3>
-      ${radio_group({
+      ${radioGroup({
         label: { id: "section" },
         class: "segments",
         choices: kSections.map((value) => ({
@@ -167,9 +167,9 @@ export class StrataViewPanel extends FoldingPanel {
           title: words.section_hints[value],
         })),
         chosen: mode,
-        choose: (value) => appearance.set_section({ mode: value }),
+        choose: (value) => appearance.setSection({ mode: value }),
       })}
-      ${this.section_of(mode)}
+      ${this.sectionOf(mode)}
     </div>`;
   }
 
@@ -184,7 +184,7 @@ export class StrataViewPanel extends FoldingPanel {
     </div>`;
   }
 
-  private section_of(mode: SectionMode): TemplateResult | typeof nothing {
+  private sectionOf(mode: SectionMode): TemplateResult | typeof nothing {
     const { appearance } = this.session;
     const words = texts.view;
     if (mode === "off") return nothing;
@@ -192,7 +192,7 @@ export class StrataViewPanel extends FoldingPanel {
     if (mode !== "planes") return this.cut(kAxes.indexOf(mode));
     return html`<div class="row">
       <span class="hint" role="status">${words.section_of_view(appearance.section.planes.length)}</span>
-      <button class="link" @click=${() => appearance.set_section({ mode: "off" })}>${words.section_remove}</button>
+      <button class="link" @click=${() => appearance.setSection({ mode: "off" })}>${words.section_remove}</button>
     </div>`;
   }
 
@@ -205,10 +205,10 @@ export class StrataViewPanel extends FoldingPanel {
       label: words.cut_position,
       axis,
       share: position,
-      choose: (share, moving) => appearance.set_section({ position: share }, moving),
+      choose: (share, moving) => appearance.setSection({ position: share }, moving),
     })}
       <div>
-        <button class="quiet" aria-pressed=${flipped} @click=${() => appearance.set_section({ flipped: !flipped })}>
+        <button class="quiet" aria-pressed=${flipped} @click=${() => appearance.setSection({ flipped: !flipped })}>
           ${icon("flip")}${words.flip}
         </button>
       </div>`;
@@ -228,7 +228,7 @@ export class StrataViewPanel extends FoldingPanel {
         axis,
         share: appearance.section.box[which][axis]!,
         choose: (share, moving) =>
-          appearance.set_section(with_box_side(appearance.section, which, axis, share), moving),
+          appearance.setSection(withBoxSide(appearance.section, which, axis, share), moving),
       });
     return html`<div class="box">${[0, 1, 2].map((axis) => [side(axis, "min"), side(axis, "max")])}</div>`;
   }
@@ -241,8 +241,8 @@ export class StrataViewPanel extends FoldingPanel {
     choose(share: number, moving: boolean): void;
   }): TemplateResult {
     const { model } = this.session;
-    const at = model ? world_position(model.bounds, of.axis, of.share) * metres_per(model.unit) : 0;
-    const said = Math.abs(at) < 1e-9 ? "0" : `${at < 0 ? "−" : ""}${format_length(Math.abs(at))}`;
+    const at = model ? worldPosition(model.bounds, of.axis, of.share) * metresPer(model.unit) : 0;
+    const said = Math.abs(at) < 1e-9 ? "0" : `${at < 0 ? "−" : ""}${formatLength(Math.abs(at))}`;
     return html`<label class="slider">
       <span class="caption numeric">${of.name}</span>
       <input
@@ -252,11 +252,11 @@ export class StrataViewPanel extends FoldingPanel {
         .value=${String(Math.round(of.share * kSteps))}
         aria-label=${of.label}
         aria-valuetext=${said}
-        @input=${(event: Event) => of.choose(number_of(event) / kSteps, true)}
+        @input=${(event: Event) => of.choose(numberOf(event) / kSteps, true)}
       />
       <output class="numeric">${said}</output>
     </label>`;
   }
 }
 
-const number_of = (event: Event): number => Number((event.target as HTMLInputElement).value);
+const numberOf = (event: Event): number => Number((event.target as HTMLInputElement).value);

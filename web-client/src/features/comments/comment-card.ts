@@ -4,52 +4,52 @@
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { label_of } from "../../domain/cells";
+import { labelOf } from "../../domain/cells";
 import { ApiError } from "../../net/api";
 import { beside } from "../../ui/beside";
-import { comments_in, type Thread } from "../../domain/comments";
+import { commentsIn, type Thread } from "../../domain/comments";
 import { called } from "../../domain/people";
 import type { Comment } from "../../core/protocol.gen";
-import { comment_text, comment_text_styles } from "./comment-text";
+import { commentText, commentTextStyles } from "./comment-text";
 import type { DraftOf } from "./comments";
 import { ask } from "../../ui/dialog";
-import { follow_session } from "../../session/follow-session";
+import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
-import { has_keyboard } from "../../ui/keyboard";
+import { hasKeyboard } from "../../ui/keyboard";
 import type { ModelSession } from "../../session/model-session";
-import { NameCompletion, name_completion_styles } from "./name-completion";
-import { person_mark, person_mark_styles } from "../../ui/person-mark";
-import { hash_of_comment } from "../../ui/routes";
-import { shared_styles } from "../../ui/styles";
+import { NameCompletion, nameCompletionStyles } from "./name-completion";
+import { personMark, personMarkStyles } from "../../ui/person-mark";
+import { hashOfComment } from "../../ui/routes";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
-import { told_time } from "../../domain/times";
+import { toldTime } from "../../domain/times";
 
 const words = texts.comments;
-const kGap_px = 20;
+const kGapPx = 20;
 const kMostCharacters = 10_000; // that the server takes
 const kNarrow = "(max-width: 820px)";
 
 @customElement("strata-comment-card")
 export class StrataCommentCard extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  @state() private problem_: { of: DraftOf | "thread"; text: string } | null = null;
-  @state() private busy_ = false;
-  @state() private editing_: number | null = null;
-  @query("section") private section_!: HTMLElement | null;
-  private shown_: number | "new" | null = null;
-  private opener_: HTMLElement | null = null; // had the keyboard before
-  private readonly names_ = new NameCompletion(this, () => this.session.comments.load_people());
+  @state() private _problem: { of: DraftOf | "thread"; text: string } | null = null;
+  @state() private _busy = false;
+  @state() private _editing: number | null = null;
+  @query("section") private _section!: HTMLElement | null;
+  private _shown: number | "new" | null = null;
+  private _opener: HTMLElement | null = null; // had the keyboard before
+  private readonly _names = new NameCompletion(this, () => this.session.comments.loadPeople());
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
-    person_mark_styles,
-    comment_text_styles,
-    name_completion_styles,
+    sharedStyles,
+    personMarkStyles,
+    commentTextStyles,
+    nameCompletionStyles,
     css`
       section {
         position: absolute;
@@ -200,24 +200,24 @@ export class StrataCommentCard extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    this.opener_ = has_keyboard();
+    this._opener = hasKeyboard();
   }
 
   /** Whoever came by the keyboard goes on from where they came. */
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    if (has_keyboard() === null && this.opener_?.isConnected)
-      this.opener_.focus({ preventScroll: true });
+    if (hasKeyboard() === null && this._opener?.isConnected)
+      this._opener.focus({ preventScroll: true });
   }
 
   override willUpdate(changed: PropertyValues<this>): void {
     super.willUpdate(changed);
     const { card } = this.session.comments;
-    if (card === this.shown_) return;
-    const now = has_keyboard();
-    if (this.shown_ !== null && now && !this.contains_deep(now)) this.opener_ = now;
-    this.problem_ = null;
-    this.editing_ = null;
+    if (card === this._shown) return;
+    const now = hasKeyboard();
+    if (this._shown !== null && now && !this.containsDeep(now)) this._opener = now;
+    this._problem = null;
+    this._editing = null;
   }
 
   override render(): TemplateResult {
@@ -230,19 +230,19 @@ export class StrataCommentCard extends LitElement {
   override updated(): void {
     const { comments } = this.session;
     const { card } = comments;
-    this.put_beside();
+    this.putBeside();
     const thread = typeof card === "number" ? comments.find(card) : null;
-    if (thread && document.visibilityState === "visible") comments.mark_read(thread);
-    const fresh = card !== this.shown_;
-    this.shown_ = card;
+    if (thread && document.visibilityState === "visible") comments.markRead(thread);
+    const fresh = card !== this._shown;
+    this._shown = card;
     if (!fresh || card === null) return;
-    const target = card === "new" ? this.renderRoot.querySelector("textarea") : this.section_;
+    const target = card === "new" ? this.renderRoot.querySelector("textarea") : this._section;
     target?.focus({ preventScroll: true });
   }
 
   /** Only here is it known how large the card is. */
-  private put_beside(): void {
-    const { section_: section, session } = this;
+  private putBeside(): void {
+    const { _section: section, session } = this;
     if (!section || matchMedia(kNarrow).matches) return;
     const { comments, view } = session;
     const place =
@@ -254,15 +254,15 @@ export class StrataCommentCard extends LitElement {
     const at = place ? view.camera.project(place) : null;
     const frame = { width: this.clientWidth, height: this.clientHeight };
     const [x, y] = at ? [at.x / view.scale, at.y / view.scale] : [-1, -1];
-    const in_view = x >= 0 && y >= 0 && x <= frame.width && y <= frame.height;
+    const inView = x >= 0 && y >= 0 && x <= frame.width && y <= frame.height;
     const size = { width: section.offsetWidth, height: section.offsetHeight };
     const margin = 14;
-    const found = in_view
+    const found = inView
       ? beside(
           [x - margin, y - margin],
           size,
           { width: frame.width - 2 * margin, height: frame.height - 2 * margin },
-          kGap_px + margin,
+          kGapPx + margin,
         )
       : null;
     section.style.left = `${found ? found.left + margin : frame.width - size.width - margin}px`;
@@ -276,15 +276,15 @@ export class StrataCommentCard extends LitElement {
     const { comments } = this.session;
     const draft = comments.draft("new");
     const subjects = draft?.subjects ?? [];
-    return html`<section role="dialog" aria-label=${words.new_title} tabindex="-1" @keydown=${this.on_key}>
+    return html`<section role="dialog" aria-label=${words.new_title} tabindex="-1" @keydown=${this.onKey}>
       <div class="row head">
         <h2 class="grow">${words.new_title}</h2>
-        ${this.close_button()}
+        ${this.closeButton()}
       </div>
       <form
         @submit=${(event: Event) => {
           event.preventDefault();
-          void this.send("new", () => comments.send_new());
+          void this.send("new", () => comments.sendNew());
         }}
       >
         ${this.field("new", words.text, words.text_hint)}
@@ -296,7 +296,7 @@ export class StrataCommentCard extends LitElement {
               <select
                 @change=${(event: Event) => {
                   const { value } = event.target as HTMLSelectElement;
-                  comments.choose_subject(value === "" ? null : Number(value));
+                  comments.chooseSubject(value === "" ? null : Number(value));
                 }}
               >
                 <option value="" ?selected=${draft?.subject === undefined}>${words.about_nothing}</option>
@@ -310,13 +310,13 @@ export class StrataCommentCard extends LitElement {
             type="button"
             class="quiet"
             @click=${() => {
-              comments.set_draft("new", null);
+              comments.setDraft("new", null);
               comments.close();
             }}
           >
             ${words.give_up}
           </button>
-          <button class="primary" ?disabled=${this.busy_ || !draft?.text.trim()}>${words.send}</button>
+          <button class="primary" ?disabled=${this._busy || !draft?.text.trim()}>${words.send}</button>
         </div>
       </form>
     </section>`;
@@ -331,45 +331,45 @@ export class StrataCommentCard extends LitElement {
     const { first } = thread;
     const resolved = first.state === "resolved";
     const reply: DraftOf = `reply ${first.id}`;
-    return html`<section role="dialog" aria-label=${words.thread(called(first))} tabindex="-1" @keydown=${this.on_key}>
+    return html`<section role="dialog" aria-label=${words.thread(called(first))} tabindex="-1" @keydown=${this.onKey}>
       <div class="row head">
         <h2 class="grow">${words.heading}</h2>
         ${
-          session.can_paint
-            ? html`<button class="quiet" ?disabled=${this.busy_} @click=${() => void this.turn(first, resolved ? "open" : "resolved")}>
+          session.canPaint
+            ? html`<button class="quiet" ?disabled=${this._busy} @click=${() => void this.turn(first, resolved ? "open" : "resolved")}>
               ${icon(resolved ? "undo" : "check")}${resolved ? words.reopen : words.resolve}
             </button>`
             : nothing
         }
-        <button class="icon quiet" aria-label=${words.fly} title=${words.fly} @click=${() => comments.fly_to(thread)}>${icon("fit")}</button>
-        ${this.close_button()}
+        <button class="icon quiet" aria-label=${words.fly} title=${words.fly} @click=${() => comments.flyTo(thread)}>${icon("fit")}</button>
+        ${this.closeButton()}
       </div>
       <div class="list">
         ${
           first.resolved
-            ? html`<div class="settled">${icon("check")}<span>${words.resolved_by(called(first.resolved), told_time(first.resolved.time))}</span></div>`
+            ? html`<div class="settled">${icon("check")}<span>${words.resolved_by(called(first.resolved), toldTime(first.resolved.time))}</span></div>`
             : nothing
         }
         ${this.about(first)}
         ${repeat(
-          comments_in(thread),
+          commentsIn(thread),
           ({ id }) => id,
           (comment) => this.comment(comment),
         )}
         ${this.problem("thread")}
       </div>
       ${
-        session.can_paint
+        session.canPaint
           ? html`<form
             class="foot"
             @submit=${(event: Event) => {
               event.preventDefault();
-              void this.send(reply, () => comments.send_reply(first.id));
+              void this.send(reply, () => comments.sendReply(first.id));
             }}
           >
             ${this.field(reply, words.reply_text, words.reply_hint)} ${this.problem(reply)}
             <div class="row" ?hidden=${!comments.draft(reply)}>
-              <button class="primary" ?disabled=${this.busy_ || !comments.draft(reply)?.text.trim()}>${words.send_reply}</button>
+              <button class="primary" ?disabled=${this._busy || !comments.draft(reply)?.text.trim()}>${words.send_reply}</button>
             </div>
           </form>`
           : html`<div></div>`
@@ -377,40 +377,40 @@ export class StrataCommentCard extends LitElement {
     </section>`;
   }
 
-  private about({ layer: layer_id, table, record }: Comment): TemplateResult | typeof nothing {
+  private about({ layer: layerId, table, record }: Comment): TemplateResult | typeof nothing {
     const { session } = this;
-    const layer = session.layers.find(layer_id ?? null);
+    const layer = session.layers.find(layerId ?? null);
     if (table === undefined || record === undefined)
-      return layer ? html`<div class="about">${words.about_is(label_of(layer))}</div>` : nothing;
+      return layer ? html`<div class="about">${words.about_is(labelOf(layer))}</div>` : nothing;
     const called = session.tables.label(table, record) ?? texts.tables.record(record);
     if (!layer) return html`<div class="about">${words.about_is(called)}</div>`;
-    const what = words.about_is(words.record_of(called, label_of(layer)));
-    return html`<div class="about"><button class="link" @click=${() => session.tables.show_row(layer, record)}>${what}</button></div>`;
+    const what = words.about_is(words.record_of(called, labelOf(layer)));
+    return html`<div class="about"><button class="link" @click=${() => session.tables.showRow(layer, record)}>${what}</button></div>`;
   }
 
   private comment(comment: Comment): TemplateResult {
     const { session } = this;
     const { comments } = session;
     const { id, user, time, edited, text, deleted } = comment;
-    const is_own = user === comments.me && session.can_paint;
-    const link = hash_of_comment(id);
+    const isOwn = user === comments.me && session.canPaint;
+    const link = hashOfComment(id);
     const edit: DraftOf = `edit ${id}`;
-    const is_written = this.editing_ === id || comments.draft(edit) !== null;
+    const isWritten = this._editing === id || comments.draft(edit) !== null;
     const acts = html`<div class="row acts">
-      ${is_own ? html`<button class="link" @click=${() => void this.begin_edit(comment)}>${words.edit}</button>` : nothing}
-      ${is_own || session.can_curate ? html`<button class="link" ?disabled=${this.busy_} @click=${() => void this.delete_comment(comment)}>${words.delete}</button>` : nothing}
+      ${isOwn ? html`<button class="link" @click=${() => void this.beginEdit(comment)}>${words.edit}</button>` : nothing}
+      ${isOwn || session.canCurate ? html`<button class="link" ?disabled=${this._busy} @click=${() => void this.deleteComment(comment)}>${words.delete}</button>` : nothing}
     </div>`;
     return html`<article data-comment=${id}>
-      ${person_mark(comment)}
+      ${personMark(comment)}
       <div class="by">
         <b>${called(comment)}</b>
-        <a class="hint" href=${link} title=${words.link}>${told_time(time)}</a>
-        ${edited ? html`<span class="hint" title=${told_time(edited)}>${words.edited(told_time(edited))}</span>` : nothing}
+        <a class="hint" href=${link} title=${words.link}>${toldTime(time)}</a>
+        ${edited ? html`<span class="hint" title=${toldTime(edited)}>${words.edited(toldTime(edited))}</span>` : nothing}
       </div>
       ${
         deleted
           ? html`<p class="words gone">${words.deleted}</p>`
-          : is_own && is_written
+          : isOwn && isWritten
             ? html`<form
               @submit=${(event: Event) => {
                 event.preventDefault();
@@ -419,11 +419,11 @@ export class StrataCommentCard extends LitElement {
             >
               ${this.field(edit, words.text, "", text)} ${this.problem(edit)}
               <div class="row">
-                <button type="button" class="quiet" @click=${() => this.end_edit(comment)}>${texts.cancel}</button>
-                <button class="primary" ?disabled=${this.busy_ || !(comments.draft(edit)?.text ?? text).trim()}>${texts.save}</button>
+                <button type="button" class="quiet" @click=${() => this.endEdit(comment)}>${texts.cancel}</button>
+                <button class="primary" ?disabled=${this._busy || !(comments.draft(edit)?.text ?? text).trim()}>${texts.save}</button>
               </div>
             </form>`
-            : html`${comment_text(text, comments.people)} ${is_own || session.can_curate ? acts : nothing}`
+            : html`${commentText(text, comments.people)} ${isOwn || session.canCurate ? acts : nothing}`
       }
     </article>`;
   }
@@ -433,8 +433,8 @@ export class StrataCommentCard extends LitElement {
 
   private field(of: DraftOf, label: string, hint: string, text = ""): TemplateResult {
     const { comments } = this.session;
-    const offers = this.names_.offers_in(of);
-    const look = (event: Event): void => void this.names_.look(event.target as HTMLTextAreaElement);
+    const offers = this._names.offersIn(of);
+    const look = (event: Event): void => void this._names.look(event.target as HTMLTextAreaElement);
     return html`<textarea
         name=${of}
         aria-label=${label}
@@ -445,34 +445,34 @@ export class StrataCommentCard extends LitElement {
         aria-autocomplete=${offers ? "list" : nothing}
         aria-expanded=${offers ? "true" : nothing}
         aria-controls=${offers ? "names" : nothing}
-        aria-activedescendant=${offers ? this.names_.active : nothing}
+        aria-activedescendant=${offers ? this._names.active : nothing}
         .value=${comments.draft(of)?.text ?? text}
         @input=${(event: Event) => {
-          comments.set_draft(of, { text: (event.target as HTMLTextAreaElement).value });
+          comments.setDraft(of, { text: (event.target as HTMLTextAreaElement).value });
           look(event);
         }}
         @click=${look}
-        @keydown=${(event: KeyboardEvent) => this.names_.on_key(event)}
+        @keydown=${(event: KeyboardEvent) => this._names.onKey(event)}
         @keyup=${({ key, target }: KeyboardEvent) => {
           if (/^(Arrow(Left|Right)|Home|End)$/.test(key))
-            void this.names_.look(target as HTMLTextAreaElement);
+            void this._names.look(target as HTMLTextAreaElement);
         }}
-        @blur=${() => this.names_.close()}
+        @blur=${() => this._names.close()}
       ></textarea>
-      ${offers ? this.names_.list() : nothing}`;
+      ${offers ? this._names.list() : nothing}`;
   }
 
   private problem(of: DraftOf | "thread"): TemplateResult | typeof nothing {
-    return this.problem_?.of === of
-      ? html`<p class="error" role="alert">${this.problem_.text}</p>`
+    return this._problem?.of === of
+      ? html`<p class="error" role="alert">${this._problem.text}</p>`
       : nothing;
   }
 
-  private close_button(): TemplateResult {
+  private closeButton(): TemplateResult {
     return html`<button class="icon quiet" aria-label=${words.close} title=${words.close} @click=${() => this.session.comments.close()}>${icon("close")}</button>`;
   }
 
-  private readonly on_key = (event: KeyboardEvent): void => {
+  private readonly onKey = (event: KeyboardEvent): void => {
     if (event.key === "Escape") {
       event.preventDefault();
       this.session.comments.close();
@@ -486,19 +486,19 @@ export class StrataCommentCard extends LitElement {
     }
   };
 
-  private async begin_edit({ id }: Comment): Promise<void> {
-    this.editing_ = id;
+  private async beginEdit({ id }: Comment): Promise<void> {
+    this._editing = id;
     await this.updateComplete;
     const field = this.renderRoot.querySelector<HTMLTextAreaElement>(`textarea[name="edit ${id}"]`);
     field?.focus();
     field?.setSelectionRange(field.value.length, field.value.length);
   }
 
-  private end_edit({ id }: Comment): void {
-    this.session.comments.set_draft(`edit ${id}`, null);
-    this.editing_ = null;
-    this.problem_ = null;
-    this.section_?.focus({ preventScroll: true });
+  private endEdit({ id }: Comment): void {
+    this.session.comments.setDraft(`edit ${id}`, null);
+    this._editing = null;
+    this._problem = null;
+    this._section?.focus({ preventScroll: true });
   }
 
   private async save(comment: Comment): Promise<void> {
@@ -509,7 +509,7 @@ export class StrataCommentCard extends LitElement {
       of,
       async () => {
         if (text !== comment.text) await comments.change(comment, { text });
-        this.end_edit(comment);
+        this.endEdit(comment);
       },
       text,
     );
@@ -520,9 +520,9 @@ export class StrataCommentCard extends LitElement {
     work: () => Promise<void>,
     text = this.session.comments.draft(of)?.text ?? "",
   ): Promise<void> {
-    if (text.trim() === "" || this.busy_) return;
+    if (text.trim() === "" || this._busy) return;
     if ([...text].length > kMostCharacters)
-      this.problem_ = { of, text: words.too_long(kMostCharacters) };
+      this._problem = { of, text: words.too_long(kMostCharacters) };
     else await this.attempt(of, work);
   }
 
@@ -530,7 +530,7 @@ export class StrataCommentCard extends LitElement {
     return this.attempt("thread", () => this.session.comments.change(first, { state }));
   }
 
-  private async delete_comment(comment: Comment): Promise<void> {
+  private async deleteComment(comment: Comment): Promise<void> {
     const question = {
       heading: words.delete_title,
       lead: words.delete_lead,
@@ -543,19 +543,19 @@ export class StrataCommentCard extends LitElement {
 
   /** What was written stays where it is, also when it was refused. */
   private async attempt(of: DraftOf | "thread", work: () => Promise<void>): Promise<void> {
-    this.busy_ = true;
-    this.problem_ = null;
+    this._busy = true;
+    this._problem = null;
     try {
       await work();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.problem_ = { of, text: error.message };
+      this._problem = { of, text: error.message };
     } finally {
-      this.busy_ = false;
+      this._busy = false;
     }
   }
 
-  private contains_deep(element: Node): boolean {
+  private containsDeep(element: Node): boolean {
     return element.getRootNode() === this.renderRoot;
   }
 }

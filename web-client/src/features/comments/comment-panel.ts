@@ -4,15 +4,15 @@ import { css, html, nothing, type TemplateResult } from "lit";
 import { customElement, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import type { Thread, ThreadState } from "../../domain/comments";
-import { format_count } from "../../core/locale";
+import { formatCount } from "../../core/locale";
 import { called } from "../../domain/people";
-import { FoldingPanel, folding_styles } from "../../session/folding-panel";
+import { FoldingPanel, foldingStyles } from "../../session/folding-panel";
 import { icon } from "../../ui/icons";
-import { panel_line_styles } from "../../ui/panel-styles";
-import { person_mark, person_mark_styles } from "../../ui/person-mark";
-import { radio_group } from "../../ui/radio-group";
+import { panelLineStyles } from "../../ui/panel-styles";
+import { personMark, personMarkStyles } from "../../ui/person-mark";
+import { radioGroup } from "../../ui/radio-group";
 import { texts } from "../../texts";
-import { told_time } from "../../domain/times";
+import { toldTime } from "../../domain/times";
 
 const words = texts.comments;
 const kStates: readonly ThreadState[] = ["open", "resolved", "all"];
@@ -21,16 +21,16 @@ const kAtOnce = 50;
 @customElement("strata-comment-panel")
 export class StrataCommentPanel extends FoldingPanel {
   protected readonly heading = words.title;
-  @state() private most_ = kAtOnce;
+  @state() private _most = kAtOnce;
 
   constructor() {
     super("comment");
   }
 
   static override styles = [
-    folding_styles,
-    panel_line_styles,
-    person_mark_styles,
+    foldingStyles,
+    panelLineStyles,
+    personMarkStyles,
     css`
       :host {
         position: relative; /* of what is hidden for eyes */
@@ -76,25 +76,25 @@ export class StrataCommentPanel extends FoldingPanel {
     `,
   ];
 
-  protected override beside_heading(): TemplateResult {
-    const { open_count, unread_count } = this.session.comments;
+  protected override besideHeading(): TemplateResult {
+    const { openCount, unreadCount } = this.session.comments;
     return html`${
-      open_count > 0
-        ? html`<span class="number numeric" aria-label=${words.open_count(open_count)} role="img">${format_count(open_count)}</span>`
+      openCount > 0
+        ? html`<span class="number numeric" aria-label=${words.open_count(openCount)} role="img">${formatCount(openCount)}</span>`
         : nothing
     }
     ${
-      unread_count > 0
-        ? html`<span class="dot" role="img" aria-label=${words.unread(unread_count)} title=${words.unread(unread_count)}></span>`
+      unreadCount > 0
+        ? html`<span class="dot" role="img" aria-label=${words.unread(unreadCount)} title=${words.unread(unreadCount)}></span>`
         : nothing
     }`;
   }
 
   protected override tools(): TemplateResult {
     const { comments } = this.session;
-    const label = comments.pins_shown ? words.hide_pins : words.show_pins;
-    return html`<button class="icon quiet" aria-label=${label} title=${label} @click=${() => (comments.pins_shown = !comments.pins_shown)}>
-      ${icon(comments.pins_shown ? "eye" : "eye_off")}
+    const label = comments.pinsShown ? words.hide_pins : words.show_pins;
+    return html`<button class="icon quiet" aria-label=${label} title=${label} @click=${() => (comments.pinsShown = !comments.pinsShown)}>
+      ${icon(comments.pinsShown ? "eye" : "eye_off")}
     </button>`;
   }
 
@@ -105,13 +105,13 @@ export class StrataCommentPanel extends FoldingPanel {
         <button @click=${() => void comments.load()}>${texts.try_again}</button>`;
     }
     const listed = comments.listed;
-    const shown = listed.slice(0, this.most_);
-    return html`${radio_group({
+    const shown = listed.slice(0, this._most);
+    return html`${radioGroup({
       label: words.state,
       class: "segments",
       choices: kStates.map((value) => ({ value, content: words.states[value] })),
       chosen: comments.state,
-      choose: (value) => comments.choose_state(value),
+      choose: (value) => comments.chooseState(value),
     })}
       <div class="row">
         <input
@@ -126,10 +126,10 @@ export class StrataCommentPanel extends FoldingPanel {
           ${comments.mine ? icon("check") : nothing}${words.mine}
         </button>
       </div>
-      ${comments.unread_count > 0 ? html`<div><button class="link" @click=${() => comments.mark_all_read()}>${words.mark_all_read}</button></div>` : nothing}
+      ${comments.unreadCount > 0 ? html`<div><button class="link" @click=${() => comments.markAllRead()}>${words.mark_all_read}</button></div>` : nothing}
       ${
         shown.length === 0
-          ? html`<p class="hint">${this.nothing_there()}</p>`
+          ? html`<p class="hint">${this.nothingThere()}</p>`
           : html`<ul>
             ${repeat(
               shown,
@@ -138,14 +138,14 @@ export class StrataCommentPanel extends FoldingPanel {
             )}
           </ul>`
       }
-      ${listed.length > shown.length ? html`<button @click=${() => (this.most_ += kAtOnce)}>${words.more(listed.length - shown.length)}</button>` : nothing}`;
+      ${listed.length > shown.length ? html`<button @click=${() => (this._most += kAtOnce)}>${words.more(listed.length - shown.length)}</button>` : nothing}`;
   }
 
-  private nothing_there(): string {
-    const { comments, can_paint } = this.session;
+  private nothingThere(): string {
+    const { comments, canPaint } = this.session;
     if (!comments.loaded) return texts.loading;
     if (comments.threads.length > 0) return words.none_found;
-    return can_paint ? words.none : words.none_viewer;
+    return canPaint ? words.none : words.none_viewer;
   }
 
   private row(thread: Thread): TemplateResult {
@@ -153,13 +153,13 @@ export class StrataCommentPanel extends FoldingPanel {
     const { first, replies } = thread;
     const newest = replies[replies.length - 1] ?? first;
     return html`<li>
-      <button class="quiet line" data-comment=${first.id} aria-current=${comments.card === first.id} @click=${() => comments.go_to(first.id)}>
-        ${person_mark(first)}
-        <span><b>${called(first)}</b> <span class="hint">${told_time(newest.time)}</span></span>
+      <button class="quiet line" data-comment=${first.id} aria-current=${comments.card === first.id} @click=${() => comments.goTo(first.id)}>
+        ${personMark(first)}
+        <span><b>${called(first)}</b> <span class="hint">${toldTime(newest.time)}</span></span>
         <span class="state">
-          ${replies.length > 0 ? html`<span class="hint numeric" role="img" aria-label=${words.replies(replies.length)} title=${words.replies(replies.length)}>${format_count(replies.length)}</span>` : nothing}
+          ${replies.length > 0 ? html`<span class="hint numeric" role="img" aria-label=${words.replies(replies.length)} title=${words.replies(replies.length)}>${formatCount(replies.length)}</span>` : nothing}
           ${first.state === "resolved" ? html`<span role="img" aria-label=${words.resolved} title=${words.resolved}>${icon("check")}</span>` : nothing}
-          ${comments.is_unread(thread) ? html`<span class="dot" role="img" aria-label=${words.unread_here} title=${words.unread_here}></span>` : nothing}
+          ${comments.isUnread(thread) ? html`<span class="dot" role="img" aria-label=${words.unread_here} title=${words.unread_here}></span>` : nothing}
         </span>
         <span class="said ${first.deleted ? "gone" : ""}">${first.deleted ? words.deleted_line : first.text}</span>
       </button>

@@ -8,10 +8,10 @@ import type { Thread } from "../../domain/comments";
 import { called, initials } from "../../domain/people";
 import type { Vec3 } from "../../math/vector";
 import { kPaintingTools } from "../../tools/tool";
-import { follow_session } from "../../session/follow-session";
+import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import type { ModelSession } from "../../session/model-session";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
 import { texts } from "../../texts";
 
@@ -32,11 +32,11 @@ export class StrataCommentPins extends LitElement {
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: block;
@@ -106,7 +106,7 @@ export class StrataCommentPins extends LitElement {
 
   override render(): TemplateResult {
     const { comments, tools, view } = this.session;
-    if (view.frames_drawn === 0) return html``;
+    if (view.framesDrawn === 0) return html``;
     const placed = comments.pins.flatMap((thread) => this.place(thread));
     // Nearer ones lie over those behind; the keyboard goes by their age.
     const order = new Map(
@@ -129,12 +129,12 @@ export class StrataCommentPins extends LitElement {
   /** Nowhere where it is not seen. */
   private place(thread: Thread): Placed[] {
     const at = this.at(thread.first.position);
-    return at && this.session.comments.is_seen(thread) ? [{ thread, ...at }] : [];
+    return at && this.session.comments.isSeen(thread) ? [{ thread, ...at }] : [];
   }
 
   private at(position: Vec3): { x: number; y: number; depth: number } | null {
     const { camera, scale } = this.session.view;
-    const at = camera.project_inside(position);
+    const at = camera.projectInside(position);
     return at && { x: at.x / scale, y: at.y / scale, depth: at.depth };
   }
 
@@ -142,7 +142,7 @@ export class StrataCommentPins extends LitElement {
     const { comments } = this.session;
     const { id, text, state, deleted, color = null } = thread.first;
     const name = called(thread.first);
-    const unread = comments.is_unread(thread);
+    const unread = comments.isUnread(thread);
     const resolved = state === "resolved";
     const about = deleted ? words.deleted_line : text.replace(/\s+/g, " ").slice(0, kMostSaid);
     const states = [resolved ? words.resolved : "", unread ? words.unread_here : ""]
@@ -154,7 +154,7 @@ export class StrataCommentPins extends LitElement {
       aria-label=${words.pin(name, about, states)}
       title="${name}: ${about}"
       aria-expanded=${comments.card === id}
-      ${styled({ ...tip_at(x, y), "z-index": comments.card === id ? kMostPins : order, background: resolved ? null : color })}
+      ${styled({ ...tipAt(x, y), "z-index": comments.card === id ? kMostPins : order, background: resolved ? null : color })}
       @click=${() => comments.show(id)}
     >
       ${resolved ? icon("check") : initials(thread.first)}${unread ? html`<i></i>` : nothing}
@@ -172,8 +172,8 @@ export class StrataCommentPins extends LitElement {
       aria-label=${words.pin_draft}
       title=${words.pin_draft}
       aria-expanded=${comments.card === "new"}
-      ${styled({ ...tip_at(at.x, at.y), "z-index": kMostPins })}
-      @click=${() => comments.go_on()}
+      ${styled({ ...tipAt(at.x, at.y), "z-index": kMostPins })}
+      @click=${() => comments.goOn()}
     >
       ${icon("edit")}
     </button>`;
@@ -181,6 +181,6 @@ export class StrataCommentPins extends LitElement {
 }
 
 /** The lower left corner is the tip. */
-const tip_at = (x: number, y: number): Record<string, string> => ({
+const tipAt = (x: number, y: number): Record<string, string> => ({
   transform: `translate(${x.toFixed(1)}px, ${(y - 30).toFixed(1)}px)`,
 });

@@ -1,9 +1,9 @@
 // What a comment says: its lines as they were written, addresses as links, @names of people marked.
 
 import { css, html, type TemplateResult } from "lit";
-import { text_parts } from "../../domain/comments";
+import { textParts } from "../../domain/comments";
 
-export const comment_text_styles = css`
+export const commentTextStyles = css`
   .words {
     margin: 0;
     white-space: pre-wrap;
@@ -21,8 +21,8 @@ export const comment_text_styles = css`
   }
 `;
 
-export function comment_text(text: string, people: ReadonlySet<string>): TemplateResult {
-  const parts = text_parts(text, people).map((part) => {
+export function commentText(text: string, people: ReadonlySet<string>): TemplateResult {
+  const parts = textParts(text, people).map((part) => {
     if (part.kind === "link")
       return html`<a href=${part.href} target="_blank" rel="noopener noreferrer nofollow">${part.text}</a>`;
     return part.kind === "mention" ? html`<span class="mention">${part.text}</span>` : part.text;

@@ -10,7 +10,7 @@ export class CommentTool extends DragTool implements Tool {
 
   constructor(
     navigator: Navigator,
-    private readonly middle_: () => PointerSample,
+    private readonly _middle: () => PointerSample,
   ) {
     super(navigator);
   }
@@ -18,11 +18,11 @@ export class CommentTool extends DragTool implements Tool {
   /** Without a pointer, in the middle of what is seen. */
   key(key: string): boolean {
     if (key !== "Enter") return false;
-    this.navigator_.tap(this.middle_());
+    this._navigator.tap(this._middle());
     return true;
   }
 
   protected dragged(dx: number, dy: number): void {
-    this.navigator_.orbit(dx, dy);
+    this._navigator.orbit(dx, dy);
   }
 }

@@ -1,17 +1,17 @@
 // The comments of the open model: what is known of them, which thread is open, what is written and
 // not sent yet, and what was read.
 
-import { label_of } from "../../domain/cells";
-import { ApiError, new_id, type Api } from "../../net/api";
+import { labelOf } from "../../domain/cells";
+import { ApiError, newId, type Api } from "../../net/api";
 import type { CameraMessage } from "../../math/camera";
 import type { Point } from "../../net/connection";
 import type { PointerSample } from "../../ui/input";
 import {
-  find_threads,
-  is_unread,
+  findThreads,
+  isUnread,
   mentions,
-  threads_of,
-  with_thread_read,
+  threadsOf,
+  withThreadRead,
   type ReadMarks,
   type Thread,
   type ThreadState,
@@ -83,80 +83,80 @@ export class Comments {
   said = "";
   readonly sight: PinSight;
 
-  private me_ = "";
-  private readonly known_ = new KnownItems<Comment>();
-  private threads_: Thread[] = [];
-  private people_: readonly ProjectPerson[] = [];
-  private asking_: Promise<ProjectPerson[]> | null = null; // for them
-  private drafts_: Kept<Marks> | null = null;
-  private reads_: Kept<ReadMarks> | null = null;
-  private readonly shown_ = new Kept(() => globalThis.localStorage, "strata.comment_pins", true);
+  private _me = "";
+  private readonly _known = new KnownItems<Comment>();
+  private _threads: Thread[] = [];
+  private _people: readonly ProjectPerson[] = [];
+  private _asking: Promise<ProjectPerson[]> | null = null; // for them
+  private _drafts: Kept<Marks> | null = null;
+  private _reads: Kept<ReadMarks> | null = null;
+  private readonly _shown = new Kept(() => globalThis.localStorage, "strata.comment_pins", true);
 
   constructor(
-    private readonly api_: Api,
-    private readonly model_id_: string,
-    private readonly host_: CommentsHost,
+    private readonly _api: Api,
+    private readonly _modelId: string,
+    private readonly _host: CommentsHost,
   ) {
     this.sight = new PinSight({
-      camera: () => host_.view.camera,
-      places: () => this.pins.map(place_of),
-      look_at: (camera, pixels) => this.look_at(camera, pixels),
-      changed: () => host_.changed(),
+      camera: () => _host.view.camera,
+      places: () => this.pins.map(placeOf),
+      lookAt: (camera, pixels) => this.lookAt(camera, pixels),
+      changed: () => _host.changed(),
     });
   }
 
   get me(): string {
-    return this.me_;
+    return this._me;
   }
 
   // ── what there is
   // ─────────────────────────────────────────────────────────────────────────────────────────────────
 
   get loaded(): boolean {
-    return this.known_.loaded;
+    return this._known.loaded;
   }
   /** They could not be read. */
   get failed(): boolean {
-    return this.known_.failed;
+    return this._known.failed;
   }
   get threads(): readonly Thread[] {
-    return this.threads_;
+    return this._threads;
   }
   find(id: number): Thread | null {
-    return this.threads_.find(({ first }) => first.id === id) ?? null;
+    return this._threads.find(({ first }) => first.id === id) ?? null;
   }
   get listed(): Thread[] {
-    return find_threads(this.threads_, {
+    return findThreads(this._threads, {
       state: this.state,
-      of: this.mine ? this.me_ : null,
+      of: this.mine ? this._me : null,
       words: this.words,
     });
   }
-  get open_count(): number {
-    return this.threads_.filter(({ first }) => first.state === "open").length;
+  get openCount(): number {
+    return this._threads.filter(({ first }) => first.state === "open").length;
   }
   /** Those of the chosen state, and the one that is looked at. */
   get pins(): Thread[] {
-    const shown = this.pins_shown
-      ? find_threads(this.threads_, { state: this.state, of: null, words: "" })
+    const shown = this.pinsShown
+      ? findThreads(this._threads, { state: this.state, of: null, words: "" })
       : [];
-    const looked_at = typeof this.card === "number" ? this.find(this.card) : null;
-    return looked_at && !shown.includes(looked_at) ? [...shown, looked_at] : shown;
+    const lookedAt = typeof this.card === "number" ? this.find(this.card) : null;
+    return lookedAt && !shown.includes(lookedAt) ? [...shown, lookedAt] : shown;
   }
-  get pins_shown(): boolean {
-    return this.shown_.value;
+  get pinsShown(): boolean {
+    return this._shown.value;
   }
-  set pins_shown(shown: boolean) {
-    this.shown_.value = shown;
-    this.look_again();
+  set pinsShown(shown: boolean) {
+    this._shown.value = shown;
+    this.lookAgain();
   }
 
   /** Those that are here, or wrote something, or were asked for. */
   get people(): ReadonlySet<string> {
-    const names = new Set(this.host_.here().map(({ name }) => name));
-    names.add(this.me_);
-    for (const { user } of this.known_.all) names.add(user);
-    for (const { user } of this.people_) names.add(user);
+    const names = new Set(this._host.here().map(({ name }) => name));
+    names.add(this._me);
+    for (const { user } of this._known.all) names.add(user);
+    for (const { user } of this._people) names.add(user);
     return names;
   }
 
@@ -164,33 +164,33 @@ export class Comments {
    * Whom one may name: the people of the project but oneself. They are asked for once a page, and
    * again where that failed.
    */
-  async load_people(): Promise<readonly ProjectPerson[]> {
-    const model = this.host_.model();
-    if (this.people_.length === 0 && model) {
-      this.asking_ ??= this.api_.project_people(model.project);
+  async loadPeople(): Promise<readonly ProjectPerson[]> {
+    const model = this._host.model();
+    if (this._people.length === 0 && model) {
+      this._asking ??= this._api.projectPeople(model.project);
       try {
-        this.people_ = (await this.asking_).filter(({ user }) => user !== this.me_);
-        this.host_.changed();
+        this._people = (await this._asking).filter(({ user }) => user !== this._me);
+        this._host.changed();
       } catch (error) {
         if (!(error instanceof ApiError)) throw error; // one still writes what one likes
       } finally {
-        this.asking_ = null;
+        this._asking = null;
       }
     }
-    return this.people_;
+    return this._people;
   }
 
   /** The server said who this is; what happened before, nobody told this page. */
   welcome(user: string): void {
-    if (user !== this.me_) {
-      const name = `${user}.${this.model_id_}`;
-      this.me_ = user;
-      this.drafts_ = new Kept<Marks>(
+    if (user !== this._me) {
+      const name = `${user}.${this._modelId}`;
+      this._me = user;
+      this._drafts = new Kept<Marks>(
         () => globalThis.sessionStorage,
         `strata.comment_drafts.${name}`,
         {},
       );
-      this.reads_ = new Kept<ReadMarks>(
+      this._reads = new Kept<ReadMarks>(
         () => globalThis.localStorage,
         `strata.comments_read.${name}`,
         { upto: 0, threads: {} },
@@ -200,22 +200,22 @@ export class Comments {
   }
 
   async load(): Promise<void> {
-    if (await this.known_.load(() => this.api_.comments(this.model_id_))) this.sort();
+    if (await this._known.load(() => this._api.comments(this._modelId))) this.sort();
   }
 
-  on_event({ event, comment_id, comment, user }: CommentEvent): void {
+  onEvent({ event, comment_id: commentId, comment, user }: CommentEvent): void {
     if (event === "deleted" || !comment) {
-      this.known_.drop(comment_id);
+      this._known.drop(commentId);
       this.sort();
       return;
     }
-    const is_new = this.known_.find(comment.id) === null;
+    const isNew = this._known.find(comment.id) === null;
     this.put(comment);
-    if (event !== "created" || !is_new || user === this.me_) return;
+    if (event !== "created" || !isNew || user === this._me) return;
     this.said = words.said(called(comment), comment.text);
     // who reads the thread sees it there
-    if (!mentions(comment.text, this.me_) || this.card === comment.thread) return;
-    const act = (): void => this.go_to(comment.id);
+    if (!mentions(comment.text, this._me) || this.card === comment.thread) return;
+    const act = (): void => this.goTo(comment.id);
     notices.show("info", words.mentioned(called(comment)), comment.text.slice(0, 200), {
       label: words.show,
       act,
@@ -223,13 +223,13 @@ export class Comments {
   }
 
   private put(comment: Comment): void {
-    if (this.known_.put(comment)) this.sort();
+    if (this._known.put(comment)) this.sort();
   }
 
   private sort(): void {
-    this.threads_ = threads_of(this.known_.all);
+    this._threads = threadsOf(this._known.all);
     if (typeof this.card === "number" && this.loaded && !this.find(this.card)) this.card = null;
-    this.look_again();
+    this.lookAgain();
   }
 
   // ── what is looked at
@@ -237,113 +237,113 @@ export class Comments {
 
   show(thread: number): void {
     this.card = thread;
-    this.look_again();
+    this.lookAgain();
   }
   /** False: there was none. What was written is kept. */
   close(): boolean {
     if (this.card === null) return false;
-    if (this.card === "new" && !this.draft("new")?.text.trim()) this.set_draft("new", null);
+    if (this.card === "new" && !this.draft("new")?.text.trim()) this.setDraft("new", null);
     this.card = null;
-    this.look_again();
+    this.lookAgain();
     return true;
   }
-  choose_state(state: ThreadState): void {
+  chooseState(state: ThreadState): void {
     this.state = state;
-    this.look_again();
+    this.lookAgain();
   }
   list(what: { mine?: boolean; words?: string }): void {
     Object.assign(this, what);
-    this.host_.changed();
+    this._host.changed();
   }
 
-  fly_to({ first }: Thread): void {
-    const { min, max } = this.host_.view.camera.bounds;
+  flyTo({ first }: Thread): void {
+    const { min, max } = this._host.view.camera.bounds;
     const half = (kAround * Math.hypot(max[0] - min[0], max[1] - min[1], max[2] - min[2])) / 2;
     const [x, y, z] = first.position;
-    this.host_.view.fly_to(
+    this._host.view.flyTo(
       { min: [x - half, y - half, z - half], max: [x + half, y + half, z + half] },
       first.normal,
     );
   }
 
   /** Opens the thread of a comment and goes there. */
-  go_to(id: number): void {
-    const comment = this.known_.find(id);
+  goTo(id: number): void {
+    const comment = this._known.find(id);
     const thread = comment && this.find(comment.thread ?? comment.id);
     if (!thread) {
       notices.show("info", words.missing);
       return;
     }
     this.show(thread.first.id);
-    this.fly_to(thread);
+    this.flyTo(thread);
   }
 
-  is_seen(thread: Thread): boolean {
-    return this.sight.is_seen(place_of(thread));
+  isSeen(thread: Thread): boolean {
+    return this.sight.isSeen(placeOf(thread));
   }
 
   /** There are other pins, or they may be behind something else. */
-  look_again(): void {
-    this.host_.changed();
+  lookAgain(): void {
+    this._host.changed();
     this.sight.look().catch((error: unknown) => {
       // until the camera rests next, they count as seen where they face it
       if (!(error instanceof ApiError)) throw error;
     });
   }
 
-  private async look_at(camera: CameraMessage, pixels: Point[]): Promise<(Vec3 | null)[]> {
-    const { samples } = await this.api_.profile(this.model_id_, camera, pixels);
+  private async lookAt(camera: CameraMessage, pixels: Point[]): Promise<(Vec3 | null)[]> {
+    const { samples } = await this._api.profile(this._modelId, camera, pixels);
     return samples.map(({ point }) => (point.hit && point.position ? point.position : null));
   }
 
   // ── what was read
   // ─────────────────────────────────────────────────────────────────────────────────────────────────
 
-  is_unread(thread: Thread): boolean {
-    return this.reads_ !== null && is_unread(thread, this.reads_.value, this.me_);
+  isUnread(thread: Thread): boolean {
+    return this._reads !== null && isUnread(thread, this._reads.value, this._me);
   }
-  get unread_count(): number {
-    return this.threads_.filter((thread) => this.is_unread(thread)).length;
+  get unreadCount(): number {
+    return this._threads.filter((thread) => this.isUnread(thread)).length;
   }
-  mark_read(thread: Thread): void {
-    if (!this.reads_ || !this.is_unread(thread)) return;
-    this.reads_.value = with_thread_read(this.reads_.value, thread);
-    this.host_.changed();
+  markRead(thread: Thread): void {
+    if (!this._reads || !this.isUnread(thread)) return;
+    this._reads.value = withThreadRead(this._reads.value, thread);
+    this._host.changed();
   }
-  mark_all_read(): void {
-    if (!this.reads_) return;
-    this.reads_.value = { upto: Math.max(0, ...this.known_.all.map(({ id }) => id)), threads: {} };
-    this.host_.changed();
+  markAllRead(): void {
+    if (!this._reads) return;
+    this._reads.value = { upto: Math.max(0, ...this._known.all.map(({ id }) => id)), threads: {} };
+    this._host.changed();
   }
 
   // ── what is written
   // ───────────────────────────────────────────────────────────────────────────────────────────────
 
   draft(of: DraftOf): Draft | null {
-    return this.drafts_?.value[of] ?? null;
+    return this._drafts?.value[of] ?? null;
   }
   /** What is written there now; null or nothing: it is given up. */
-  set_draft(of: DraftOf, change: Partial<Omit<Draft, "key">> | null): void {
-    if (!this.drafts_) return;
-    const { [of]: before, ...others } = this.drafts_.value;
+  setDraft(of: DraftOf, change: Partial<Omit<Draft, "key">> | null): void {
+    if (!this._drafts) return;
+    const { [of]: before, ...others } = this._drafts.value;
     // Another text is another call: with the key of one that was sent it would be refused.
-    const draft = change && { text: "", ...before, ...change, key: new_id() };
-    const is_empty = !draft || (of !== "new" && draft.text === "");
-    this.drafts_.value = is_empty ? others : { ...others, [of]: draft };
-    this.host_.changed();
+    const draft = change && { text: "", ...before, ...change, key: newId() };
+    const isEmpty = !draft || (of !== "new" && draft.text === "");
+    this._drafts.value = isEmpty ? others : { ...others, [of]: draft };
+    this._host.changed();
   }
 
   /** What the new thread is about; null: the place itself. */
-  choose_subject(subject: number | null): void {
+  chooseSubject(subject: number | null): void {
     const { subject: _, ...draft } = this.draft("new") ?? { text: "" };
-    this.set_draft("new", null);
-    this.set_draft("new", subject === null ? draft : { ...draft, subject });
+    this.setDraft("new", null);
+    this.setDraft("new", subject === null ? draft : { ...draft, subject });
   }
 
   /** With the new thread that was written and not sent. */
-  go_on(): void {
+  goOn(): void {
     this.card = "new";
-    this.look_again();
+    this.lookAgain();
   }
 
   /**
@@ -352,45 +352,45 @@ export class Comments {
    */
   async begin({ x, y }: PointerSample): Promise<void> {
     try {
-      const found = await this.api_.pick(this.model_id_, this.host_.view.camera.message(), [x, y]);
+      const found = await this._api.pick(this._modelId, this._host.view.camera.message(), [x, y]);
       if (found.hit && found.position && found.normal)
-        this.begin_at(found.position, found.normal, this.subjects_at(found));
+        this.beginAt(found.position, found.normal, this.subjectsAt(found));
       else notices.show("info", words.missed);
     } catch (error) {
       notices.error(error);
     }
   }
 
-  private begin_at(position: Vec3, normal: Vec3, subjects: Subject[]): void {
+  private beginAt(position: Vec3, normal: Vec3, subjects: Subject[]): void {
     const { subject: _, ...draft } = this.draft("new") ?? { text: "" };
-    this.set_draft("new", null);
-    this.set_draft("new", { ...draft, position, normal, subjects });
+    this.setDraft("new", null);
+    this.setDraft("new", { ...draft, position, normal, subjects });
     this.card = "new";
-    this.host_.began();
-    this.look_again();
+    this._host.began();
+    this.lookAgain();
   }
 
   /** What is painted there, and what is painted on: a gap in it may be what a comment is about. */
-  private subjects_at({ values }: SurfacePoint): Subject[] {
-    const { layers, tables } = this.host_;
-    const subject_of = (layer: Layer): Subject[] => {
+  private subjectsAt({ values }: SurfacePoint): Subject[] {
+    const { layers, tables } = this._host;
+    const subjectOf = (layer: Layer): Subject[] => {
       const here = values?.[layer.slug];
-      const own: Subject = { layer: layer.id, label: label_of(layer) };
+      const own: Subject = { layer: layer.id, label: labelOf(layer) };
       if (!here?.valid || here.value === undefined) return layer === layers.selected ? [own] : [];
       if (layer.table === undefined || tables.lacks(layer.table, here.value)) return [own];
       const called = tables.label(layer.table, here.value) ?? texts.tables.record(here.value);
       return [
-        { layer: layer.id, record: here.value, label: words.record_of(called, label_of(layer)) },
+        { layer: layer.id, record: here.value, label: words.record_of(called, labelOf(layer)) },
         own,
       ];
     };
     return layers.all
       .filter((layer) => layers.visible(layer))
       .reverse()
-      .flatMap(subject_of);
+      .flatMap(subjectOf);
   }
 
-  async send_new(): Promise<void> {
+  async sendNew(): Promise<void> {
     const draft = this.draft("new");
     if (!draft?.position) return;
     const { text, position, key } = draft;
@@ -401,21 +401,21 @@ export class Comments {
           ...(subject.record === undefined ? {} : { record: subject.record }),
         }
       : {};
-    const made = await this.api_.create_comment(
-      this.model_id_,
+    const made = await this._api.createComment(
+      this._modelId,
       { text, position: position as [number, number, number], ...about },
       key,
     );
-    this.set_draft("new", null);
+    this.setDraft("new", null);
     this.put(made);
     if (this.card === "new") this.show(made.id);
   }
 
-  async send_reply(thread: number): Promise<void> {
+  async sendReply(thread: number): Promise<void> {
     const draft = this.draft(`reply ${thread}`);
     if (!draft) return;
-    const made = await this.api_.create_reply(thread, draft.text, draft.key);
-    this.set_draft(`reply ${thread}`, null);
+    const made = await this._api.createReply(thread, draft.text, draft.key);
+    this.setDraft(`reply ${thread}`, null);
     this.put(made);
   }
 
@@ -427,31 +427,31 @@ export class Comments {
     comment: Comment,
     change: { text?: string; state?: "open" | "resolved" },
   ): Promise<void> {
-    await this.newest_after(comment, async () =>
-      this.put(await this.api_.change_comment(comment.id, change, comment.version)),
+    await this.newestAfter(comment, async () =>
+      this.put(await this._api.changeComment(comment.id, change, comment.version)),
     );
-    if (change.text !== undefined) this.set_draft(`edit ${comment.id}`, null);
+    if (change.text !== undefined) this.setDraft(`edit ${comment.id}`, null);
   }
 
   async remove(comment: Comment): Promise<void> {
-    await this.newest_after(comment, () => this.api_.delete_comment(comment.id, comment.version));
-    this.set_draft(`edit ${comment.id}`, null);
+    await this.newestAfter(comment, () => this._api.deleteComment(comment.id, comment.version));
+    this.setDraft(`edit ${comment.id}`, null);
     if (comment.thread === undefined && this.find(comment.id)?.replies.length)
-      this.put(await this.api_.comment(comment.id));
-    else this.on_event({ op: "comment", event: "deleted", comment_id: comment.id });
+      this.put(await this._api.comment(comment.id));
+    else this.onEvent({ op: "comment", event: "deleted", comment_id: comment.id });
   }
 
-  private async newest_after({ id }: Comment, work: () => Promise<void>): Promise<void> {
+  private async newestAfter({ id }: Comment, work: () => Promise<void>): Promise<void> {
     try {
       await work();
     } catch (error) {
-      if (error instanceof ApiError && error.status === 412) this.put(await this.api_.comment(id));
+      if (error instanceof ApiError && error.status === 412) this.put(await this._api.comment(id));
       throw error;
     }
   }
 }
 
-const place_of = ({ first }: Thread): PinPlace => ({
+const placeOf = ({ first }: Thread): PinPlace => ({
   id: first.id,
   position: first.position,
   normal: first.normal,

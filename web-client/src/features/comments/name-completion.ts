@@ -2,12 +2,12 @@
 // while there are some, and its list follows it.
 
 import { css, html, nothing, type ReactiveControllerHost, type TemplateResult } from "lit";
-import { mention_begun, people_like } from "../../domain/mentions";
+import { mentionBegun, peopleLike } from "../../domain/mentions";
 import type { ProjectPerson } from "../../core/protocol.gen";
-import { person_mark } from "../../ui/person-mark";
+import { personMark } from "../../ui/person-mark";
 import { texts } from "../../texts";
 
-export const name_completion_styles = css`
+export const nameCompletionStyles = css`
   .names {
     display: grid;
     gap: 2px;
@@ -34,95 +34,95 @@ export const name_completion_styles = css`
 `;
 
 export class NameCompletion {
-  private field_: HTMLTextAreaElement | null = null; // that is written in, while names are offered
-  private at_ = 0; // of the @
-  private people_: readonly ProjectPerson[] = [];
-  private chosen_ = 0;
+  private _field: HTMLTextAreaElement | null = null; // that is written in, while names are offered
+  private _at = 0; // of the @
+  private _people: readonly ProjectPerson[] = [];
+  private _chosen = 0;
 
   constructor(
-    private readonly host_: ReactiveControllerHost,
+    private readonly _host: ReactiveControllerHost,
     /** Whom one may name; they may come later. */
-    private readonly all_: () => Promise<readonly ProjectPerson[]>,
+    private readonly _all: () => Promise<readonly ProjectPerson[]>,
   ) {}
 
   /** Of the field with that name. */
-  offers_in(name: string): boolean {
-    return this.field_?.name === name;
+  offersIn(name: string): boolean {
+    return this._field?.name === name;
   }
   /** The option that the keyboard is on. */
   get active(): string {
-    return `name-${this.chosen_}`;
+    return `name-${this._chosen}`;
   }
 
   /** Something was written in the field, or the caret moved. */
   async look(field: HTMLTextAreaElement): Promise<void> {
-    if (!mention_begun(field.value, field.selectionStart)) return this.close();
-    const all = await this.all_();
+    if (!mentionBegun(field.value, field.selectionStart)) return this.close();
+    const all = await this._all();
     // more may have been written meanwhile
-    const begun = mention_begun(field.value, field.selectionStart);
-    const people = begun && field.matches(":focus") ? people_like(all, begun.word) : [];
-    const is_whole =
+    const begun = mentionBegun(field.value, field.selectionStart);
+    const people = begun && field.matches(":focus") ? peopleLike(all, begun.word) : [];
+    const isWhole =
       people.length === 1 && people[0]!.user.toLowerCase() === begun?.word.toLowerCase();
-    if (!begun || people.length === 0 || is_whole) return this.close();
-    this.field_ = field;
-    this.at_ = begun.at;
-    this.people_ = people;
-    this.chosen_ = 0;
-    this.host_.requestUpdate();
+    if (!begun || people.length === 0 || isWhole) return this.close();
+    this._field = field;
+    this._at = begun.at;
+    this._people = people;
+    this._chosen = 0;
+    this._host.requestUpdate();
   }
 
   close(): void {
-    if (!this.field_) return;
-    this.field_ = null;
-    this.host_.requestUpdate();
+    if (!this._field) return;
+    this._field = null;
+    this._host.requestUpdate();
   }
 
   /**
    * Arrows choose, Enter and Tab take, Escape closes the list alone. True: the key was for the
    * list.
    */
-  on_key(event: KeyboardEvent): boolean {
-    if (!this.field_ || event.ctrlKey || event.metaKey || event.altKey || event.isComposing)
+  onKey(event: KeyboardEvent): boolean {
+    if (!this._field || event.ctrlKey || event.metaKey || event.altKey || event.isComposing)
       return false;
-    const count = this.people_.length;
+    const count = this._people.length;
     if (event.key === "ArrowDown" || event.key === "ArrowUp")
-      this.chosen_ = (this.chosen_ + (event.key === "ArrowDown" ? 1 : count - 1)) % count;
+      this._chosen = (this._chosen + (event.key === "ArrowDown" ? 1 : count - 1)) % count;
     else if (event.key === "Enter" || (event.key === "Tab" && !event.shiftKey))
-      this.take(this.chosen_);
+      this.take(this._chosen);
     else if (event.key === "Escape") this.close();
     else return false;
     event.preventDefault();
     event.stopPropagation();
-    this.host_.requestUpdate();
+    this._host.requestUpdate();
     return true;
   }
 
   list(): TemplateResult {
     return html`<ul id="names" class="names" role="listbox" aria-label=${texts.comments.names}>
-      ${this.people_.map(
+      ${this._people.map(
         (person, index) =>
           html`<li
             id="name-${index}"
             role="option"
-            aria-selected=${index === this.chosen_}
+            aria-selected=${index === this._chosen}
             @pointerdown=${(event: Event) => {
               event.preventDefault(); // the field keeps the keyboard
               this.take(index);
             }}
           >
-            ${person_mark(person)}<span><b>${person.user}</b>${person.full_name ? html` <span class="hint">${person.full_name}</span>` : nothing}</span>
+            ${personMark(person)}<span><b>${person.user}</b>${person.full_name ? html` <span class="hint">${person.full_name}</span>` : nothing}</span>
           </li>`,
       )}
     </ul>`;
   }
 
   private take(index: number): void {
-    const field = this.field_;
-    const person = this.people_[index];
+    const field = this._field;
+    const person = this._people[index];
     if (!field || !person) return;
     const caret = field.selectionStart;
     const space = /^\s/.test(field.value.slice(caret)) ? "" : " ";
-    field.setRangeText(`@${person.user}${space}`, this.at_, caret, "end");
+    field.setRangeText(`@${person.user}${space}`, this._at, caret, "end");
     this.close();
     field.dispatchEvent(new Event("input"));
   }

@@ -4,7 +4,7 @@
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
 import type { ModelSession } from "../../session/model-session";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.figures;
@@ -12,10 +12,10 @@ const words = texts.figures;
 @customElement("strata-face-hint")
 export class StrataFaceHint extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  @query("button") private first_!: HTMLButtonElement;
+  @query("button") private _first!: HTMLButtonElement;
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       section {
         position: fixed;
@@ -42,21 +42,21 @@ export class StrataFaceHint extends LitElement {
   ];
 
   override firstUpdated(): void {
-    this.first_.focus();
+    this._first.focus();
   }
 
   override render(): TemplateResult {
     const { face } = this.session;
-    return html`<section aria-label=${words.pick_title} @keydown=${this.on_key}>
+    return html`<section aria-label=${words.pick_title} @keydown=${this.onKey}>
       <p role="status">${words.pick_lead}</p>
-      <button @click=${() => face.take_in_middle()}>${words.pick_middle}</button>
-      <button @click=${() => face.give_up()}>${texts.cancel}</button>
+      <button @click=${() => face.takeInMiddle()}>${words.pick_middle}</button>
+      <button @click=${() => face.giveUp()}>${texts.cancel}</button>
     </section>`;
   }
 
-  private on_key(event: KeyboardEvent): void {
+  private onKey(event: KeyboardEvent): void {
     if (event.key !== "Escape") return;
     event.preventDefault();
-    this.session.face.give_up();
+    this.session.face.giveUp();
   }
 }

@@ -20,60 +20,60 @@ export interface FacePickHost {
 }
 
 export class FacePick {
-  private answer_: ((face: Face | null) => void) | null = null; // of who asks
+  private _answer: ((face: Face | null) => void) | null = null; // of who asks
 
   constructor(
-    private readonly api_: Api,
-    private readonly host_: FacePickHost,
+    private readonly _api: Api,
+    private readonly _host: FacePickHost,
   ) {}
 
   /** Null: none was taken. */
   ask(): Promise<Face | null> {
-    this.give_up();
+    this.giveUp();
     return new Promise((resolve) => {
-      this.answer_ = resolve;
-      this.host_.begin();
+      this._answer = resolve;
+      this._host.begin();
     });
   }
 
-  async take_at({ x, y }: PointerSample): Promise<void> {
+  async takeAt({ x, y }: PointerSample): Promise<void> {
     // which moves on until the answer comes
-    const camera = Object.assign(new OrbitCamera(), this.host_.view.camera);
-    const asker = this.answer_;
-    const model = this.host_.model();
+    const camera = Object.assign(new OrbitCamera(), this._host.view.camera);
+    const asker = this._answer;
+    const model = this._host.model();
     if (!asker || !model) return;
     try {
-      const { hit, position, normal } = await this.api_.pick(model.id, camera.message(), [x, y]);
-      if (asker !== this.answer_) return;
+      const { hit, position, normal } = await this._api.pick(model.id, camera.message(), [x, y]);
+      if (asker !== this._answer) return;
       const { back } = camera.axes();
       if (!hit || !position) {
         notices.show("info", texts.marks.missed);
         return;
       }
       const outwards = normal ?? back;
-      const to_eye = camera.perspective ? subtract(camera.eye(), position) : back;
+      const toEye = camera.perspective ? subtract(camera.eye(), position) : back;
       // of an open scan its inside
-      const seen = dot(outwards, to_eye) < 0 ? scale(outwards, -1) : outwards;
+      const seen = dot(outwards, toEye) < 0 ? scale(outwards, -1) : outwards;
       this.finish({ center: position, normal: [seen[0], seen[1], seen[2]] });
     } catch (error) {
       notices.error(error);
     }
   }
 
-  take_in_middle(): void {
-    const { width, height } = this.host_.view.camera;
-    void this.take_at({ x: width / 2, y: height / 2 });
+  takeInMiddle(): void {
+    const { width, height } = this._host.view.camera;
+    void this.takeAt({ x: width / 2, y: height / 2 });
   }
 
-  give_up(): void {
+  giveUp(): void {
     this.finish(null);
   }
 
   private finish(face: Face | null): void {
-    const answer = this.answer_;
+    const answer = this._answer;
     if (!answer) return;
-    this.answer_ = null;
-    this.host_.end();
+    this._answer = null;
+    this._host.end();
     answer(face);
   }
 }

@@ -5,30 +5,30 @@ import { DragTool, type Navigator } from "../../tools/navigate";
 import type { Tool } from "../../tools/tool";
 
 export interface FaceHost extends Navigator {
-  take_in_middle(): void;
-  give_up(): void;
+  takeInMiddle(): void;
+  giveUp(): void;
 }
 
 export class FaceTool extends DragTool implements Tool {
   readonly name = "face";
 
-  constructor(private readonly host_: FaceHost) {
-    super(host_);
+  constructor(private readonly _host: FaceHost) {
+    super(_host);
   }
 
   override deactivate(): void {
-    this.host_.give_up();
+    this._host.giveUp();
   }
 
   key(key: string): boolean {
     if (key === "Enter")
-      this.host_.take_in_middle(); // without a pointer
-    else if (key === "Escape") this.host_.give_up();
+      this._host.takeInMiddle(); // without a pointer
+    else if (key === "Escape") this._host.giveUp();
     else return false;
     return true;
   }
 
   protected dragged(dx: number, dy: number): void {
-    this.host_.orbit(dx, dy);
+    this._host.orbit(dx, dy);
   }
 }

@@ -6,11 +6,11 @@ import { html, LitElement, nothing, type PropertyValues, type TemplateResult } f
 import { customElement, property, state } from "lit/decorators.js";
 import { ApiError } from "../../net/api";
 import type { CameraMessage } from "../../math/camera";
-import { holds_files, label_column, label_of } from "../../domain/cells";
+import { holdsFiles, labelColumn, labelOf } from "../../domain/cells";
 import {
-  figure_choices,
-  figure_request,
-  is_dpi,
+  figureChoices,
+  figureRequest,
+  isDpi,
   kDirections,
   kDpiRange,
   kFormats,
@@ -18,30 +18,30 @@ import {
   kPapers,
   kResolutions,
   kScales,
-  read_scale,
-  scale_text,
+  readScale,
+  scaleText,
   type FigureChoices,
   type FigureFrom,
   type FigureWords,
 } from "../../domain/figures";
-import { read_number } from "../../core/locale";
-import { holds_marks } from "../../domain/marks";
+import { readNumber } from "../../core/locale";
+import { holdsMarks } from "../../domain/marks";
 import type { FigureLabels, FigureRequest, View } from "../../core/protocol.gen";
 import type { Column, Layer, ProblemBody } from "../../core/types";
 import "../../ui/dialog";
 import "./face-hint";
 import "./figure-preview";
-import { figure_styles } from "./figure-styles";
-import { follow_session } from "../../session/follow-session";
+import { figureStyles } from "./figure-styles";
+import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import { Kept } from "../../core/kept";
-import { has_keyboard } from "../../ui/keyboard";
-import { is_busy, type LayerJob } from "../../session/layer-jobs";
+import { hasKeyboard } from "../../ui/keyboard";
+import { isBusy, type LayerJob } from "../../session/layer-jobs";
 import type { ModelSession } from "../../session/model-session";
-import { number_input } from "../../ui/number-input";
-import { radio_group } from "../../ui/radio-group";
+import { numberInput } from "../../ui/number-input";
+import { radioGroup } from "../../ui/radio-group";
 import { styled } from "../../ui/styled";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.figures;
@@ -77,41 +77,41 @@ export class StrataFigureDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   /** Null: what this person sees. */
   @property({ attribute: false }) view: View | null = null;
-  @state() private choices_: FigureChoices = figure_choices(null);
-  @state() private scale_typed_: string | null = null; // null: one of the list
-  @state() private dpi_typed_: string | null = null;
-  @state() private problem_: { field: string; text: string } | null = null;
-  @state() private asking_ = false; // for a face: the dialog is aside
-  @state() private sending_ = false;
-  private readonly kept_ = new Kept<unknown>(() => localStorage, "strata.figure", null);
-  private camera_: CameraMessage | null = null; // that this person sees by
-  private opener_: HTMLElement | null = null;
+  @state() private _choices: FigureChoices = figureChoices(null);
+  @state() private _scaleTyped: string | null = null; // null: one of the list
+  @state() private _dpiTyped: string | null = null;
+  @state() private _problem: { field: string; text: string } | null = null;
+  @state() private _asking = false; // for a face: the dialog is aside
+  @state() private _sending = false;
+  private readonly _kept = new Kept<unknown>(() => localStorage, "strata.figure", null);
+  private _camera: CameraMessage | null = null; // that this person sees by
+  private _opener: HTMLElement | null = null;
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
-  static override styles = [shared_styles, figure_styles];
+  static override styles = [sharedStyles, figureStyles];
 
   override connectedCallback(): void {
     super.connectedCallback();
-    this.opener_ = has_keyboard();
-    const choices = figure_choices(this.kept_.value);
+    this._opener = hasKeyboard();
+    const choices = figureChoices(this._kept.value);
     const { face } = this.session.figures.draft;
-    this.choices_ = choices.from === "face" && !face ? { ...choices, from: "camera" } : choices;
+    this._choices = choices.from === "face" && !face ? { ...choices, from: "camera" } : choices;
     // the view is what was asked for
-    if (this.view) this.choices_ = { ...this.choices_, from: "camera" };
+    if (this.view) this._choices = { ...this._choices, from: "camera" };
     if (choices.scale !== null && !kScales.includes(choices.scale))
-      this.scale_typed_ = scale_text(choices.scale);
-    if (!kResolutions.includes(choices.dpi)) this.dpi_typed_ = String(choices.dpi);
-    this.see_camera();
+      this._scaleTyped = scaleText(choices.scale);
+    if (!kResolutions.includes(choices.dpi)) this._dpiTyped = String(choices.dpi);
+    this.seeCamera();
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     this.session.figures.awaited = null; // its file is offered by a notice
-    this.session.face.give_up();
+    this.session.face.giveUp();
   }
 
   override willUpdate(_: PropertyValues): void {
@@ -121,12 +121,12 @@ export class StrataFigureDialog extends LitElement {
     this.session.figures.awaited = null;
     this.session.jobs.dismiss(key);
     this.refuse(problem);
-    void this.go_to_problem();
+    void this.goToProblem();
   }
 
   /** While the dialog is open the camera may follow somebody; the sheet does not. */
-  private see_camera(): void {
-    this.camera_ = this.session.views.content().camera;
+  private seeCamera(): void {
+    this._camera = this.session.views.content().camera;
   }
 
   private get job(): LayerJob | null {
@@ -134,13 +134,13 @@ export class StrataFigureDialog extends LitElement {
     return jobs.entries.find(({ key }) => key === figures.awaited) ?? null;
   }
 
-  private get request_now(): FigureRequest | null {
+  private get requestNow(): FigureRequest | null {
     const { session, view } = this;
     const { words: written, face } = session.figures.draft;
     const shown = view
       ? { view: String(view.id) }
-      : { ...session.views.content(), ...(this.camera_ ? { camera: this.camera_ } : {}) };
-    const request = figure_request(shown, this.choices_, written, face, this.labels_now);
+      : { ...session.views.content(), ...(this._camera ? { camera: this._camera } : {}) };
+    const request = figureRequest(shown, this._choices, written, face, this.labelsNow);
     return (
       request && {
         ...request,
@@ -151,7 +151,7 @@ export class StrataFigureDialog extends LitElement {
   }
 
   /** Null: none, or none yet. */
-  private get labels_now(): FigureLabels | null {
+  private get labelsNow(): FigureLabels | null {
     const { layer: id, column } = this.session.figures.draft.labels ?? {};
     const layer = this.session.layers.all.find((each) => each.id === id);
     const chosen = column || (layer && this.columns(layer)[0]?.slug);
@@ -163,16 +163,16 @@ export class StrataFigureDialog extends LitElement {
 
   override render(): TemplateResult {
     const { session, view } = this;
-    if (this.asking_) return html`<strata-face-hint .session=${session}></strata-face-hint>`;
-    return html`<strata-dialog vast heading=${view ? words.title_of_view(view.name) : words.title} way_out=${this.job && is_busy(this.job) ? "" : texts.close} @closed=${this.on_closed}>
+    if (this._asking) return html`<strata-face-hint .session=${session}></strata-face-hint>`;
+    return html`<strata-dialog vast heading=${view ? words.title_of_view(view.name) : words.title} way_out=${this.job && isBusy(this.job) ? "" : texts.close} @closed=${this.onClosed}>
       <div class="editor">
-        <form id="figure" class="fields" novalidate @submit=${this.on_submit}>
+        <form id="figure" class="fields" novalidate @submit=${this.onSubmit}>
           ${this.direction()} ${this.scale()} ${this.sheet()} ${this.resolution()} ${this.format()} ${this.written()}
           ${this.labels()}
         </form>
         <div class="sheet">
           ${this.warning()}
-          <strata-figure-preview .session=${session} .request=${this.request_now} alt=${this.description()} @told=${this.on_told}></strata-figure-preview>
+          <strata-figure-preview .session=${session} .request=${this.requestNow} alt=${this.description()} @told=${this.onTold}></strata-figure-preview>
           <p class="hint">${words.preview_hint}</p>
         </div>
       </div>
@@ -181,35 +181,35 @@ export class StrataFigureDialog extends LitElement {
   }
 
   private direction(): TemplateResult {
-    const { from } = this.choices_;
+    const { from } = this._choices;
     const { face } = this.session.figures.draft;
     return html`<div class="group full">
       <label class="field">
         <span>${words.from}</span>
-        <select name="from" autofocus aria-invalid=${this.is_wrong("from")} aria-describedby=${this.told_at("from")} @change=${(event: Event) => this.choose_from(value_of(event) as FigureFrom)}>
+        <select name="from" autofocus aria-invalid=${this.isWrong("from")} aria-describedby=${this.toldAt("from")} @change=${(event: Event) => this.chooseFrom(valueFor(event) as FigureFrom)}>
           ${kFrom.map((each) => html`<option value=${each} ?selected=${each === from}>${each === "camera" && this.view ? words.as_view : words.froms[each]}</option>`)}
         </select>
       </label>
       ${
         from === "face"
           ? html`<div class="row">
-            <button type="button" @click=${() => void this.ask_face()}>${icon("pick")}${face ? words.pick_again : words.pick}</button>
+            <button type="button" @click=${() => void this.askFace()}>${icon("pick")}${face ? words.pick_again : words.pick}</button>
           </div>`
           : nothing
       }
-      ${this.problem_of("from")}
+      ${this.problemOf("from")}
     </div>`;
   }
 
   private scale(): TemplateResult {
-    const { scale } = this.choices_;
-    const own = this.scale_typed_;
+    const { scale } = this._choices;
+    const own = this._scaleTyped;
     return html`<div class="group">
       <label class="field">
         <span>${words.scale}</span>
-        <select name="scale" aria-invalid=${own === null && this.is_wrong("scale")} aria-describedby=${this.told_at("scale")} @change=${(event: Event) => this.choose_scale(value_of(event))}>
+        <select name="scale" aria-invalid=${own === null && this.isWrong("scale")} aria-describedby=${this.toldAt("scale")} @change=${(event: Event) => this.chooseScale(valueFor(event))}>
           <option value="" ?selected=${own === null && scale === null}>${words.fits}</option>
-          ${kScales.map((each) => html`<option value=${each} ?selected=${own === null && scale === each}>${scale_text(each)}</option>`)}
+          ${kScales.map((each) => html`<option value=${each} ?selected=${own === null && scale === each}>${scaleText(each)}</option>`)}
           <option value="own" ?selected=${own !== null}>${words.own_scale}</option>
         </select>
       </label>
@@ -223,18 +223,18 @@ export class StrataFigureDialog extends LitElement {
             aria-label=${words.own_scale_label}
             placeholder="1 : 40"
             .value=${own}
-            aria-invalid=${this.is_wrong("scale")} aria-describedby=${this.told_at("scale")}
-            @input=${(event: Event) => this.type_scale(value_of(event))}
+            aria-invalid=${this.isWrong("scale")} aria-describedby=${this.toldAt("scale")}
+            @input=${(event: Event) => this.typeScale(valueFor(event))}
           />`
       }
     </div>`;
   }
 
   private sheet(): TemplateResult {
-    const { paper, orientation } = this.choices_;
+    const { paper, orientation } = this._choices;
     return html`<div class="group">
         <span class="caption" id="paper">${words.paper}</span>
-        ${radio_group({
+        ${radioGroup({
           label: { id: "paper" },
           class: "segments",
           choices: kPapers.map((value) => ({ value, content: value.toUpperCase() })),
@@ -242,10 +242,10 @@ export class StrataFigureDialog extends LitElement {
           choose: (value) => this.choose({ paper: value }),
         })}
       </div>
-      ${this.problem_of("scale")} ${this.problem_of("paper")}
+      ${this.problemOf("scale")} ${this.problemOf("paper")}
       <div class="group full">
         <span class="caption" id="orientation">${words.orientation}</span>
-        ${radio_group({
+        ${radioGroup({
           label: { id: "orientation" },
           class: "segments",
           choices: [
@@ -255,58 +255,58 @@ export class StrataFigureDialog extends LitElement {
           chosen: orientation,
           choose: (value) => this.choose({ orientation: value }),
         })}
-        ${this.problem_of("orientation")}
+        ${this.problemOf("orientation")}
       </div>`;
   }
 
   private resolution(): TemplateResult {
-    const own = this.dpi_typed_;
+    const own = this._dpiTyped;
     return html`<div class="group full">
       <span class="caption" id="dpi">${words.dpi}</span>
-      ${radio_group<number | null>({
+      ${radioGroup<number | null>({
         label: { id: "dpi" },
         class: "segments",
         choices: [
           ...kResolutions.map((value) => ({ value, content: words.dpi_of(value) })),
           { value: null, content: words.own_dpi },
         ],
-        chosen: own === null ? this.choices_.dpi : null,
-        choose: (value) => this.choose_dpi(value),
+        chosen: own === null ? this._choices.dpi : null,
+        choose: (value) => this.chooseDpi(value),
       })}
       ${
         own === null
           ? nothing
           : html`<label class="own">
-            ${number_input({
+            ${numberInput({
               value: own,
               name: "own_dpi",
               label: words.own_dpi_label,
               min: kDpiRange.least,
               max: kDpiRange.most,
-              wrong: this.problem_?.field === "dpi",
-              typed: (text) => this.type_dpi(text),
+              wrong: this._problem?.field === "dpi",
+              typed: (text) => this.typeDpi(text),
             })}
             <span class="hint">${words.dpi_range(kDpiRange.least, kDpiRange.most)}</span>
           </label>`
       }
-      ${this.problem_of("dpi")}
+      ${this.problemOf("dpi")}
     </div>`;
   }
 
   private format(): TemplateResult {
     return html`<div class="group full">
       <span class="caption" id="format">${words.format}</span>
-      ${radio_group({
+      ${radioGroup({
         label: { id: "format" },
         class: "formats",
         choices: kFormats.map((value) => ({
           value,
           content: html`<b>${value.toUpperCase()}</b><span class="hint">${words.formats[value]}</span>`,
         })),
-        chosen: this.choices_.format,
+        chosen: this._choices.format,
         choose: (value) => this.choose({ format: value }),
       })}
-      ${this.problem_of("format")}
+      ${this.problemOf("format")}
     </div>`;
   }
 
@@ -320,17 +320,17 @@ export class StrataFigureDialog extends LitElement {
     };
     return html`${kWords.map(({ name, most }) => {
       const type = (event: Event): void =>
-        this.write({ ...written, [name]: value_of(event) }, name);
+        this.write({ ...written, [name]: valueFor(event) }, name);
       return html`<div class="group full">
         <label class="field">
           <span>${words.written[name]}</span>
           ${
             name === "caption"
-              ? html`<textarea name=${name} maxlength=${most} placeholder=${usual[name]} .value=${written[name]} aria-invalid=${this.is_wrong(name)} aria-describedby=${this.told_at(name)} @input=${type}></textarea>`
-              : html`<input type="text" name=${name} maxlength=${most} autocomplete="off" placeholder=${usual[name]} .value=${written[name]} aria-invalid=${this.is_wrong(name)} aria-describedby=${this.told_at(name)} @input=${type} />`
+              ? html`<textarea name=${name} maxlength=${most} placeholder=${usual[name]} .value=${written[name]} aria-invalid=${this.isWrong(name)} aria-describedby=${this.toldAt(name)} @input=${type}></textarea>`
+              : html`<input type="text" name=${name} maxlength=${most} autocomplete="off" placeholder=${usual[name]} .value=${written[name]} aria-invalid=${this.isWrong(name)} aria-describedby=${this.toldAt(name)} @input=${type} />`
           }
         </label>
-        ${this.problem_of(name)}
+        ${this.problemOf(name)}
       </div>`;
     })}`;
   }
@@ -343,7 +343,7 @@ export class StrataFigureDialog extends LitElement {
     const layer = choices.find(({ id }) => id === labels?.layer) ?? null;
     return html`<div class="full group">
         <label class="check">
-          <input type="checkbox" name="legend" .checked=${this.choices_.legend} @change=${(event: Event) => this.choose({ legend: (event.target as HTMLInputElement).checked })} />
+          <input type="checkbox" name="legend" .checked=${this._choices.legend} @change=${(event: Event) => this.choose({ legend: (event.target as HTMLInputElement).checked })} />
           ${words.legend}
         </label>
       </div>
@@ -353,47 +353,47 @@ export class StrataFigureDialog extends LitElement {
           : html`<div class="group ${layer ? "" : "full"}">
               <label class="field">
                 <span>${words.labels}</span>
-                <select name="labels" aria-invalid=${this.is_wrong("labels")} aria-describedby=${this.told_at("labels")} @change=${(event: Event) => this.label(value_of(event) === "" ? null : { layer: Number(value_of(event)), column: "" })}>
+                <select name="labels" aria-invalid=${this.isWrong("labels")} aria-describedby=${this.toldAt("labels")} @change=${(event: Event) => this.label(valueFor(event) === "" ? null : { layer: Number(valueFor(event)), column: "" })}>
                   <option value="" ?selected=${layer === null}>${words.no_labels}</option>
                   ${choices.map((each) => html`<option value=${each.id} ?selected=${each === layer}>${each.name}</option>`)}
                 </select>
               </label>
             </div>
-            ${layer ? this.label_column(layer) : nothing}
-            ${this.problem_of("labels")}`
+            ${layer ? this.labelColumn(layer) : nothing}
+            ${this.problemOf("labels")}`
       }`;
   }
 
-  private label_column(layer: Layer): TemplateResult {
+  private labelColumn(layer: Layer): TemplateResult {
     const columns = this.columns(layer);
-    const chosen = this.labels_now?.column;
+    const chosen = this.labelsNow?.column;
     const gone = chosen !== undefined && !columns.some(({ slug }) => slug === chosen);
     if (this.session.tables.find(layer.table!) && columns.length === 0)
       return html`<p class="hint">${words.no_columns}</p>`;
     return html`<label class="field">
       <span>${words.column}</span>
-      <select name="column" aria-invalid=${this.is_wrong("labels")} aria-describedby=${this.told_at("labels")} @change=${(event: Event) => this.label({ layer: layer.id, column: value_of(event) })}>
-        ${columns.map((column) => html`<option value=${column.slug} ?selected=${column.slug === chosen}>${label_of(column)}</option>`)}
+      <select name="column" aria-invalid=${this.isWrong("labels")} aria-describedby=${this.toldAt("labels")} @change=${(event: Event) => this.label({ layer: layer.id, column: valueFor(event) })}>
+        ${columns.map((column) => html`<option value=${column.slug} ?selected=${column.slug === chosen}>${labelOf(column)}</option>`)}
         ${gone ? html`<option value=${chosen} selected>${chosen}</option>` : nothing}
       </select>
     </label>`;
   }
 
   private warning(): TemplateResult | typeof nothing {
-    const { model, can_curate } = this.session;
+    const { model, canCurate } = this.session;
     if (!model || (model.scale_verified && !model.unit_assumed)) return nothing;
     return html`<div class="warning">
-      <span>${can_curate ? words.unsure : `${words.unsure} ${words.unsure_ask}`}</span>
-      ${can_curate ? html`<button class="link" @click=${this.correct}>${texts.model.check_size}</button>` : nothing}
+      <span>${canCurate ? words.unsure : `${words.unsure} ${words.unsure_ask}`}</span>
+      ${canCurate ? html`<button class="link" @click=${this.correct}>${texts.model.check_size}</button>` : nothing}
     </div>`;
   }
 
   private actions(): TemplateResult {
     const { job } = this;
     const { saved } = this.session.figures;
-    const busy = job !== null && is_busy(job);
+    const busy = job !== null && isBusy(job);
     const percent = Math.round((job?.job.progress ?? 0) * 100);
-    const general = this.problem_?.field === "" ? this.problem_.text : "";
+    const general = this._problem?.field === "" ? this._problem.text : "";
     return html`${
       busy
         ? html`<div slot="told" class="making">
@@ -407,75 +407,71 @@ export class StrataFigureDialog extends LitElement {
         </div>`
     }
     ${busy ? html`<button slot="actions" @click=${() => void this.cancel(job)}>${words.cancel}</button>` : nothing}
-    <button slot="actions" class="primary" form="figure" ?disabled=${busy || this.sending_}>${words.make}</button>`;
+    <button slot="actions" class="primary" form="figure" ?disabled=${busy || this._sending}>${words.make}</button>`;
   }
 
   /** For who does not see the picture. */
   private description(): string {
-    const { from, scale, paper } = this.choices_;
+    const { from, scale, paper } = this._choices;
     const seen = from === "camera" && this.view ? words.as_view : words.froms[from];
-    return words.preview(
-      paper.toUpperCase(),
-      seen,
-      scale === null ? words.fits : scale_text(scale),
-    );
+    return words.preview(paper.toUpperCase(), seen, scale === null ? words.fits : scaleText(scale));
   }
 
   // ── what is chosen
   // ────────────────────────────────────────────────────────────────────────────────────────────────
 
   private choose(change: Partial<FigureChoices>): void {
-    this.choices_ = { ...this.choices_, ...change };
-    this.kept_.value = this.choices_;
-    if (Object.keys(change).includes(this.problem_?.field ?? "") || this.problem_?.field === "")
-      this.problem_ = null;
+    this._choices = { ...this._choices, ...change };
+    this._kept.value = this._choices;
+    if (Object.keys(change).includes(this._problem?.field ?? "") || this._problem?.field === "")
+      this._problem = null;
   }
 
-  private choose_from(from: FigureFrom): void {
-    if (from === "face" && !this.session.figures.draft.face) void this.ask_face();
+  private chooseFrom(from: FigureFrom): void {
+    if (from === "face" && !this.session.figures.draft.face) void this.askFace();
     else this.choose({ from });
   }
 
   /** The dialog comes back with the face, or as it was. */
-  private async ask_face(): Promise<void> {
-    this.asking_ = true;
+  private async askFace(): Promise<void> {
+    this._asking = true;
     this.dispatchEvent(new CustomEvent("aside"));
     const face = await this.session.face.ask();
-    this.asking_ = false;
-    this.see_camera();
+    this._asking = false;
+    this.seeCamera();
     if (!face) return;
     this.session.figures.draft.face = face;
     this.choose({ from: "face" });
   }
 
-  private choose_scale(value: string): void {
-    const { scale } = this.choices_;
-    this.scale_typed_ = value !== "own" ? null : scale === null ? "" : scale_text(scale);
+  private chooseScale(value: string): void {
+    const { scale } = this._choices;
+    this._scaleTyped = value !== "own" ? null : scale === null ? "" : scaleText(scale);
     this.choose({ scale: value === "own" ? scale : value === "" ? null : Number(value) });
   }
 
-  private type_scale(typed: string): void {
-    this.scale_typed_ = typed;
-    const scale = read_scale(typed);
-    if (Number.isNaN(scale)) this.problem_ = this.typing_problem;
+  private typeScale(typed: string): void {
+    this._scaleTyped = typed;
+    const scale = readScale(typed);
+    if (Number.isNaN(scale)) this._problem = this.typingProblem;
     else this.choose({ scale });
   }
 
-  private choose_dpi(dpi: number | null): void {
-    this.dpi_typed_ = dpi === null ? String(this.choices_.dpi) : null;
-    this.choose({ dpi: dpi ?? this.choices_.dpi });
+  private chooseDpi(dpi: number | null): void {
+    this._dpiTyped = dpi === null ? String(this._choices.dpi) : null;
+    this.choose({ dpi: dpi ?? this._choices.dpi });
   }
 
-  private type_dpi(typed: string): void {
-    this.dpi_typed_ = typed;
-    const dpi = read_number(typed);
-    if (is_dpi(dpi)) this.choose({ dpi });
-    else this.problem_ = this.typing_problem;
+  private typeDpi(typed: string): void {
+    this._dpiTyped = typed;
+    const dpi = readNumber(typed);
+    if (isDpi(dpi)) this.choose({ dpi });
+    else this._problem = this.typingProblem;
   }
 
   private write(written: FigureWords, name: keyof FigureWords): void {
     this.session.figures.draft.words = written;
-    if (this.problem_?.field === name) this.problem_ = null;
+    if (this._problem?.field === name) this._problem = null;
     this.requestUpdate();
   }
 
@@ -483,15 +479,15 @@ export class StrataFigureDialog extends LitElement {
   private columns(layer: Layer): Column[] {
     const table = this.session.tables.find(layer.table!);
     if (!table) return [];
-    const title = label_column(table); // what records are called comes first
-    const words = table.columns.filter((column) => !holds_files(column) && !holds_marks(column));
+    const title = labelColumn(table); // what records are called comes first
+    const words = table.columns.filter((column) => !holdsFiles(column) && !holdsMarks(column));
     return words.sort((a, b) => Number(b === title) - Number(a === title));
   }
 
   /** Without a column: the first that there is. */
   private label(labels: { layer: number; column: string } | null): void {
     this.session.figures.draft.labels = labels;
-    if (this.problem_?.field === "labels") this.problem_ = null;
+    if (this._problem?.field === "labels") this._problem = null;
     this.requestUpdate();
   }
 
@@ -502,39 +498,39 @@ export class StrataFigureDialog extends LitElement {
   // ── what is wrong
   // ─────────────────────────────────────────────────────────────────────────────────────────────────
 
-  private is_wrong(field: string): boolean {
-    return this.problem_?.field === field;
+  private isWrong(field: string): boolean {
+    return this._problem?.field === field;
   }
-  private told_at(field: string): string | typeof nothing {
-    return this.is_wrong(field) ? `${field}_problem` : nothing;
+  private toldAt(field: string): string | typeof nothing {
+    return this.isWrong(field) ? `${field}_problem` : nothing;
   }
-  private problem_of(field: string): TemplateResult | typeof nothing {
-    return this.is_wrong(field)
-      ? html`<p class="error" role="alert" id="${field}_problem">${this.problem_?.text}</p>`
+  private problemOf(field: string): TemplateResult | typeof nothing {
+    return this.isWrong(field)
+      ? html`<p class="error" role="alert" id="${field}_problem">${this._problem?.text}</p>`
       : nothing;
   }
 
   private refuse({ field = "", title, detail }: ProblemBody): void {
     const part = field.split(/[.[]/)[0]!;
     const own = kFieldOf[part] ?? part;
-    this.problem_ = { field: kFields.includes(own) ? own : "", text: detail ?? title };
+    this._problem = { field: kFields.includes(own) ? own : "", text: detail ?? title };
   }
 
   /** Of the preview: what is wrong stands at its field, where it has one. */
-  private on_told(event: CustomEvent<ProblemBody | null>): void {
+  private onTold(event: CustomEvent<ProblemBody | null>): void {
     const problem = event.detail;
-    if (this.typing_problem) return; // what is asked for is not what is typed
+    if (this.typingProblem) return; // what is asked for is not what is typed
     if (problem?.field === undefined) return;
     this.refuse(problem);
-    if (this.problem_?.field !== "") event.preventDefault();
+    if (this._problem?.field !== "") event.preventDefault();
   }
 
   /** A field holds what is none of its choices. */
-  private get typing_problem(): { field: string; text: string } | null {
-    const { scale_typed_: scale, dpi_typed_: dpi } = this;
-    if (scale !== null && Number.isNaN(read_scale(scale)))
+  private get typingProblem(): { field: string; text: string } | null {
+    const { _scaleTyped: scale, _dpiTyped: dpi } = this;
+    if (scale !== null && Number.isNaN(readScale(scale)))
       return { field: "scale", text: words.wrong_scale };
-    return dpi !== null && !is_dpi(read_number(dpi))
+    return dpi !== null && !isDpi(readNumber(dpi))
       ? { field: "dpi", text: words.wrong_dpi(kDpiRange.least, kDpiRange.most) }
       : null;
   }
@@ -542,38 +538,38 @@ export class StrataFigureDialog extends LitElement {
   // ── what is made
   // ──────────────────────────────────────────────────────────────────────────────────────────────────
 
-  private readonly on_submit = (event: Event): void => {
+  private readonly onSubmit = (event: Event): void => {
     event.preventDefault();
-    const request = this.request_now;
-    if (this.sending_ || (this.job && is_busy(this.job))) return;
-    const problem = request ? this.typing_problem : { field: "from", text: words.no_face };
+    const request = this.requestNow;
+    if (this._sending || (this.job && isBusy(this.job))) return;
+    const problem = request ? this.typingProblem : { field: "from", text: words.no_face };
     if (request && !problem) {
       void this.make(request);
     } else {
-      this.problem_ = problem;
-      void this.go_to_problem();
+      this._problem = problem;
+      void this.goToProblem();
     }
   };
 
   /** The field may be out of sight. */
-  private async go_to_problem(): Promise<void> {
+  private async goToProblem(): Promise<void> {
     await this.updateComplete;
     this.renderRoot.querySelector<HTMLElement>('[aria-invalid="true"]')?.focus();
   }
 
   private async make(request: FigureRequest): Promise<void> {
     const { figures, model } = this.session;
-    this.sending_ = true;
-    this.problem_ = null;
+    this._sending = true;
+    this._problem = null;
     try {
       await figures.make(words.job(request.title ?? model?.name ?? ""), request);
       if (!this.isConnected) figures.awaited = null;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this.refuse(error.problem);
-      void this.go_to_problem();
+      void this.goToProblem();
     } finally {
-      this.sending_ = false;
+      this._sending = false;
     }
   }
 
@@ -586,11 +582,11 @@ export class StrataFigureDialog extends LitElement {
     }
   }
 
-  private readonly on_closed = (): void => {
+  private readonly onClosed = (): void => {
     this.dispatchEvent(new CustomEvent("closed"));
     // the browser forgets it where the dialog stepped aside
-    if (!has_keyboard()) this.opener_?.focus();
+    if (!hasKeyboard()) this._opener?.focus();
   };
 }
 
-const value_of = (event: Event): string => (event.target as HTMLInputElement).value;
+const valueFor = (event: Event): string => (event.target as HTMLInputElement).value;

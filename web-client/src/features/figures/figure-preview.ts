@@ -4,15 +4,15 @@
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { ApiError } from "../../net/api";
-import { preview_request } from "../../domain/figures";
+import { previewRequest } from "../../domain/figures";
 import type { FigureRequest } from "../../core/protocol.gen";
 import type { ProblemBody } from "../../core/types";
 import type { ModelSession } from "../../session/model-session";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.figures;
-const kWait_ms = 350; // until somebody has stopped to type
+const kWaitMs = 350; // until somebody has stopped to type
 
 @customElement("strata-figure-preview")
 export class StrataFigurePreview extends LitElement {
@@ -26,14 +26,14 @@ export class StrataFigurePreview extends LitElement {
   request: FigureRequest | null = null;
   /** What the picture shows, for who does not see it. */
   @property() alt = "";
-  @state() private state_: "nothing" | "waiting" | "drawn" | "failed" = "nothing";
-  @state() private picture_ = ""; // address
-  @state() private problem_ = "";
-  private timer_ = 0;
-  private asked_: AbortController | null = null;
+  @state() private _state: "nothing" | "waiting" | "drawn" | "failed" = "nothing";
+  @state() private _picture = ""; // address
+  @state() private _problem = "";
+  private _timer = 0;
+  private _asked: AbortController | null = null;
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: block;
@@ -101,18 +101,18 @@ export class StrataFigurePreview extends LitElement {
   ];
 
   override willUpdate(changed: PropertyValues<this>): void {
-    if (changed.has("request")) this.ask_soon();
+    if (changed.has("request")) this.askSoon();
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     this.stop();
-    URL.revokeObjectURL(this.picture_);
-    this.picture_ = "";
+    URL.revokeObjectURL(this._picture);
+    this._picture = "";
   }
 
   override render(): TemplateResult {
-    const { state_: state, picture_: picture } = this;
+    const { _state: state, _picture: picture } = this;
     const shows = picture !== "" && (state === "drawn" || state === "waiting");
     return html`<figure class=${state} data-state=${state} aria-busy=${state === "waiting"}>
       ${shows ? html`<img src=${picture} alt=${this.alt} />` : nothing}
@@ -121,8 +121,8 @@ export class StrataFigurePreview extends LitElement {
       ${
         state === "failed"
           ? html`<div class="told">
-            <p class="error" role="alert">${this.problem_ || words.see_field}</p>
-            ${this.problem_ ? html`<button @click=${() => this.ask_soon()}>${texts.try_again}</button>` : nothing}
+            <p class="error" role="alert">${this._problem || words.see_field}</p>
+            ${this._problem ? html`<button @click=${() => this.askSoon()}>${texts.try_again}</button>` : nothing}
           </div>`
           : nothing
       }
@@ -130,37 +130,37 @@ export class StrataFigurePreview extends LitElement {
   }
 
   private stop(): void {
-    clearTimeout(this.timer_);
-    this.asked_?.abort();
-    this.asked_ = null;
+    clearTimeout(this._timer);
+    this._asked?.abort();
+    this._asked = null;
   }
 
-  private ask_soon(): void {
+  private askSoon(): void {
     this.stop();
     const { request } = this;
-    this.state_ = request ? "waiting" : "nothing";
+    this._state = request ? "waiting" : "nothing";
     if (!request) return;
-    const asked = (this.asked_ = new AbortController());
-    this.timer_ = window.setTimeout(
+    const asked = (this._asked = new AbortController());
+    this._timer = window.setTimeout(
       () => void this.ask(request, asked),
-      this.picture_ === "" ? 0 : kWait_ms,
+      this._picture === "" ? 0 : kWaitMs,
     );
   }
 
   private async ask(request: FigureRequest, asked: AbortController): Promise<void> {
-    const { api, model_id } = this.session;
+    const { api, modelId } = this.session;
     try {
-      const picture = await api.figure(model_id, preview_request(request), asked.signal);
-      if (asked !== this.asked_) return;
-      URL.revokeObjectURL(this.picture_);
-      this.picture_ = URL.createObjectURL(picture);
-      this.state_ = "drawn";
+      const picture = await api.figure(modelId, previewRequest(request), asked.signal);
+      if (asked !== this._asked) return;
+      URL.revokeObjectURL(this._picture);
+      this._picture = URL.createObjectURL(picture);
+      this._state = "drawn";
       this.tell(null);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (asked !== this.asked_) return; // something else is asked for
-      this.state_ = "failed";
-      this.problem_ = this.tell(error.problem) ? error.message : "";
+      if (asked !== this._asked) return; // something else is asked for
+      this._state = "failed";
+      this._problem = this.tell(error.problem) ? error.message : "";
     }
   }
 

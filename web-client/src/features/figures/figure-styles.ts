@@ -2,7 +2,7 @@
 
 import { css } from "lit";
 
-export const figure_styles = css`
+export const figureStyles = css`
   .editor {
     display: grid;
     grid-template-columns: minmax(0, 5fr) minmax(0, 6fr);

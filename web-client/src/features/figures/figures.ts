@@ -7,7 +7,7 @@ import type { FigureRequest } from "../../core/protocol.gen";
 import type { Job } from "../../core/types";
 import type { LayerJobs } from "../../session/layer-jobs";
 import { notices } from "../../ui/notices";
-import { save_blob } from "../../ui/save-from";
+import { saveBlob } from "../../ui/save-from";
 import { texts } from "../../texts";
 
 export class Figures {
@@ -26,8 +26,8 @@ export class Figures {
   saved = "";
 
   constructor(
-    private readonly api_: Api,
-    private readonly jobs_: LayerJobs,
+    private readonly _api: Api,
+    private readonly _jobs: LayerJobs,
   ) {}
 
   /**
@@ -36,17 +36,17 @@ export class Figures {
    */
   async make(name: string, wish: FigureRequest): Promise<number> {
     this.saved = "";
-    this.awaited = await this.jobs_.make_figure(name, wish, (key, job) => this.done(key, job));
+    this.awaited = await this._jobs.makeFigure(name, wish, (key, job) => this.done(key, job));
     return this.awaited;
   }
 
   async save(key: number): Promise<void> {
-    const job = this.jobs_.entries.find((entry) => entry.key === key)?.job;
+    const job = this._jobs.entries.find((entry) => entry.key === key)?.job;
     if (!job?.file) return;
     try {
-      save_blob(await this.api_.job_file(job.id), job.file.name);
+      saveBlob(await this._api.jobFile(job.id), job.file.name);
       this.saved = job.file.name;
-      this.jobs_.dismiss(key);
+      this._jobs.dismiss(key);
     } catch (error) {
       notices.error(error);
     }

@@ -5,37 +5,37 @@ import { html, LitElement, nothing, type PropertyValues, type TemplateResult } f
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../../net/api";
-import { format_area, format_size, metres_per } from "../../domain/measure";
+import { formatArea, formatSize, metresPer } from "../../domain/measure";
 import type { Project } from "../../core/protocol.gen";
-import { may_administer, type Me, type Model } from "../../core/types";
-import { ask_account } from "../../ui/account-menu";
-import { ask_to_bin, tell_binned } from "../../ui/trash";
-import { open_bin } from "../../ui/trash-dialog";
+import { mayAdminister, type Me, type Model } from "../../core/types";
+import { askAccount } from "../../ui/account-menu";
+import { askToBin, tellBinned } from "../../ui/trash";
+import { openBin } from "../../ui/trash-dialog";
 import "../../ui/status-page";
-import { ask_to_delete_project } from "./delete-project-dialog";
+import { askToDeleteProject } from "./delete-project-dialog";
 import { icon, logo } from "../../ui/icons";
 import type { ImportEntry, Imports } from "./imports";
-import { has_keyboard } from "../../ui/keyboard";
+import { hasKeyboard } from "../../ui/keyboard";
 import "../../ui/menu";
 import { notices } from "../../ui/notices";
 import "./project-card";
-import { ask_project } from "./project-dialog";
+import { askProject } from "./project-dialog";
 import {
   curates,
   kDefaultProject,
-  list_projects,
-  sees_to_kiosks,
+  listProjects,
+  seesToKiosks,
   type ListedProject,
 } from "./project-list";
-import { follow, path_of_model, path_of_project } from "../../ui/routes";
+import { follow, pathOfModel, pathOfProject } from "../../ui/routes";
 import { styled } from "../../ui/styled";
-import { shared_styles } from "../../ui/styles";
-import { card_styles, home_styles } from "./home-styles";
+import { sharedStyles } from "../../ui/styles";
+import { cardStyles, homeStyles } from "./home-styles";
 import { texts } from "../../texts";
 import "../../ui/thumbnail";
 
 /** The server's name of a step of the import, where it is one that people know. */
-const plain_step = (message: string): string =>
+const plainStep = (message: string): string =>
   /\b(atlas|texels?|uvs?|charts?)\b/i.test(message) ? texts.import.unfolding : message;
 
 @customElement("strata-home-page")
@@ -53,22 +53,22 @@ export class StrataHomePage extends LitElement {
   @property({ attribute: false }) into: Project | null = null;
   /** Counts imports that ended: the list is read again. */
   @property({ attribute: false }) imported = 0;
-  @state() private models_: Model[] | null = null;
-  @state() private problem_ = "";
-  @query("h1") private heading_!: HTMLElement | null;
-  @query("input[type=file]") private file_input_!: HTMLInputElement;
-  private unsubscribe_: (() => void) | null = null;
+  @state() private _models: Model[] | null = null;
+  @state() private _problem = "";
+  @query("h1") private _heading!: HTMLElement | null;
+  @query("input[type=file]") private _fileInput!: HTMLInputElement;
+  private _unsubscribe: (() => void) | null = null;
 
-  static override styles = [shared_styles, card_styles, home_styles];
+  static override styles = [sharedStyles, cardStyles, homeStyles];
 
   override connectedCallback(): void {
     super.connectedCallback();
-    this.unsubscribe_ = this.imports.subscribe(() => this.requestUpdate());
+    this._unsubscribe = this.imports.subscribe(() => this.requestUpdate());
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.unsubscribe_?.();
+    this._unsubscribe?.();
   }
 
   override willUpdate(changed: PropertyValues<this>): void {
@@ -79,8 +79,8 @@ export class StrataHomePage extends LitElement {
 
   /** Whoever came by the keyboard goes on at the head of what they came to. */
   override updated(changed: PropertyValues<this>): void {
-    if (changed.has("project") && changed.get("project") !== undefined && has_keyboard() === null)
-      this.heading_?.focus({ preventScroll: true });
+    if (changed.has("project") && changed.get("project") !== undefined && hasKeyboard() === null)
+      this._heading?.focus({ preventScroll: true });
   }
 
   /** The project whose page this is; null: there is none of that name. */
@@ -90,64 +90,62 @@ export class StrataHomePage extends LitElement {
   /** The one that is looked at, also where it is the only one. */
   private get about(): ListedProject | null {
     const { shown, listed } = this;
-    if (!this.models_) return null;
+    if (!this._models) return null;
     if (shown) return { project: shown, models: this.models };
     return this.project === null && listed.length === 1 ? listed[0]! : null;
   }
   /** There is something else than the one that is shown. */
-  private get leads_up(): boolean {
+  private get leadsUp(): boolean {
     const { shown } = this;
     return (
       shown !== null &&
-      (this.has_several || (this.models_ !== null && this.listed[0]?.project !== shown))
+      (this.hasSeveral || (this._models !== null && this.listed[0]?.project !== shown))
     );
   }
   /** There are several to choose among. Before it is known what is in them: surely. */
-  private get has_several(): boolean {
-    return this.models_
+  private get hasSeveral(): boolean {
+    return this._models
       ? this.listed.length > 1
       : this.projects.filter(({ slug }) => slug !== kDefaultProject).length > 1;
   }
-  private get is_gallery(): boolean {
+  private get isGallery(): boolean {
     return (
-      this.project === null &&
-      this.has_several &&
-      (this.models_?.length !== 0 || this.can_administer)
+      this.project === null && this.hasSeveral && (this._models?.length !== 0 || this.canAdminister)
     );
   }
-  private get is_missing(): boolean {
+  private get isMissing(): boolean {
     return this.project !== null && !this.projects.some(({ slug }) => slug === this.project);
   }
   private get listed(): ListedProject[] {
-    return list_projects(this.projects, this.models_ ?? []);
+    return listProjects(this.projects, this._models ?? []);
   }
   private get models(): Model[] {
     const { shown } = this;
-    return (this.models_ ?? []).filter(({ project }) => !shown || project === shown.slug);
+    return (this._models ?? []).filter(({ project }) => !shown || project === shown.slug);
   }
 
   /** It is known that there is none here: what to do about it stands in the middle. */
-  private get has_none(): boolean {
-    return this.models_ !== null && this.models.length === 0;
+  private get hasNone(): boolean {
+    return this._models !== null && this.models.length === 0;
   }
 
-  private get can_curate(): boolean {
+  private get canCurate(): boolean {
     return this.into !== null;
   }
 
   /** Who may make projects may change and delete all of them. */
-  private get can_administer(): boolean {
-    return may_administer(this.me.role);
+  private get canAdminister(): boolean {
+    return mayAdminister(this.me.role);
   }
 
   private async load(): Promise<void> {
     try {
-      this.models_ = await this.api.models();
-      this.problem_ = "";
+      this._models = await this.api.models();
+      this._problem = "";
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
-      else this.problem_ = error.message;
+      else this._problem = error.message;
     }
   }
 
@@ -155,23 +153,23 @@ export class StrataHomePage extends LitElement {
     return html`<header>
         <a class="brand" href="/" @click=${follow}>${logo()}<b>${texts.product}</b></a>
         <span class="grow tagline">${texts.tagline}</span>
-        <strata-account-menu .me=${this.me} .kiosks=${sees_to_kiosks(this.me, this.projects)}></strata-account-menu>
+        <strata-account-menu .me=${this.me} .kiosks=${seesToKiosks(this.me, this.projects)}></strata-account-menu>
       </header>
       <main>
         ${
           this.me.has_password
             ? nothing
             : html`<p class="no-password">
-              <button class="link" @click=${() => ask_account(this, "account")}>${texts.account.no_password}</button>
+              <button class="link" @click=${() => askAccount(this, "account")}>${texts.account.no_password}</button>
               ${texts.account.no_password_why}
             </p>`
         }
         ${
-          this.leads_up
+          this.leadsUp
             ? html`<a class="up" href="/" @click=${follow}>${icon("back")}${texts.home.all_projects}</a>`
             : nothing
         }
-        ${this.is_missing ? nothing : this.title_row()}
+        ${this.isMissing ? nothing : this.titleRow()}
         ${this.shown?.description ? html`<p class="description">${this.shown.description}</p>` : nothing}
         ${
           this.imports.entries.length > 0
@@ -179,7 +177,7 @@ export class StrataHomePage extends LitElement {
               ${repeat(
                 this.imports.entries,
                 (entry) => entry.key,
-                (entry) => this.import_row(entry),
+                (entry) => this.importRow(entry),
               )}
             </section>`
             : nothing
@@ -188,21 +186,21 @@ export class StrataHomePage extends LitElement {
       </main>`;
   }
 
-  private title_row(): TemplateResult {
+  private titleRow(): TemplateResult {
     return html`<div class="title">
       <h1 tabindex="-1">${this.heading}</h1>
-      ${this.about ? this.project_menu(this.about) : nothing}
+      ${this.about ? this.projectMenu(this.about) : nothing}
       <span class="hint grow">${this.counted}</span>
-      ${this.project === null && this.curated.length > 1 ? this.project_choice(this.curated) : nothing}
+      ${this.project === null && this.curated.length > 1 ? this.projectChoice(this.curated) : nothing}
       ${
-        this.can_curate
-          ? html`<button class=${this.has_none ? "" : "primary"} @click=${() => this.file_input_.click()}>${icon("upload")}${texts.home.import}</button>
-            <input type="file" accept=".ply,.obj,.stl,.gltf,.glb,.zip,.mtl,.bin,.png,.jpg,.jpeg,.tif,.tiff,.webp,.bmp,.tga" multiple hidden aria-label=${texts.home.import} @change=${this.on_files} />`
+        this.canCurate
+          ? html`<button class=${this.hasNone ? "" : "primary"} @click=${() => this._fileInput.click()}>${icon("upload")}${texts.home.import}</button>
+            <input type="file" accept=".ply,.obj,.stl,.gltf,.glb,.zip,.mtl,.bin,.png,.jpg,.jpeg,.tif,.tiff,.webp,.bmp,.tga" multiple hidden aria-label=${texts.home.import} @change=${this.onFiles} />`
           : nothing
       }
       ${
-        this.project === null && this.can_administer
-          ? html`<button @click=${() => void this.make_project()}>${icon("plus")}${texts.projects.new}</button>`
+        this.project === null && this.canAdminister
+          ? html`<button @click=${() => void this.makeProject()}>${icon("plus")}${texts.projects.new}</button>`
           : nothing
       }
     </div>`;
@@ -210,17 +208,17 @@ export class StrataHomePage extends LitElement {
 
   private get heading(): string {
     const words = texts.home;
-    return this.shown?.name ?? (this.is_gallery ? words.projects : words.title);
+    return this.shown?.name ?? (this.isGallery ? words.projects : words.title);
   }
   private get counted(): string {
     const words = texts.home;
-    if (!this.models_ || this.models.length === 0) return ""; // that is said below
-    return this.is_gallery
+    if (!this._models || this.models.length === 0) return ""; // that is said below
+    return this.isGallery
       ? words.count_projects(this.listed.length)
       : words.count(this.models.length);
   }
 
-  private project_choice(projects: readonly Project[]): TemplateResult {
+  private projectChoice(projects: readonly Project[]): TemplateResult {
     return html`<label class="into">
       <span class="hint">${texts.home.into}</span>
       <select @change=${(event: Event) => this.dispatchEvent(new CustomEvent<string>("choose-project", { detail: (event.target as HTMLSelectElement).value }))}>
@@ -230,31 +228,31 @@ export class StrataHomePage extends LitElement {
   }
 
   private content(): TemplateResult {
-    if (this.is_missing) return this.missing();
-    if (this.problem_) {
+    if (this.isMissing) return this.missing();
+    if (this._problem) {
       return html`<div class="empty">
-        <h2>${this.problem_}</h2>
+        <h2>${this._problem}</h2>
         <button @click=${() => void this.load()}>${texts.try_again}</button>
       </div>`;
     }
-    if (!this.models_) return html`<p class="hint" role="status">${texts.loading}</p>`;
-    if (this.is_gallery) {
+    if (!this._models) return html`<p class="hint" role="status">${texts.loading}</p>`;
+    if (this.isGallery) {
       return html`<ul class="gallery projects">
           ${repeat(
             this.listed,
             ({ project }) => project.id,
             (listed) =>
               html`<li>
-                <a href=${path_of_project(listed.project.slug)} @click=${follow}>
+                <a href=${pathOfProject(listed.project.slug)} @click=${follow}>
                   <strata-project-card .api=${this.api} .listed=${listed}></strata-project-card>
                 </a>
-                ${this.project_menu(listed, "options")}
+                ${this.projectMenu(listed, "options")}
               </li>`,
           )}
         </ul>
-        ${this.has_none ? this.nothing_yet() : nothing}`;
+        ${this.hasNone ? this.nothingYet() : nothing}`;
     }
-    if (this.has_none) return this.nothing_yet();
+    if (this.hasNone) return this.nothingYet();
     return html`<ul class="gallery">
       ${repeat(
         this.models,
@@ -275,59 +273,59 @@ export class StrataHomePage extends LitElement {
     </div>`;
   }
 
-  private nothing_yet(): TemplateResult {
-    const in_none = this.projects.length === 0;
+  private nothingYet(): TemplateResult {
+    const inNone = this.projects.length === 0;
     const words = texts.home;
     return html`<div class="empty">
       ${logo()}
-      <h2>${in_none ? words.no_projects : words.empty_title}</h2>
-      <p>${this.can_curate ? words.empty_lead : in_none ? words.empty_guest : words.empty_viewer}</p>
+      <h2>${inNone ? words.no_projects : words.empty_title}</h2>
+      <p>${this.canCurate ? words.empty_lead : inNone ? words.empty_guest : words.empty_viewer}</p>
       ${
-        this.can_curate
-          ? html`<button class="primary" @click=${() => this.file_input_.click()}>${texts.home.choose_file}</button>`
+        this.canCurate
+          ? html`<button class="primary" @click=${() => this._fileInput.click()}>${texts.home.choose_file}</button>`
           : nothing
       }
     </div>`;
   }
 
-  private project_menu(listed: ListedProject, place = ""): TemplateResult | typeof nothing {
+  private projectMenu(listed: ListedProject, place = ""): TemplateResult | typeof nothing {
     const { project } = listed;
     if (!curates(project)) return nothing; // who administers curates everywhere
     return html`<strata-menu class=${place} label=${texts.home.options(project.name)} .quiet=${place === ""}>
       ${
-        this.can_administer
-          ? html`<button class="quiet" role="menuitem" @click=${() => void this.describe_project(project)}>${icon("edit")}${texts.projects.describe}</button>`
+        this.canAdminister
+          ? html`<button class="quiet" role="menuitem" @click=${() => void this.describeProject(project)}>${icon("edit")}${texts.projects.describe}</button>`
           : nothing
       }
-      <button class="quiet" role="menuitem" @click=${() => void this.look_into_bin(project)}>${icon("trash")}${texts.bin.open}</button>
+      <button class="quiet" role="menuitem" @click=${() => void this.lookIntoBin(project)}>${icon("trash")}${texts.bin.open}</button>
       ${
-        project.slug === kDefaultProject || !this.can_administer
+        project.slug === kDefaultProject || !this.canAdminister
           ? nothing
           : html`<hr />
-            <button class="quiet" role="menuitem" @click=${() => void this.delete_project(listed)}>${icon("trash")}${texts.layers.delete}</button>`
+            <button class="quiet" role="menuitem" @click=${() => void this.deleteProject(listed)}>${icon("trash")}${texts.layers.delete}</button>`
       }
     </strata-menu>`;
   }
 
   private card(model: Model): TemplateResult {
-    const metres = metres_per(model.unit);
+    const metres = metresPer(model.unit);
     const sides = [0, 1, 2].map(
       (axis) => (model.bounds.max[axis]! - model.bounds.min[axis]!) * metres,
     );
     return html`<li>
-      <a href=${path_of_model(model.id)} aria-label=${texts.home.open(model.name)} @click=${follow}>
+      <a href=${pathOfModel(model.id)} aria-label=${texts.home.open(model.name)} @click=${follow}>
         <strata-thumbnail .api=${this.api} .model=${model}></strata-thumbnail>
         <div class="about">
           <b class="ellipsis">${model.name || texts.unnamed}</b>
-          <span class="numeric">${format_size(sides)}</span>
-          <span class="numeric faint">${format_area(model.area_m2)} · ${texts.home.triangles(model.triangles)}</span>
+          <span class="numeric">${formatSize(sides)}</span>
+          <span class="numeric faint">${formatArea(model.area_m2)} · ${texts.home.triangles(model.triangles)}</span>
           ${model.scale_verified ? nothing : html`<span class="chip">${texts.home.scale_open}</span>`}
         </div>
       </a>
       ${
         this.curated.some(({ slug }) => slug === model.project)
           ? html`<strata-menu class="options" label=${texts.home.options(model.name)} .quiet=${false}>
-            <button class="quiet" role="menuitem" @click=${() => void this.delete_model(model)}>
+            <button class="quiet" role="menuitem" @click=${() => void this.deleteModel(model)}>
               ${icon("trash")}${texts.layers.delete}
             </button>
           </strata-menu>`
@@ -336,7 +334,7 @@ export class StrataHomePage extends LitElement {
     </li>`;
   }
 
-  private import_row(entry: ImportEntry): TemplateResult {
+  private importRow(entry: ImportEntry): TemplateResult {
     const words = texts.import;
     const busy =
       entry.state === "uploading" || entry.state === "queued" || entry.state === "running";
@@ -345,7 +343,7 @@ export class StrataHomePage extends LitElement {
         ? words.uploading(`${Math.round(entry.progress * 100)} %`)
         : entry.state === "failed"
           ? [entry.problem?.title ?? words.failed, entry.problem?.detail].filter(Boolean).join(". ")
-          : plain_step(entry.message) || (entry.state === "queued" ? words.queued : words.running);
+          : plainStep(entry.message) || (entry.state === "queued" ? words.queued : words.running);
     return html`<div class="import ${entry.state}">
       <div class="grow">
         <b class="ellipsis">${entry.name}</b>
@@ -369,7 +367,7 @@ export class StrataHomePage extends LitElement {
         busy
           ? html`<button aria-label=${words.cancel(entry.name)} @click=${() => void this.cancel(entry)}>${texts.cancel}</button>`
           : html`${
-              entry.may_repeat
+              entry.mayRepeat
                 ? html`<button
                   aria-label=${words.repeat_named(entry.name)}
                   @click=${() => this.dispatchEvent(new CustomEvent<ImportEntry>("repeat-import", { detail: entry }))}
@@ -393,40 +391,40 @@ export class StrataHomePage extends LitElement {
     await this.imports.cancel(entry.key).catch((error: unknown) => notices.error(error));
   }
 
-  private on_files(): void {
-    const files = [...(this.file_input_.files ?? [])];
-    this.file_input_.value = "";
+  private onFiles(): void {
+    const files = [...(this._fileInput.files ?? [])];
+    this._fileInput.value = "";
     this.dispatchEvent(new CustomEvent<File[]>("import-files", { detail: files }));
   }
 
   /** `next`: where to go once the page knows of it. */
-  private projects_changed(next: string | null = null): void {
+  private projectsChanged(next: string | null = null): void {
     this.dispatchEvent(new CustomEvent("projects-changed", { detail: next }));
   }
 
-  private async make_project(): Promise<void> {
-    const made = await ask_project(this.api, null);
+  private async makeProject(): Promise<void> {
+    const made = await askProject(this.api, null);
     if (!made) return;
     notices.show("success", texts.projects.made(made.name), texts.projects.made_next);
-    this.projects_changed(path_of_project(made.slug));
+    this.projectsChanged(pathOfProject(made.slug));
   }
 
-  private async describe_project(project: Project): Promise<void> {
-    if (await ask_project(this.api, project)) this.projects_changed();
+  private async describeProject(project: Project): Promise<void> {
+    if (await askProject(this.api, project)) this.projectsChanged();
   }
 
-  private async delete_project(listed: ListedProject): Promise<void> {
+  private async deleteProject(listed: ListedProject): Promise<void> {
     // something may have been restored
-    if (!(await ask_to_delete_project(this.api, listed))) return this.load();
+    if (!(await askToDeleteProject(this.api, listed))) return this.load();
     notices.show("success", texts.home.deleted(listed.project.name));
-    this.projects_changed("/");
+    this.projectsChanged("/");
   }
 
-  private async look_into_bin(project: Project): Promise<void> {
-    if (await open_bin(this.api, project)) await this.load();
+  private async lookIntoBin(project: Project): Promise<void> {
+    if (await openBin(this.api, project)) await this.load();
   }
 
-  private async delete_model(model: Model): Promise<void> {
+  private async deleteModel(model: Model): Promise<void> {
     const words = texts.home;
     const gone = {
       kind: "model",
@@ -434,11 +432,11 @@ export class StrataHomePage extends LitElement {
       name: model.name,
       project: model.project,
     } as const;
-    if (!(await ask_to_bin(this.api, gone, { title: words.delete_title, lead: words.delete_lead })))
+    if (!(await askToBin(this.api, gone, { title: words.delete_title, lead: words.delete_lead })))
       return;
     try {
-      await this.api.delete_model(model.id);
-      tell_binned(this.api, gone, () => void this.load());
+      await this.api.deleteModel(model.id);
+      tellBinned(this.api, gone, () => void this.load());
     } catch (error) {
       notices.error(error);
     }

@@ -1,7 +1,7 @@
 import { css } from "lit";
 
 /** What stands below a card's picture. */
-export const card_styles = css`
+export const cardStyles = css`
   .about {
     display: grid;
     gap: 2px;
@@ -16,7 +16,7 @@ export const card_styles = css`
   }
 `;
 
-export const home_styles = css`
+export const homeStyles = css`
   :host {
     display: block;
     min-height: 100dvh;

@@ -1,10 +1,10 @@
 // Imports under way: upload, then the server's job. Kept outside the page's elements, so that going
 // to another page does not stop them.
 
-import { ApiError, name_of_file, type Api, type Upload } from "../../net/api";
+import { ApiError, nameOfFile, type Api, type Upload } from "../../net/api";
 import type { Job, ProblemBody } from "../../core/types";
 import type { DroppedFile } from "../../ui/drop";
-import { follow_job } from "../../net/follow-job";
+import { followJob } from "../../net/follow-job";
 import { notices } from "../../ui/notices";
 import { texts } from "../../texts";
 
@@ -19,7 +19,7 @@ export interface ImportEntry {
   problem: ProblemBody | null;
   model: number | null;
   /** It failed through no fault of the file: it may be sent again. */
-  may_repeat: boolean;
+  mayRepeat: boolean;
 }
 
 const kScans = /\.(ply|obj|stl|gltf|glb|zip)$/i;
@@ -42,28 +42,26 @@ export interface Scan {
   name: string;
 }
 
-const folder_of = (path: string): string => path.slice(0, path.lastIndexOf("/") + 1);
-const stem_of = (path: string): string => path.replace(/\.[^./]*$/, "");
+const folderOf = (path: string): string => path.slice(0, path.lastIndexOf("/") + 1);
+const stemOf = (path: string): string => path.replace(/\.[^./]*$/, "");
 
 /**
  * What each mesh is called: as its file; where several are called so, with as many of its folders
  * as tell them apart.
  */
-function names_of(meshes: readonly DroppedFile[]): Map<DroppedFile, string> {
-  const name_of = ({ path }: DroppedFile, folders: number): string => {
+function namesOf(meshes: readonly DroppedFile[]): Map<DroppedFile, string> {
+  const nameOf = ({ path }: DroppedFile, folders: number): string => {
     const parts = path.split("/").slice(-1 - folders);
-    return [...parts.slice(0, -1), name_of_file(parts.at(-1)!)].join("/");
+    return [...parts.slice(0, -1), nameOfFile(parts.at(-1)!)].join("/");
   };
   return new Map(
     meshes.map((mesh) => {
       let folders = 0;
       const depth = mesh.path.split("/").length - 1;
-      const is_shared = (): boolean =>
-        meshes.some(
-          (other) => other !== mesh && name_of(other, folders) === name_of(mesh, folders),
-        );
-      while (folders < depth && is_shared()) folders += 1;
-      return [mesh, name_of(mesh, folders)];
+      const isShared = (): boolean =>
+        meshes.some((other) => other !== mesh && nameOf(other, folders) === nameOf(mesh, folders));
+      while (folders < depth && isShared()) folders += 1;
+      return [mesh, nameOf(mesh, folders)];
     }),
   );
 }
@@ -72,20 +70,20 @@ function names_of(meshes: readonly DroppedFile[]): Map<DroppedFile, string> {
  * The scans among dropped files. All that may belong to a mesh comes with it where it is the only
  * one; where there are several, what is called like it does. What is left over is told.
  */
-export function choose_scans(files: readonly DroppedFile[]): Scan[] {
+export function chooseScans(files: readonly DroppedFile[]): Scan[] {
   const meshes = files.filter(({ path }) => kScans.test(path));
   // each is refused by its name
   if (meshes.length === 0)
-    return files.map((file): Scan => ({ files: [file], name: name_of_file(file.file.name) }));
+    return files.map((file): Scan => ({ files: [file], name: nameOfFile(file.file.name) }));
   const companions = files.filter(({ path }) => kCompanions.test(path));
   const taken = new Set(meshes);
-  const names = names_of(meshes);
+  const names = namesOf(meshes);
   const scans = meshes.map((mesh): Scan => {
     const own = companions.filter(
-      ({ path }) => meshes.length === 1 || path.startsWith(stem_of(mesh.path)),
+      ({ path }) => meshes.length === 1 || path.startsWith(stemOf(mesh.path)),
     );
     for (const file of own) taken.add(file);
-    const folder = folder_of(mesh.path);
+    const folder = folderOf(mesh.path);
     const beside = own.map(({ file, path }) => ({
       file,
       path: path.startsWith(folder) ? path.slice(folder.length) : path,
@@ -101,21 +99,21 @@ export function choose_scans(files: readonly DroppedFile[]): Scan[] {
 }
 
 /** The server restarted or was not reached: what was sent is good. */
-const may_repeat = (status: number): boolean => status === 0 || status >= 500 || status === 429;
+const mayRepeat = (status: number): boolean => status === 0 || status >= 500 || status === 429;
 
 export class Imports {
   entries: readonly ImportEntry[] = [];
-  private next_key_ = 1;
-  private readonly uploads_ = new Map<number, Upload<Job>>();
-  private readonly sent_ = new Map<number, { scan: Scan; project: string }>();
-  private readonly jobs_ = new Map<number, Job["id"]>();
-  private readonly listeners_ = new Set<() => void>();
+  private _nextKey = 1;
+  private readonly _uploads = new Map<number, Upload<Job>>();
+  private readonly _sent = new Map<number, { scan: Scan; project: string }>();
+  private readonly _jobs = new Map<number, Job["id"]>();
+  private readonly _listeners = new Set<() => void>();
 
-  constructor(private readonly api_: Api) {}
+  constructor(private readonly _api: Api) {}
 
   subscribe(listener: () => void): () => void {
-    this.listeners_.add(listener);
-    return () => this.listeners_.delete(listener);
+    this._listeners.add(listener);
+    return () => this._listeners.delete(listener);
   }
 
   /** Into the project of that slug. */
@@ -130,7 +128,7 @@ export class Imports {
       notices.show("problem", refusal);
       return { model: null, problem: null };
     }
-    const key = this.next_key_++;
+    const key = this._nextKey++;
     const entry: ImportEntry = {
       key,
       name: scan.name,
@@ -139,19 +137,19 @@ export class Imports {
       message: "",
       problem: null,
       model: null,
-      may_repeat: false,
+      mayRepeat: false,
     };
     this.entries = [...this.entries, entry];
-    this.sent_.set(key, { scan, project });
+    this._sent.set(key, { scan, project });
     this.tell();
     try {
-      const upload = this.api_.upload_model(scan.files, scan.name, project, (progress) =>
+      const upload = this._api.uploadModel(scan.files, scan.name, project, (progress) =>
         this.change(key, { progress }),
       );
-      this.uploads_.set(key, upload);
+      this._uploads.set(key, upload);
       const job = await upload.done;
-      this.uploads_.delete(key);
-      this.jobs_.set(key, job.id);
+      this._uploads.delete(key);
+      this._jobs.set(key, job.id);
       return await this.follow(key, job);
     } catch (error) {
       return this.fail(key, error);
@@ -159,30 +157,30 @@ export class Imports {
   }
 
   async cancel(key: number): Promise<void> {
-    this.uploads_.get(key)?.cancel();
-    const job = this.jobs_.get(key);
-    if (job !== undefined) await this.api_.cancel_job(job);
+    this._uploads.get(key)?.cancel();
+    const job = this._jobs.get(key);
+    if (job !== undefined) await this._api.cancelJob(job);
   }
 
   /** Once more from the beginning, in place of what failed. */
   async repeat(key: number): Promise<ImportResult> {
-    const sent = this.sent_.get(key);
+    const sent = this._sent.get(key);
     this.dismiss(key);
     return sent ? this.start(sent.scan, sent.project) : { model: null, problem: null };
   }
 
   dismiss(key: number): void {
-    this.sent_.delete(key);
+    this._sent.delete(key);
     this.entries = this.entries.filter((entry) => entry.key !== key);
     this.tell();
   }
 
   private async follow(key: number, first: Job): Promise<ImportResult> {
-    const job = await follow_job(this.api_, first, ({ state, progress, message, problem }) =>
+    const job = await followJob(this._api, first, ({ state, progress, message, problem }) =>
       this.change(key, { state, progress, message, problem: problem ?? null }),
     );
     if (job.state === "failed")
-      this.change(key, { may_repeat: may_repeat(job.problem?.status ?? 500) });
+      this.change(key, { mayRepeat: mayRepeat(job.problem?.status ?? 500) });
     if (job.state === "failed")
       return { model: null, problem: job.problem ?? { status: 500, title: texts.import.failed } };
     this.dismiss(key);
@@ -191,7 +189,7 @@ export class Imports {
 
   private fail(key: number, error: unknown): ImportResult {
     if (!(error instanceof ApiError)) throw error;
-    this.uploads_.delete(key);
+    this._uploads.delete(key);
     if (error.status === 499) {
       this.dismiss(key);
       return { model: null, problem: null };
@@ -199,7 +197,7 @@ export class Imports {
     this.change(key, {
       state: "failed",
       problem: error.problem,
-      may_repeat: may_repeat(error.status),
+      mayRepeat: mayRepeat(error.status),
     });
     return { model: null, problem: error.problem };
   }
@@ -212,6 +210,6 @@ export class Imports {
   }
 
   private tell(): void {
-    for (const listener of this.listeners_) listener();
+    for (const listener of this._listeners) listener();
   }
 }

@@ -5,14 +5,14 @@ import { css, html, LitElement, nothing, type PropertyValues, type TemplateResul
 import { customElement, property, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
 import { ApiError, type Api } from "../../net/api";
-import { card_styles } from "./home-styles";
+import { cardStyles } from "./home-styles";
 import { logo } from "../../ui/icons";
 import type { ListedProject } from "./project-list";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import "../../ui/thumbnail";
-import { told_day } from "../../domain/times";
-import { when_seen } from "../../ui/when-seen";
+import { toldDay } from "../../domain/times";
+import { whenSeen } from "../../ui/when-seen";
 
 const words = texts.home;
 let busy: Promise<void> = Promise.resolve(); // one question at a time, as with pictures
@@ -21,13 +21,13 @@ let busy: Promise<void> = Promise.resolve(); // one question at a time, as with 
 export class StrataProjectCard extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) listed!: ListedProject;
-  @state() private changed_ = ""; // when; nothing: it is not known
-  private is_seen_ = false;
-  private stop_waiting_: (() => void) | null = null;
+  @state() private _changed = ""; // when; nothing: it is not known
+  private _isSeen = false;
+  private _stopWaiting: (() => void) | null = null;
 
   static override styles = [
-    shared_styles,
-    card_styles,
+    sharedStyles,
+    cardStyles,
     css`
       :host {
         display: block;
@@ -57,19 +57,19 @@ export class StrataProjectCard extends LitElement {
   ];
 
   override firstUpdated(): void {
-    this.stop_waiting_ = when_seen(this, () => {
-      this.is_seen_ = true;
+    this._stopWaiting = whenSeen(this, () => {
+      this._isSeen = true;
       this.ask();
     });
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.stop_waiting_?.();
+    this._stopWaiting?.();
   }
 
   override updated(changed: PropertyValues<this>): void {
-    if (changed.has("listed") && this.is_seen_) this.ask();
+    if (changed.has("listed") && this._isSeen) this.ask();
   }
 
   private ask(): void {
@@ -84,10 +84,10 @@ export class StrataProjectCard extends LitElement {
         before: undefined,
         limit: 1,
       });
-      this.changed_ = activity[0]?.time ?? "";
+      this._changed = activity[0]?.time ?? "";
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.changed_ = ""; // whoever opens the project is told what is wrong
+      this._changed = ""; // whoever opens the project is told what is wrong
     }
   }
 
@@ -106,7 +106,7 @@ export class StrataProjectCard extends LitElement {
         <b>${project.name}</b>
         ${project.description ? html`<p>${project.description}</p>` : nothing}
         <span class="numeric faint">
-          ${models.length === 0 ? words.empty_title : words.count(models.length)}${this.changed_ ? ` · ${words.changed(told_day(this.changed_))}` : nothing}
+          ${models.length === 0 ? words.empty_title : words.count(models.length)}${this._changed ? ` · ${words.changed(toldDay(this._changed))}` : nothing}
         </span>
       </div>`;
   }

@@ -3,7 +3,7 @@
 import { ApiError, type Api, type Versioned } from "../../net/api";
 import type { Project } from "../../core/protocol.gen";
 import { StrataNamingDialog, type Called } from "../../ui/naming-dialog";
-import { path_of_project } from "../../ui/routes";
+import { pathOfProject } from "../../ui/routes";
 import { texts } from "../../texts";
 
 const words = texts.projects;
@@ -11,55 +11,55 @@ const words = texts.projects;
 /** A change of a project, which is put over another's only once this person knows of it. */
 export class ProjectChange {
   // the project as this person knows it; null: it is `project`
-  private base_: Versioned<Project> | null = null;
+  private _base: Versioned<Project> | null = null;
 
   constructor(
-    private readonly api_: Pick<Api, "project" | "change_project">,
-    private readonly project_: Project,
+    private readonly _api: Pick<Api, "project" | "changeProject">,
+    private readonly _project: Project,
   ) {}
 
   /** Null: somebody else changed it, and it is called `name` now. */
-  async save({ name, text }: Called, require_if_match: boolean): Promise<Project | null> {
-    const { slug } = this.project_;
-    const { value, etag } = this.base_ ?? (await this.api_.project(slug));
-    const known = this.base_?.value ?? this.project_;
+  async save({ name, text }: Called, requireIfMatch: boolean): Promise<Project | null> {
+    const { slug } = this._project;
+    const { value, etag } = this._base ?? (await this._api.project(slug));
+    const known = this._base?.value ?? this._project;
     try {
-      if (is_same(value, known))
-        return await this.api_.change_project(
+      if (isSame(value, known))
+        return await this._api.changeProject(
           slug,
-          { name, description: text, require_if_match },
+          { name, description: text, require_if_match: requireIfMatch },
           etag,
         );
     } catch (error) {
       if (!(error instanceof ApiError) || error.status !== 412) throw error;
     }
-    this.base_ = await this.api_.project(slug);
+    this._base = await this._api.project(slug);
     return null;
   }
 
   get name(): string {
-    return (this.base_?.value ?? this.project_).name;
+    return (this._base?.value ?? this._project).name;
   }
 }
 
-const is_same = (a: Project, b: Project): boolean =>
+const isSame = (a: Project, b: Project): boolean =>
   a.name === b.name &&
   a.description === b.description &&
   (a.require_if_match ?? false) === (b.require_if_match ?? false);
 
 /** The project that was made or changed; null: none was. Without `project` a new one. */
-export function ask_project(api: Api, project: Project | null): Promise<Project | null> {
+export function askProject(api: Api, project: Project | null): Promise<Project | null> {
   let answer: Project | null = null;
   const change = project && new ProjectChange(api, project);
-  const save = async (called: Called, key: string, require_if_match: boolean): Promise<string> => {
+  const save = async (called: Called, key: string, requireIfMatch: boolean): Promise<string> => {
     answer = change
-      ? await change.save(called, require_if_match)
-      : await api.create_project({ name: called.name, description: called.text }, key);
+      ? await change.save(called, requireIfMatch)
+      : await api.createProject({ name: called.name, description: called.text }, key);
     return answer || !change ? "" : words.changed(change.name);
   };
   const dialog = Object.assign(new StrataNamingDialog(), {
     heading: project ? words.describe_title(project.name) : words.new_title,
-    lead: project ? words.describe_lead(path_of_project(project.slug)) : words.new_lead,
+    lead: project ? words.describe_lead(pathOfProject(project.slug)) : words.new_lead,
     yes: project ? texts.save : words.create,
     words,
     called: project && { name: project.name, text: project.description },

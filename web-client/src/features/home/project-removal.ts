@@ -5,25 +5,25 @@ import { ApiError, type Api } from "../../net/api";
 import type { Project, Table } from "../../core/protocol.gen";
 
 /** What is typed is what the project is called, as far as that can be seen. */
-export const is_name_of = (typed: string, { name }: Project): boolean =>
-  as_seen(typed) !== "" && as_seen(typed) === as_seen(name);
-const as_seen = (text: string): string => text.normalize().trim().replace(/\s+/g, " ");
+export const isNameOf = (typed: string, { name }: Project): boolean =>
+  asSeen(typed) !== "" && asSeen(typed) === asSeen(name);
+const asSeen = (text: string): string => text.normalize().trim().replace(/\s+/g, " ");
 
 /**
  * With the tables, which no layer may show any more. What is gone already is well, so that it can
  * be tried again.
  */
-export async function remove_project(
-  api: Pick<Api, "delete_project" | "delete_table">,
+export async function removeProject(
+  api: Pick<Api, "deleteProject" | "deleteTable">,
   project: Project,
   tables: readonly Table[],
 ): Promise<void> {
-  await remove_tables(tables, (table) => api.delete_table(table.id));
-  await gone(api.delete_project(project.slug));
+  await removeTables(tables, (table) => api.deleteTable(table.id));
+  await gone(api.deleteProject(project.slug));
 }
 
 /** The server keeps a table that another one's columns name; which do is found by trying. */
-async function remove_tables(
+async function removeTables(
   tables: readonly Table[],
   remove: (table: Table) => Promise<void>,
 ): Promise<void> {

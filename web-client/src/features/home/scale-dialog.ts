@@ -5,29 +5,29 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../../net/api";
-import { kUpAxes, up_name } from "../../math/camera";
-import { format_size, likely_scale, metres_per } from "../../domain/measure";
+import { kUpAxes, upName } from "../../math/camera";
+import { formatSize, likelyScale, metresPer } from "../../domain/measure";
 import type { ScaleProposal } from "../../core/protocol.gen";
 import type { Model, Unit } from "../../core/types";
 import "../../ui/dialog";
 import type { StrataDialog } from "../../ui/dialog";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { radio_group } from "../../ui/radio-group";
-import { shared_styles } from "../../ui/styles";
+import { radioGroup } from "../../ui/radio-group";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import "../../ui/thumbnail";
 
 @customElement("strata-scale-dialog")
 export class StrataScaleDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  @state() private unit_: Unit = "m";
-  @state() private up_: Model["up"] = "z";
-  @state() private busy_ = false;
-  @query("strata-dialog") private dialog_!: StrataDialog;
+  @state() private _unit: Unit = "m";
+  @state() private _up: Model["up"] = "z";
+  @state() private _busy = false;
+  @query("strata-dialog") private _dialog!: StrataDialog;
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       .question {
         display: grid;
@@ -80,28 +80,28 @@ export class StrataScaleDialog extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    if (this.session.model) this.take(likely_scale(this.session.model));
+    if (this.session.model) this.take(likelyScale(this.session.model));
   }
 
   private take({ unit, up }: Pick<Model, "unit" | "up">): void {
-    [this.unit_, this.up_] = [unit, up];
-    this.session.preview_scale({ unit, up });
+    [this._unit, this._up] = [unit, up];
+    this.session.previewScale({ unit, up });
   }
 
   override render(): TemplateResult {
     const { model } = this.session;
     const words = texts.scale;
     if (!model) return html``;
-    const metres = metres_per(this.unit_);
+    const metres = metresPer(this._unit);
     const sides = [0, 1, 2].map(
       (axis) => (model.bounds.max[axis]! - model.bounds.min[axis]!) * metres,
     );
     const asked = model.proposal && !model.scale_verified ? model.proposal : null;
-    return html`<strata-dialog docked heading=${words.title(format_size(sides))} way_out=${model.scale_verified ? texts.cancel : words.later} @closed=${this.on_closed}>
+    return html`<strata-dialog docked heading=${words.title(formatSize(sides))} way_out=${model.scale_verified ? texts.cancel : words.later} @closed=${this.onClosed}>
       <p class="hint">${words.lead}</p>
       <div class="question">
         <span class="caption" id="unit">${words.unit}</span>
-        ${radio_group<Unit>({
+        ${radioGroup<Unit>({
           label: { id: "unit" },
           class: "segments",
           choices: [
@@ -109,63 +109,63 @@ export class StrataScaleDialog extends LitElement {
             { value: "cm", content: words.cm },
             { value: "m", content: words.m },
           ],
-          chosen: this.unit_,
-          choose: (unit) => this.take({ unit, up: this.up_ }),
+          chosen: this._unit,
+          choose: (unit) => this.take({ unit, up: this._up }),
         })}
-        ${asked ? html`<p class="hint" data-reason="unit">${unit_reason(asked)}</p>` : model.unit_assumed ? html`<p class="hint">${words.unit_unknown}</p>` : nothing}
+        ${asked ? html`<p class="hint" data-reason="unit">${unitReason(asked)}</p>` : model.unit_assumed ? html`<p class="hint">${words.unit_unknown}</p>` : nothing}
       </div>
       <div class="question">
         <span class="caption" id="up">${words.up}</span>
-        ${radio_group<Model["up"]>({
+        ${radioGroup<Model["up"]>({
           label: { id: "up" },
           class: "ups",
           choices: kUpAxes.map((up) => ({
             value: up,
-            content: html`<strata-thumbnail .api=${this.session.api} .model=${model} .up=${up}></strata-thumbnail><b>${up_name(up)}</b>`,
+            content: html`<strata-thumbnail .api=${this.session.api} .model=${model} .up=${up}></strata-thumbnail><b>${upName(up)}</b>`,
           })),
-          chosen: this.up_,
-          choose: (up) => this.take({ unit: this.unit_, up }),
+          chosen: this._up,
+          choose: (up) => this.take({ unit: this._unit, up }),
         })}
-        ${asked ? html`<p class="hint" data-reason="up">${up_reason(asked)}</p>` : nothing}
+        ${asked ? html`<p class="hint" data-reason="up">${upReason(asked)}</p>` : nothing}
       </div>
-      ${model.scale_verified ? nothing : html`<p class="hint">${words.until_then(words[model.unit], up_name(model.up))}</p>`}
-      <button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => void this.confirm()}>${words.yes}</button>
+      ${model.scale_verified ? nothing : html`<p class="hint">${words.until_then(words[model.unit], upName(model.up))}</p>`}
+      <button slot="actions" class="primary" ?disabled=${this._busy} @click=${() => void this.confirm()}>${words.yes}</button>
     </strata-dialog>`;
   }
 
   private async confirm(): Promise<void> {
     const { session } = this;
-    this.busy_ = true;
+    this._busy = true;
     try {
-      await session.change_model({ unit: this.unit_, up: this.up_, scale_verified: true });
+      await session.changeModel({ unit: this._unit, up: this._up, scale_verified: true });
       notices.show("success", texts.scale.saved);
-      this.dialog_.close();
+      this._dialog.close();
     } catch (error) {
       if (error instanceof ApiError && error.status === 412) {
-        await session.reload_model().catch((again: unknown) => notices.error(again));
+        await session.reloadModel().catch((again: unknown) => notices.error(again));
         notices.show("problem", texts.scale.changed);
         if (session.model) this.take(session.model);
       } else {
         notices.error(error);
       }
     } finally {
-      this.busy_ = false;
+      this._busy = false;
     }
   }
 
-  private on_closed(): void {
-    this.session.preview_scale(null);
+  private onClosed(): void {
+    this.session.previewScale(null);
     this.dispatchEvent(new CustomEvent("closed"));
   }
 }
 
 const kSure = 0.6; // below it the words say that it is a guess among several
 
-function unit_reason({
+function unitReason({
   unit,
   unit_reason: reason,
-  unit_confidence,
-  unit_comment,
+  unit_confidence: unitConfidence,
+  unit_comment: unitComment,
 }: ScaleProposal): string {
   const words = texts.scale;
   switch (reason) {
@@ -174,15 +174,20 @@ function unit_reason({
     case "format":
       return words.format;
     case "comment":
-      return words.comment(unit_comment ?? "");
+      return words.comment(unitComment ?? "");
     case "coordinates":
       return words.coordinates;
     default:
-      return unit_confidence >= kSure ? words.size(words[unit]) : words.size_unsure;
+      return unitConfidence >= kSure ? words.size(words[unit]) : words.size_unsure;
   }
 }
 
-function up_reason({ up, up_reason: reason, up_confidence, up_comment }: ScaleProposal): string {
+function upReason({
+  up,
+  up_reason: reason,
+  up_confidence: upConfidence,
+  up_comment: upComment,
+}: ScaleProposal): string {
   const words = texts.scale;
   switch (reason) {
     case "given":
@@ -190,10 +195,10 @@ function up_reason({ up, up_reason: reason, up_confidence, up_comment }: ScalePr
     case "format":
       return words.format_up;
     case "comment":
-      return words.comment_up(up_comment ?? "");
+      return words.comment_up(upComment ?? "");
     case "coordinates":
       return words.coordinates;
     default:
-      return up_confidence >= kSure ? words.shape(up_name(up)) : words.shape_unsure(up_name(up));
+      return upConfidence >= kSure ? words.shape(upName(up)) : words.shape_unsure(upName(up));
   }
 }

@@ -4,39 +4,39 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { ApiError, type SheetQuery } from "../../net/api";
-import { label_of } from "../../domain/cells";
-import { format_area } from "../../domain/measure";
+import { labelOf } from "../../domain/cells";
+import { formatArea } from "../../domain/measure";
 import type { CrossTable } from "../../core/protocol.gen";
-import { holds_fractions, type Layer } from "../../core/types";
-import { describe_value } from "../../session/layer-values";
-import { follow_session } from "../../session/follow-session";
+import { holdsFractions, type Layer } from "../../core/types";
+import { describeValue } from "../../session/layer-values";
+import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
-import { save_blob } from "../../ui/save-from";
-import { sheet_buttons, sheet_query } from "../../ui/workbook-buttons";
-import { shared_styles } from "../../ui/styles";
+import { saveBlob } from "../../ui/save-from";
+import { sheetButtons, sheetQuery } from "../../ui/workbook-buttons";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.cross_table;
 const kMostShown = 40; // rows and columns: the files have all
 
 /** Layers that have classes which can be counted against those of another. */
-export const has_classes = (layer: Layer): boolean => !holds_fractions(layer.type);
+export const hasClasses = (layer: Layer): boolean => !holdsFractions(layer.type);
 
 @customElement("strata-cross-table")
 export class StrataCrossTable extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) layer!: Layer;
-  @state() private with_: Layer | null = null;
-  @state() private table_: CrossTable | null = null;
-  @state() private problem_ = "";
+  @state() private _with: Layer | null = null;
+  @state() private _table: CrossTable | null = null;
+  @state() private _problem = "";
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: grid;
@@ -92,11 +92,11 @@ export class StrataCrossTable extends LitElement {
   private get others(): Layer[] {
     return [...this.session.layers.all]
       .reverse()
-      .filter((layer) => layer.id !== this.layer.id && has_classes(layer));
+      .filter((layer) => layer.id !== this.layer.id && hasClasses(layer));
   }
 
   override render(): TemplateResult {
-    const { others, with_: other } = this;
+    const { others, _with: other } = this;
     return html`<h3>${words.title}</h3>
       ${
         others.length === 0
@@ -105,54 +105,54 @@ export class StrataCrossTable extends LitElement {
             <span>${words.other}</span>
             <select @change=${(event: Event) => void this.choose(Number((event.target as HTMLSelectElement).value))}>
               <option value="0" ?selected=${other === null}>${words.choose}</option>
-              ${others.map((layer) => html`<option value=${layer.id} ?selected=${layer.id === other?.id}>${label_of(layer)}</option>`)}
+              ${others.map((layer) => html`<option value=${layer.id} ?selected=${layer.id === other?.id}>${labelOf(layer)}</option>`)}
             </select>
           </label>`
       }
-      ${this.problem_ ? html`<p class="error" role="alert">${this.problem_}</p>` : nothing}
-      ${other && !this.table_ && !this.problem_ ? html`<p class="hint" role="status">${texts.loading}</p>` : nothing}
-      ${other && this.table_ ? this.table(other, this.table_) : nothing}`;
+      ${this._problem ? html`<p class="error" role="alert">${this._problem}</p>` : nothing}
+      ${other && !this._table && !this._problem ? html`<p class="hint" role="status">${texts.loading}</p>` : nothing}
+      ${other && this._table ? this.table(other, this._table) : nothing}`;
   }
 
   private async choose(id: number): Promise<void> {
     const other = this.others.find((layer) => layer.id === id) ?? null;
-    this.with_ = other;
-    this.table_ = null;
-    this.problem_ = "";
+    this._with = other;
+    this._table = null;
+    this._problem = "";
     if (!other) return;
     try {
-      const table = await this.session.api.cross_table(
-        this.session.model_id,
+      const table = await this.session.api.crossTable(
+        this.session.modelId,
         this.layer.id,
         other.id,
       );
-      if (this.with_ === other) this.table_ = table;
+      if (this._with === other) this._table = table;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (this.with_ === other) this.problem_ = error.message;
+      if (this._with === other) this._problem = error.message;
     }
   }
 
   private name(layer: Layer, key: number | null): string {
     return key === null
-      ? words.nothing(label_of(layer))
-      : describe_value(layer, key, this.session.tables);
+      ? words.nothing(labelOf(layer))
+      : describeValue(layer, key, this.session.tables);
   }
 
   /** As it is read, and copied: with sums. */
-  private rows(other: Layer, { rows, columns, area_m2 }: CrossTable): string[][] {
+  private rows(other: Layer, { rows, columns, area_m2: areaM2 }: CrossTable): string[][] {
     const sum = (numbers: readonly number[]): number =>
       numbers.reduce((all, each) => all + each, 0);
-    const shown = (area: number): string => (area > 0 ? format_area(area) : "");
+    const shown = (area: number): string => (area > 0 ? formatArea(area) : "");
     const lines = rows.map((key, row) => [
       this.name(this.layer, key),
-      ...area_m2[row]!.map(shown),
-      shown(sum(area_m2[row]!)),
+      ...areaM2[row]!.map(shown),
+      shown(sum(areaM2[row]!)),
     ]);
-    const sums = columns.map((_, column) => sum(area_m2.map((row) => row[column]!)));
+    const sums = columns.map((_, column) => sum(areaM2.map((row) => row[column]!)));
     return [
       [
-        `${label_of(this.layer)} / ${label_of(other)}`,
+        `${labelOf(this.layer)} / ${labelOf(other)}`,
         ...columns.map((key) => this.name(other, key)),
         words.sum,
       ],
@@ -164,14 +164,14 @@ export class StrataCrossTable extends LitElement {
   private table(other: Layer, table: CrossTable): TemplateResult {
     if (table.rows.length === 0) return html`<p class="hint">${words.empty}</p>`;
     const all = this.rows(other, table);
-    const what = words.of(label_of(this.layer), label_of(other));
+    const what = words.of(labelOf(this.layer), labelOf(other));
     const cut = <T>(list: readonly T[]): T[] =>
       list.length > kMostShown
         ? [...list.slice(0, kMostShown - 1), list[list.length - 1]!]
         : [...list];
     const [head, ...lines] = cut(all).map(cut);
     return html`<div class="row" role="group" aria-label=${what}>
-        ${sheet_buttons({ what, rows: () => all, save: (f) => void this.save(other, f) })}
+        ${sheetButtons({ what, rows: () => all, save: (f) => void this.save(other, f) })}
       </div>
       <div class="scroller" tabindex="0" role="region" aria-label=${what}>
         <table class="numeric">
@@ -190,18 +190,18 @@ export class StrataCrossTable extends LitElement {
   }
 
   private async save(other: Layer, f: SheetQuery["f"]): Promise<void> {
-    this.problem_ = "";
+    this._problem = "";
     try {
-      const sheet = await this.session.api.cross_table_sheet(
-        this.session.model_id,
+      const sheet = await this.session.api.crossTableSheet(
+        this.session.modelId,
         this.layer.id,
         other.id,
-        sheet_query(f),
+        sheetQuery(f),
       );
-      save_blob(sheet, `${this.layer.slug}-${other.slug}.${f}`);
+      saveBlob(sheet, `${this.layer.slug}-${other.slug}.${f}`);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.problem_ = error.message;
+      this._problem = error.message;
     }
   }
 }

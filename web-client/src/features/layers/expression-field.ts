@@ -5,18 +5,18 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../../net/api";
-import { label_of } from "../../domain/cells";
+import { labelOf } from "../../domain/cells";
 import {
   complete,
-  marked_at,
-  name_in_text,
+  markedAt,
+  nameInText,
   type Completion,
   type Suggestion,
 } from "../../domain/completion";
-import { format_area } from "../../domain/measure";
-import { follow_session } from "../../session/follow-session";
+import { formatArea } from "../../domain/measure";
+import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.expressions;
@@ -33,21 +33,21 @@ export class StrataExpressionField extends LitElement {
   @property({ type: Boolean }) computes = false;
   @property() initial = "";
 
-  @state() private completion_ = kNone;
-  @state() private chosen_ = 0;
-  @state() private told_ = "";
-  @state() private problem_: { text: string; offset: number | null; message: string } | null = null;
-  @query("textarea") private field_!: HTMLTextAreaElement;
-  private timer_ = 0;
-  private asked_ = 0;
+  @state() private _completion = kNone;
+  @state() private _chosen = 0;
+  @state() private _told = "";
+  @state() private _problem: { text: string; offset: number | null; message: string } | null = null;
+  @query("textarea") private _field!: HTMLTextAreaElement;
+  private _timer = 0;
+  private _asked = 0;
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: grid;
@@ -112,21 +112,21 @@ export class StrataExpressionField extends LitElement {
   ];
 
   get value(): string {
-    return this.field_?.value.trim() ?? "";
+    return this._field?.value.trim() ?? "";
   }
 
   override focus(): void {
-    this.field_.focus();
+    this._field.focus();
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    window.clearTimeout(this.timer_);
-    ++this.asked_;
+    window.clearTimeout(this._timer);
+    ++this._asked;
   }
 
   override render(): TemplateResult {
-    const { suggestions } = this.completion_;
+    const { suggestions } = this._completion;
     return html`<div class="editor">
         <label class="field">
           <span>${this.label}</span>
@@ -142,11 +142,11 @@ export class StrataExpressionField extends LitElement {
             role="combobox"
             aria-expanded=${suggestions.length > 0 ? "true" : "false"}
             aria-controls="names"
-            aria-activedescendant=${suggestions.length > 0 ? `name-${this.chosen_}` : ""}
-            aria-invalid=${this.problem_ ? "true" : "false"}
-            @input=${this.on_input}
-            @keydown=${this.on_key}
-            @blur=${() => (this.completion_ = kNone)}
+            aria-activedescendant=${suggestions.length > 0 ? `name-${this._chosen}` : ""}
+            aria-invalid=${this._problem ? "true" : "false"}
+            @input=${this.onInput}
+            @keydown=${this.onKey}
+            @blur=${() => (this._completion = kNone)}
           ></textarea>
         </label>
         ${
@@ -158,7 +158,7 @@ export class StrataExpressionField extends LitElement {
                   html`<li
                     id="name-${index}"
                     role="option"
-                    aria-selected=${index === this.chosen_ ? "true" : "false"}
+                    aria-selected=${index === this._chosen ? "true" : "false"}
                     @pointerdown=${(event: Event) => {
                       event.preventDefault();
                       this.accept(index);
@@ -170,11 +170,11 @@ export class StrataExpressionField extends LitElement {
             </ul>`
         }
       </div>
-      ${this.problem_ ? this.told_problem(this.problem_) : nothing}
-      <p class="hint" role="status" ?hidden=${this.told_ === ""}>${this.told_}</p>`;
+      ${this._problem ? this.toldProblem(this._problem) : nothing}
+      <p class="hint" role="status" ?hidden=${this._told === ""}>${this._told}</p>`;
   }
 
-  private told_problem({
+  private toldProblem({
     text,
     offset,
     message,
@@ -183,32 +183,32 @@ export class StrataExpressionField extends LitElement {
     offset: number | null;
     message: string;
   }): TemplateResult {
-    const [before, at, after] = marked_at(text, offset ?? 0);
+    const [before, at, after] = markedAt(text, offset ?? 0);
     return html`${offset === null ? nothing : html`<pre aria-hidden="true">${before}<mark>${at}</mark>${after}</pre>`}
       <p class="error" role="alert">${message}</p>`;
   }
 
   /** A problem that the server told of the text as a whole. */
   refuse(error: ApiError): void {
-    this.problem_ = {
+    this._problem = {
       text: this.value,
       offset: error.problem.offset ?? null,
       message: error.message,
     };
-    this.told_ = "";
+    this._told = "";
     this.focus();
   }
 
   private names(): Suggestion[] {
     const names: Suggestion[] = [];
     for (const layer of this.session.layers.all) {
-      const slug = name_in_text(layer.slug);
+      const slug = nameInText(layer.slug);
       names.push({ text: slug, hint: layer.name });
       if (layer.table === undefined) continue;
       for (const column of this.session.tables.find(layer.table)?.columns ?? [])
         names.push({
-          text: `${slug}.${name_in_text(column.slug)}`,
-          hint: words.column(label_of(column), layer.name),
+          text: `${slug}.${nameInText(column.slug)}`,
+          hint: words.column(labelOf(column), layer.name),
         });
     }
     const surface = this.computes ? kSurface : kSurface.slice(0, 4);
@@ -217,25 +217,25 @@ export class StrataExpressionField extends LitElement {
     return names;
   }
 
-  private on_input(event: Event): void {
+  private onInput(event: Event): void {
     event.stopPropagation();
-    this.completion_ = complete(this.field_.value, this.field_.selectionStart, this.names());
-    this.chosen_ = 0;
-    this.problem_ = null;
-    window.clearTimeout(this.timer_);
-    this.timer_ = window.setTimeout(() => void this.preview(), kPause);
+    this._completion = complete(this._field.value, this._field.selectionStart, this.names());
+    this._chosen = 0;
+    this._problem = null;
+    window.clearTimeout(this._timer);
+    this._timer = window.setTimeout(() => void this.preview(), kPause);
     this.dispatchEvent(new CustomEvent("input"));
   }
 
-  private on_key(event: KeyboardEvent): void {
-    const count = this.completion_.suggestions.length;
+  private onKey(event: KeyboardEvent): void {
+    const count = this._completion.suggestions.length;
     if (count > 0 && (event.key === "ArrowDown" || event.key === "ArrowUp")) {
-      this.chosen_ = (this.chosen_ + (event.key === "ArrowDown" ? 1 : count - 1)) % count;
+      this._chosen = (this._chosen + (event.key === "ArrowDown" ? 1 : count - 1)) % count;
     } else if (count > 0 && (event.key === "Tab" || event.key === "Enter")) {
-      this.accept(this.chosen_);
+      this.accept(this._chosen);
     } else if (count > 0 && event.key === "Escape") {
       event.stopPropagation();
-      this.completion_ = kNone;
+      this._completion = kNone;
     } else if (event.key === "Enter" && !event.shiftKey) {
       this.dispatchEvent(new CustomEvent("submitted"));
     } else {
@@ -245,38 +245,38 @@ export class StrataExpressionField extends LitElement {
   }
 
   private accept(index: number): void {
-    const suggestion = this.completion_.suggestions[index];
+    const suggestion = this._completion.suggestions[index];
     if (!suggestion) return;
-    this.field_.setRangeText(
+    this._field.setRangeText(
       suggestion.text,
-      this.completion_.from,
-      this.field_.selectionStart,
+      this._completion.from,
+      this._field.selectionStart,
       "end",
     );
-    this.field_.dispatchEvent(new Event("input"));
-    this.completion_ = kNone;
+    this._field.dispatchEvent(new Event("input"));
+    this._completion = kNone;
     this.focus();
   }
 
   /** Asks the server for what it holds; of a number, where it is known. */
   private async preview(): Promise<void> {
     const text = this.value;
-    const asked = ++this.asked_;
-    this.told_ = "";
+    const asked = ++this._asked;
+    this._told = "";
     if (text === "") return;
-    let tried = await this.try_out(text, words.holds, 0);
+    let tried = await this.tryOut(text, words.holds, 0);
     if (this.computes && tried.error?.message.startsWith(kWantsCondition))
-      tried = await this.try_out(`(${text}) is not null`, words.known, 1);
-    if (asked !== this.asked_) return;
+      tried = await this.tryOut(`(${text}) is not null`, words.known, 1);
+    if (asked !== this._asked) return;
     const { error, told, before } = tried;
-    this.told_ = told;
-    if (!error || error.status !== 422 || (this.computes && is_for_computing(error))) return;
+    this._told = told;
+    if (!error || error.status !== 422 || (this.computes && isForComputing(error))) return;
     const { offset } = error.problem;
     const message = error.message.replace(
       /\(at character (\d+)\)/,
       (_, n: string) => `(at character ${Number(n) - before})`,
     );
-    this.problem_ = {
+    this._problem = {
       text,
       offset: offset === undefined ? null : Math.max(0, offset - before),
       message,
@@ -284,14 +284,14 @@ export class StrataExpressionField extends LitElement {
   }
 
   /** `before`: characters that stand before the person's own text. */
-  private async try_out(
+  private async tryOut(
     where: string,
-    in_words: (area: string) => string,
+    inWords: (area: string) => string,
     before: number,
   ): Promise<{ error?: ApiError; told: string; before: number }> {
-    const { api, model_id } = this.session;
+    const { api, modelId } = this.session;
     try {
-      return { told: in_words(format_area((await api.select(model_id, where)).area_m2)), before };
+      return { told: inWords(formatArea((await api.select(modelId, where)).area_m2)), before };
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       return { error, told: "", before };
@@ -301,5 +301,5 @@ export class StrataExpressionField extends LitElement {
 
 const kWantsCondition = "A condition is wanted, not a number";
 /** What only a computed layer can have cannot be tried out before it is made. */
-const is_for_computing = (error: ApiError): boolean =>
+const isForComputing = (error: ApiError): boolean =>
   kSurface.slice(4).some((name) => error.message.startsWith(`'${name}' of the surface`));

@@ -1,7 +1,7 @@
 // What somebody changed in the dialog of a layer.
 
-import { rows_of } from "../../core/languages";
-import { same_palette } from "../../domain/palette";
+import { rowsOf } from "../../core/languages";
+import { samePalette } from "../../domain/palette";
 import type { Labels, Visibility } from "../../core/protocol.gen";
 import type { Layer, LayerPatch, Palette } from "../../core/types";
 
@@ -18,7 +18,7 @@ export interface LayerWanted {
 }
 
 /** Only what differs: what this person left alone is not theirs to set. */
-export function layer_changes(
+export function layerChanges(
   layer: Layer,
   {
     name,
@@ -36,14 +36,14 @@ export function layer_changes(
   if (name !== layer.name) change.name = name;
   if (unit !== layer.unit) change.unit = unit;
   if (description !== layer.description) change.description = description;
-  if (!same_words(labels, layer.labels)) change.labels = labels;
-  if (!same_words(descriptions, layer.descriptions)) change.descriptions = descriptions;
-  if (!same_palette(palette, layer.palette)) change.palette = palette;
+  if (!sameWords(labels, layer.labels)) change.labels = labels;
+  if (!sameWords(descriptions, layer.descriptions)) change.descriptions = descriptions;
+  if (!samePalette(palette, layer.palette)) change.palette = palette;
   if (visibility !== layer.visibility) change.visibility = visibility;
   if (expression !== undefined && expression !== layer.expression) change.expression = expression;
   if (recompute !== undefined && recompute !== layer.recompute) change.recompute = recompute;
   return change;
 }
 
-const same_words = (a: Labels, b: Labels): boolean =>
-  JSON.stringify(rows_of(a)) === JSON.stringify(rows_of(b));
+const sameWords = (a: Labels, b: Labels): boolean =>
+  JSON.stringify(rowsOf(a)) === JSON.stringify(rowsOf(b));

@@ -4,21 +4,21 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
-import { read_number } from "../../core/locale";
-import { detail_choices, format_length } from "../../domain/measure";
+import { readNumber } from "../../core/locale";
+import { detailChoices, formatLength } from "../../domain/measure";
 import {
-  class_palette,
+  classPalette,
   kClassColors,
-  measurement_palette,
-  opaque_color,
-  presence_palette,
-  purpose_of,
-  record_palette,
+  measurementPalette,
+  opaqueColor,
+  presencePalette,
+  purposeOf,
+  recordPalette,
   type LayerPurpose,
 } from "../../domain/palette";
 import type { Layer, LayerCreate, Palette, Resolution, ValueType } from "../../core/types";
 import { ApiError } from "../../net/api";
-import { label_of } from "../../domain/cells";
+import { labelOf } from "../../domain/cells";
 import type { Labels, Table, Visibility } from "../../core/protocol.gen";
 import "../../ui/dialog";
 import "./expression-field";
@@ -27,16 +27,16 @@ import type { StrataDialog } from "../../ui/dialog";
 import { icon } from "../../ui/icons";
 import "../../ui/labels-field";
 import type { StrataLabelsField } from "../../ui/labels-field";
-import { layer_changes, type LayerWanted } from "./layer-changes";
+import { layerChanges, type LayerWanted } from "./layer-changes";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { number_input } from "../../ui/number-input";
-import { radio_group } from "../../ui/radio-group";
+import { numberInput } from "../../ui/number-input";
+import { radioGroup } from "../../ui/radio-group";
 import "./shape-fields";
 import type { StrataShapeFields } from "./shape-fields";
-import { form_styles, shared_styles } from "../../ui/styles";
+import { formStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
-import { visibility_choice } from "../../ui/visibility";
+import { visibilityChoice } from "../../ui/visibility";
 
 interface ClassRow {
   at: number;
@@ -63,27 +63,27 @@ export class StrataLayerDialog extends LitElement {
   @property({ attribute: false }) layer: Layer | null = null;
 
   /** The layer as it was when the person began to change it, and its version. */
-  @state() private base_: { layer: Layer; etag: string } | null = null;
-  @state() private stale_ = false; // somebody else changed it since
-  @state() private purpose_: Purpose = "presence";
-  @state() private color_ = "#d55e00ff";
-  @state() private classes_: ClassRow[] = [];
-  @state() private stepped_ = false;
-  @state() private tables_: Table[] = []; // whose records a layer may show
-  @state() private table_: Table | null = null; // null: one of the layer's own
-  @state() private visibility_: Visibility = "public";
-  @state() private problem_ = "";
-  @state() private problem_field_ = "";
-  @state() private busy_ = false;
-  @query("strata-dialog") private dialog_!: StrataDialog;
-  @query("strata-labels-field") private labels_!: StrataLabelsField;
-  @query("form") private form_!: HTMLFormElement;
-  @query("strata-shape-fields") private shape_!: StrataShapeFields;
-  @query("strata-expression-field") private expression_!: StrataExpressionField;
+  @state() private _base: { layer: Layer; etag: string } | null = null;
+  @state() private _stale = false; // somebody else changed it since
+  @state() private _purpose: Purpose = "presence";
+  @state() private _color = "#d55e00ff";
+  @state() private _classes: ClassRow[] = [];
+  @state() private _stepped = false;
+  @state() private _tables: Table[] = []; // whose records a layer may show
+  @state() private _table: Table | null = null; // null: one of the layer's own
+  @state() private _visibility: Visibility = "public";
+  @state() private _problem = "";
+  @state() private _problemField = "";
+  @state() private _busy = false;
+  @query("strata-dialog") private _dialog!: StrataDialog;
+  @query("strata-labels-field") private _labels!: StrataLabelsField;
+  @query("form") private _form!: HTMLFormElement;
+  @query("strata-shape-fields") private _shape!: StrataShapeFields;
+  @query("strata-expression-field") private _expression!: StrataExpressionField;
 
   static override styles = [
-    shared_styles,
-    form_styles,
+    sharedStyles,
+    formStyles,
     css`
       .kinds {
         display: grid;
@@ -198,14 +198,14 @@ export class StrataLayerDialog extends LitElement {
     super.connectedCallback();
     if (this.layer) void this.read(this.layer);
     else {
-      this.classes_ = [1, 2, 3].map((at) => new_class(at));
-      void this.find_tables();
+      this._classes = [1, 2, 3].map((at) => newClass(at));
+      void this.findTables();
     }
   }
 
-  private async find_tables(): Promise<void> {
+  private async findTables(): Promise<void> {
     try {
-      this.tables_ = await this.session.tables.all();
+      this._tables = await this.session.tables.all();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this.refuse("", error.message);
@@ -215,19 +215,19 @@ export class StrataLayerDialog extends LitElement {
   private async read(layer: Layer): Promise<void> {
     this.refuse("", "");
     try {
-      const { value, etag } = await this.session.api.layer(this.session.model_id, layer.id);
-      const purpose = purpose_of(value);
+      const { value, etag } = await this.session.api.layer(this.session.modelId, layer.id);
+      const purpose = purposeOf(value);
       // it can have a second class one day
-      this.purpose_ = purpose === "presence" ? "classes" : purpose;
-      this.classes_ = value.palette.points.map(({ at, label, color }) => ({
+      this._purpose = purpose === "presence" ? "classes" : purpose;
+      this._classes = value.palette.points.map(({ at, label, color }) => ({
         at,
         label: label ?? "",
         color,
       }));
-      this.stepped_ = value.palette.mode === "step";
-      this.visibility_ = value.visibility;
-      this.base_ = { layer: value, etag };
-      this.stale_ = false;
+      this._stepped = value.palette.mode === "step";
+      this._visibility = value.visibility;
+      this._base = { layer: value, etag };
+      this._stale = false;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this.refuse("", error.message);
@@ -238,19 +238,19 @@ export class StrataLayerDialog extends LitElement {
     const { layer } = this;
     return html`<strata-dialog
       wide
-      heading=${layer ? words.edit_title(label_of(layer)) : words.create_title}
+      heading=${layer ? words.edit_title(labelOf(layer)) : words.create_title}
       way_out=${texts.cancel}
       @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
     >
-      ${layer && !this.base_ ? html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>` : this.form()}
-      <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
+      ${layer && !this._base ? html`<p class="hint" role="status" ?hidden=${this._problem !== ""}>${texts.loading}</p>` : this.form()}
+      <p class="error" role="alert" ?hidden=${!this._problem}>${this._problem}</p>
       ${
-        layer && (this.stale_ || !this.base_)
+        layer && (this._stale || !this._base)
           ? html`<button slot="actions" class="primary" @click=${() => void this.read(layer)}>
-            ${this.stale_ ? words.reload : texts.try_again}
+            ${this._stale ? words.reload : texts.try_again}
           </button>`
-          : html`<button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => this.form_.requestSubmit()}>
-            ${layer ? texts.save : this.purpose_ === "shape" || this.purpose_ === "formula" ? words.compute : words.create}
+          : html`<button slot="actions" class="primary" ?disabled=${this._busy} @click=${() => this._form.requestSubmit()}>
+            ${layer ? texts.save : this._purpose === "shape" || this._purpose === "formula" ? words.compute : words.create}
           </button>`
       }
     </strata-dialog>`;
@@ -258,22 +258,22 @@ export class StrataLayerDialog extends LitElement {
 
   /** Made anew for every version of the layer that is read. */
   private form(): unknown {
-    const layer = this.base_?.layer;
+    const layer = this._base?.layer;
     return keyed(
-      this.base_?.etag,
-      html`<form id="form" novalidate @submit=${this.on_submit}>
+      this._base?.etag,
+      html`<form id="form" novalidate @submit=${this.onSubmit}>
         ${layer ? nothing : this.kinds()}
         ${
-          this.purpose_ === "shape"
+          this._purpose === "shape"
             ? html`<strata-shape-fields
               .session=${this.session}
-              .wrong=${this.problem_field_}
+              .wrong=${this._problemField}
               @kind-changed=${() => this.requestUpdate()}
             ></strata-shape-fields>`
             : nothing
         }
-        ${this.purpose_ === "records" && !layer && this.tables_.length > 0 ? this.tables() : nothing}
-        ${this.purpose_ === "formula" || layer?.expression !== undefined ? this.formula(layer) : nothing}
+        ${this._purpose === "records" && !layer && this._tables.length > 0 ? this.tables() : nothing}
+        ${this._purpose === "formula" || layer?.expression !== undefined ? this.formula(layer) : nothing}
         <div class="two">
           <label class="field">
             <span>${words.name}</span>
@@ -283,31 +283,31 @@ export class StrataLayerDialog extends LitElement {
               maxlength="200"
               autocomplete="off"
               .value=${layer?.name ?? ""}
-              placeholder=${this.purpose_ === "shape" ? (this.shape_?.kind_title ?? "") : this.purpose_ === "formula" ? words.formula_hint : this.named_by_table ? label_of(this.table_!) : words.name_hint[this.purpose_]}
-              aria-invalid=${this.problem_field_ === "name" ? "true" : "false"}
+              placeholder=${this._purpose === "shape" ? (this._shape?.kindTitle ?? "") : this._purpose === "formula" ? words.formula_hint : this.namedByTable ? labelOf(this._table!) : words.name_hint[this._purpose]}
+              aria-invalid=${this._problemField === "name" ? "true" : "false"}
             />
           </label>
           ${
-            this.purpose_ === "presence"
+            this._purpose === "presence"
               ? html`<label class="field">
                 <span>${words.color}</span>
                 <input
                   type="color"
-                  .value=${opaque_color(this.color_)}
-                  @input=${(event: Event) => (this.color_ = `${(event.target as HTMLInputElement).value}ff`)}
+                  .value=${opaqueColor(this._color)}
+                  @input=${(event: Event) => (this._color = `${(event.target as HTMLInputElement).value}ff`)}
                 />
               </label>`
               : nothing
           }
         </div>
-        ${this.purpose_ === "classes" ? this.classes() : nothing}
-        ${this.purpose_ === "measurement" ? this.measurement() : nothing} ${layer ? nothing : this.details()}
+        ${this._purpose === "classes" ? this.classes() : nothing}
+        ${this._purpose === "measurement" ? this.measurement() : nothing} ${layer ? nothing : this.details()}
         <label class="field">
           <span>${words.description}</span>
           <textarea name="description" maxlength="10000" placeholder=${words.description_hint} .value=${layer?.description ?? ""}></textarea>
         </label>
         <strata-labels-field .labels=${layer?.labels ?? kNoWords} .descriptions=${layer?.descriptions ?? kNoWords}></strata-labels-field>
-        ${visibility_choice(this.visibility_, (visibility) => (this.visibility_ = visibility))}
+        ${visibilityChoice(this._visibility, (visibility) => (this._visibility = visibility))}
       </form>`,
     );
   }
@@ -323,42 +323,42 @@ export class StrataLayerDialog extends LitElement {
     ];
     return html`<div>
       <p class="caption" id="question">${words.question}</p>
-      ${radio_group<Purpose>({
+      ${radioGroup<Purpose>({
         label: { id: "question" },
         class: "kinds",
         choices: kinds.map(([value, title, lead]) => ({
           value,
           content: html`<b>${title}</b><span>${lead}</span>`,
         })),
-        chosen: this.purpose_,
-        choose: (purpose) => (this.purpose_ = purpose),
+        chosen: this._purpose,
+        choose: (purpose) => (this._purpose = purpose),
       })}
-      <p class="hint chosen-lead" aria-hidden="true">${kinds.find(([value]) => value === this.purpose_)?.[2]}</p>
+      <p class="hint chosen-lead" aria-hidden="true">${kinds.find(([value]) => value === this._purpose)?.[2]}</p>
     </div>`;
   }
 
   private tables(): TemplateResult {
     return html`<label class="field">
       <span>${words.table}</span>
-      <select name="table" @change=${(event: Event) => this.choose_table(Number((event.target as HTMLSelectElement).value))}>
-        <option value="0" ?selected=${this.table_ === null}>${words.own_table}</option>
-        ${this.tables_.map(
+      <select name="table" @change=${(event: Event) => this.chooseTable(Number((event.target as HTMLSelectElement).value))}>
+        <option value="0" ?selected=${this._table === null}>${words.own_table}</option>
+        ${this._tables.map(
           (table) =>
-            html`<option value=${table.id} ?selected=${table.id === this.table_?.id}>
-              ${table.kind === "terms" ? words.table_of_terms(label_of(table), table.records) : words.table_of_records(label_of(table), table.records)}
+            html`<option value=${table.id} ?selected=${table.id === this._table?.id}>
+              ${table.kind === "terms" ? words.table_of_terms(labelOf(table), table.records) : words.table_of_records(labelOf(table), table.records)}
             </option>`,
         )}
       </select>
     </label>`;
   }
 
-  private choose_table(id: number): void {
-    this.table_ = this.tables_.find((table) => table.id === id) ?? null;
+  private chooseTable(id: number): void {
+    this._table = this._tables.find((table) => table.id === id) ?? null;
   }
 
   /** A layer that shows a table need not have another name. */
-  private get named_by_table(): boolean {
-    return this.purpose_ === "records" && this.table_ !== null;
+  private get namedByTable(): boolean {
+    return this._purpose === "records" && this._table !== null;
   }
 
   private formula(layer: Layer | undefined): TemplateResult {
@@ -368,7 +368,7 @@ export class StrataLayerDialog extends LitElement {
         label=${words.expression}
         placeholder=${words.formula_example}
         .initial=${layer?.expression ?? ""}
-        @submitted=${() => this.form_.requestSubmit()}
+        @submitted=${() => this._form.requestSubmit()}
       ></strata-expression-field>
       <label class="check">
         <input type="checkbox" name="follows" .checked=${layer?.recompute === "automatic"} />
@@ -380,14 +380,14 @@ export class StrataLayerDialog extends LitElement {
     return html`<div class="details">
       <p class="caption">${words.classes_title}</p>
       <div class="classes">
-        ${this.classes_.map(
+        ${this._classes.map(
           (row, index) =>
             html`<div class="class">
               <input
                 type="color"
-                .value=${opaque_color(row.color)}
+                .value=${opaqueColor(row.color)}
                 aria-label=${words.class_color(row.at)}
-                @input=${(event: Event) => this.change_class(index, { color: `${(event.target as HTMLInputElement).value}ff` })}
+                @input=${(event: Event) => this.changeClass(index, { color: `${(event.target as HTMLInputElement).value}ff` })}
               />
               <input
                 type="text"
@@ -395,14 +395,14 @@ export class StrataLayerDialog extends LitElement {
                 .value=${row.label}
                 placeholder=${words.class_default(row.at)}
                 aria-label=${words.class_label(row.at)}
-                @input=${(event: Event) => this.change_class(index, { label: (event.target as HTMLInputElement).value })}
+                @input=${(event: Event) => this.changeClass(index, { label: (event.target as HTMLInputElement).value })}
               />
               <button
                 type="button"
                 class="icon quiet"
                 aria-label=${words.class_remove(row.label || words.class_default(row.at))}
-                ?disabled=${this.classes_.length === 1}
-                @click=${() => (this.classes_ = this.classes_.filter((_, other) => other !== index))}
+                ?disabled=${this._classes.length === 1}
+                @click=${() => (this._classes = this._classes.filter((_, other) => other !== index))}
               >
                 ${icon("close")}
               </button>
@@ -410,34 +410,34 @@ export class StrataLayerDialog extends LitElement {
         )}
       </div>
       <div class="row">
-        <button type="button" @click=${this.add_class}>${icon("plus")}${words.class_add}</button>
+        <button type="button" @click=${this.addClass}>${icon("plus")}${words.class_add}</button>
         ${this.layer ? html`<span class="hint">${words.class_kept}</span>` : nothing}
       </div>
     </div>`;
   }
 
   private measurement(): TemplateResult {
-    const palette = this.base_?.layer.palette;
+    const palette = this._base?.layer.palette;
     return html`<div class="range">
         <label class="field">
           <span>${words.range}</span>
-          ${number_input({ name: "min", value: palette?.min ?? 0, wrong: this.problem_field_ === "min" })}
+          ${numberInput({ name: "min", value: palette?.min ?? 0, wrong: this._problemField === "min" })}
         </label>
         <span>${words.range_to}</span>
         <label class="field">
           <span class="visually-hidden">${words.range_to}</span>
-          ${number_input({ name: "max", value: palette?.max ?? 100, wrong: this.problem_field_ === "max" })}
+          ${numberInput({ name: "max", value: palette?.max ?? 100, wrong: this._problemField === "max" })}
         </label>
         <label class="field">
           <span>${words.unit}</span>
-          <input type="text" name="unit" maxlength="50" autocomplete="off" .value=${this.base_?.layer.unit ?? ""} placeholder=${words.unit_hint} />
+          <input type="text" name="unit" maxlength="50" autocomplete="off" .value=${this._base?.layer.unit ?? ""} placeholder=${words.unit_hint} />
         </label>
       </div>
       <label class="check">
         <input
           type="checkbox"
-          .checked=${this.stepped_}
-          @change=${(event: Event) => (this.stepped_ = (event.target as HTMLInputElement).checked)}
+          .checked=${this._stepped}
+          @change=${(event: Event) => (this._stepped = (event.target as HTMLInputElement).checked)}
         />
         ${words.stepped}
       </label>`;
@@ -446,104 +446,104 @@ export class StrataLayerDialog extends LitElement {
   private details(): TemplateResult {
     const { model } = this.session;
     if (!model) return html``;
-    const choices = detail_choices(model.atlas);
+    const choices = detailChoices(model.atlas);
     const preferred =
       choices.find((choice) => choice.resolution === model.default_resolution) ?? choices[0];
-    const chosen = this.chosen_resolution_ ?? preferred?.resolution;
+    const chosen = this._chosenResolution ?? preferred?.resolution;
     return html`<div class="details">
       <p class="caption" id="detail">${words.detail}</p>
-      ${radio_group({
+      ${radioGroup({
         label: { id: "detail" },
         class: "segments",
-        choices: choices.map(({ resolution, detail_m }) => ({
+        choices: choices.map(({ resolution, detailM }) => ({
           value: resolution,
-          content: format_length(detail_m),
+          content: formatLength(detailM),
         })),
         chosen: chosen ?? null,
-        choose: (resolution) => (this.chosen_resolution_ = resolution),
+        choose: (resolution) => (this._chosenResolution = resolution),
       })}
       <p class="hint">${words.detail_hint}</p>
     </div>`;
   }
-  @state() private chosen_resolution_: number | null = null;
+  @state() private _chosenResolution: number | null = null;
 
-  private change_class(index: number, change: Partial<ClassRow>): void {
-    this.classes_ = this.classes_.map((row, other) =>
+  private changeClass(index: number, change: Partial<ClassRow>): void {
+    this._classes = this._classes.map((row, other) =>
       other === index ? { ...row, ...change } : row,
     );
   }
 
-  private add_class(): void {
-    const used = new Set(this.classes_.map((row) => row.at));
+  private addClass(): void {
+    const used = new Set(this._classes.map((row) => row.at));
     for (let at = 1; at <= kMostClasses; ++at) {
       if (used.has(at)) continue;
-      this.classes_ = [...this.classes_, new_class(at)];
+      this._classes = [...this._classes, newClass(at)];
       return;
     }
-    this.problem_ = words.too_many;
+    this._problem = words.too_many;
   }
 
-  private async on_submit(event: Event): Promise<void> {
+  private async onSubmit(event: Event): Promise<void> {
     event.preventDefault();
-    const form = new FormData(this.form_);
+    const form = new FormData(this._form);
     const text = (name: string): string => String(form.get(name) ?? "").trim();
-    this.problem_ = this.problem_field_ = "";
+    this._problem = this._problemField = "";
     const said = this.said();
     if (!said) return;
-    if (this.purpose_ === "shape")
-      return this.compute(text("name") || this.shape_.kind_title, {
+    if (this._purpose === "shape")
+      return this.compute(text("name") || this._shape.kindTitle, {
         description: text("description"),
         ...said,
       });
-    const name = text("name") || (this.named_by_table ? label_of(this.table_!) : "");
+    const name = text("name") || (this.namedByTable ? labelOf(this._table!) : "");
     if (!name) return this.refuse("name", words.name_missing);
-    const formula = this.expression_ ? this.wanted_formula(form) : {};
+    const formula = this._expression ? this.wantedFormula(form) : {};
     if (!formula) return this.refuse("expression", words.expression_missing);
     if (!this.layer && formula.expression !== undefined)
-      return this.create_computed({
+      return this.createComputed({
         name,
         description: text("description"),
         ...said,
-        visibility: this.visibility_,
+        visibility: this._visibility,
         ...formula,
       });
-    const palette = this.palette(name, read_number(text("min")), read_number(text("max")));
+    const palette = this.palette(name, readNumber(text("min")), readNumber(text("max")));
     if (!palette) return;
     await this.attempt(async () => {
-      const unit = this.purpose_ === "measurement" ? text("unit") : (this.base_?.layer.unit ?? "");
+      const unit = this._purpose === "measurement" ? text("unit") : (this._base?.layer.unit ?? "");
       await this.send({
         name,
         unit,
         description: text("description"),
         ...said,
         palette,
-        visibility: this.visibility_,
+        visibility: this._visibility,
         ...formula,
       });
     });
   }
 
   /** Null where it is missing. */
-  private wanted_formula(form: FormData): Pick<LayerCreate, "expression" | "recompute"> | null {
-    const expression = this.expression_.value;
+  private wantedFormula(form: FormData): Pick<LayerCreate, "expression" | "recompute"> | null {
+    const expression = this._expression.value;
     return expression === ""
       ? null
       : { expression, recompute: form.has("follows") ? "automatic" : "manual" };
   }
 
-  private async create_computed(layer: LayerCreate): Promise<void> {
+  private async createComputed(layer: LayerCreate): Promise<void> {
     const { session } = this;
     await this.attempt(async () => {
-      const made = await session.api.create_computed(session.model_id, {
+      const made = await session.api.createComputed(session.modelId, {
         ...layer,
         ...this.resolution(),
       });
       if ("layer" in made) {
         session.layers.put(made.layer);
-        session.show_made([made.layer.id]);
+        session.showMade([made.layer.id]);
         notices.show("success", texts.expressions.computed(layer.name));
       } else {
-        session.jobs.watch(layer.name, made.job, (job) => session.show_made(job.layers ?? []));
+        session.jobs.watch(layer.name, made.job, (job) => session.showMade(job.layers ?? []));
         notices.show("success", texts.shape.started(layer.name));
       }
     });
@@ -551,15 +551,15 @@ export class StrataLayerDialog extends LitElement {
 
   /** In other languages; null: something is wrong with it, and said there. */
   private said(): { labels: Labels; descriptions: Labels } | null {
-    const labels = this.labels_.read();
-    return labels && { labels, descriptions: this.labels_.written_descriptions };
+    const labels = this._labels.read();
+    return labels && { labels, descriptions: this._labels.writtenDescriptions };
   }
 
   private async compute(
     name: string,
     said: Pick<LayerCreate, "description" | "labels" | "descriptions">,
   ): Promise<void> {
-    const compute = this.shape_.recipe();
+    const compute = this._shape.recipe();
     if ("problem" in compute) return this.refuse(compute.field, compute.problem);
     const { session } = this;
     await this.attempt(async () => {
@@ -567,58 +567,58 @@ export class StrataLayerDialog extends LitElement {
         name,
         ...said,
         compute,
-        visibility: this.visibility_,
+        visibility: this._visibility,
         ...this.resolution(),
       });
-      void done.then((made) => session.show_made(made));
+      void done.then((made) => session.showMade(made));
       notices.show("success", texts.shape.started(name));
     });
   }
 
   /** Closes the dialog when `work` is done, and says what is wrong otherwise. */
   private async attempt(work: () => Promise<void>): Promise<void> {
-    this.busy_ = true;
+    this._busy = true;
     try {
       await work();
-      this.dialog_.close();
+      this._dialog.close();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.stale_ = error.status === 412;
-      if (error.problem.field === "expression" && this.expression_) this.expression_.refuse(error);
+      this._stale = error.status === 412;
+      if (error.problem.field === "expression" && this._expression) this._expression.refuse(error);
       else if (/^(labels|descriptions)\b/.test(error.problem.field ?? ""))
-        this.labels_.refuse(error.message);
-      else this.refuse(error.problem.field ?? "", this.stale_ ? words.changed : error.message);
+        this._labels.refuse(error.message);
+      else this.refuse(error.problem.field ?? "", this._stale ? words.changed : error.message);
     } finally {
-      this.busy_ = false;
+      this._busy = false;
     }
   }
 
   private refuse(field: string, problem: string): void {
-    this.problem_ = problem;
-    this.problem_field_ = field;
+    this._problem = problem;
+    this._problemField = field;
   }
 
   private resolution(): Pick<LayerCreate, "resolution"> {
-    return this.chosen_resolution_ ? { resolution: this.chosen_resolution_ as Resolution } : {};
+    return this._chosenResolution ? { resolution: this._chosenResolution as Resolution } : {};
   }
 
   private palette(name: string, min: number, max: number): Palette | null {
     // follows from the values
-    if (this.purpose_ === "formula" || this.purpose_ === "shape") return null;
-    switch (this.purpose_) {
+    if (this._purpose === "formula" || this._purpose === "shape") return null;
+    switch (this._purpose) {
       case "presence":
-        return presence_palette(name, this.color_);
+        return presencePalette(name, this._color);
       case "records":
-        return this.base_?.layer.palette ?? record_palette();
+        return this._base?.layer.palette ?? recordPalette();
       case "classes": {
-        if (!this.layer && this.classes_.every((row) => !row.label.trim())) {
+        if (!this.layer && this._classes.every((row) => !row.label.trim())) {
           this.refuse("classes", words.classes_missing);
           return null;
         }
-        const palette = class_palette(
-          this.classes_.map((row) => ({ ...row, label: row.label.trim() })),
+        const palette = classPalette(
+          this._classes.map((row) => ({ ...row, label: row.label.trim() })),
         );
-        const old = this.base_?.layer.palette;
+        const old = this._base?.layer.palette;
         return old ? { ...old, points: palette.points } : palette;
       }
       case "measurement": {
@@ -627,42 +627,42 @@ export class StrataLayerDialog extends LitElement {
           this.refuse(wrong, Number.isNaN(min + max) ? texts.brush.bad_value : words.range_wrong);
           return null;
         }
-        const mode = this.stepped_ ? "step" : "linear";
-        const old = this.base_?.layer.palette;
+        const mode = this._stepped ? "step" : "linear";
+        const old = this._base?.layer.palette;
         const same = old && old.min === min && old.max === max && old.mode === mode;
-        return same ? old : measurement_palette(min, max, mode);
+        return same ? old : measurementPalette(min, max, mode);
       }
     }
   }
 
   private async send(wanted: LayerWanted): Promise<void> {
-    const { session, base_: base } = this;
-    const purpose = this.purpose_ as LayerPurpose; // what is computed goes another way
+    const { session, _base: base } = this;
+    const purpose = this._purpose as LayerPurpose; // what is computed goes another way
     if (base) {
-      const change = layer_changes(base.layer, wanted);
+      const change = layerChanges(base.layer, wanted);
       if (Object.keys(change).length > 0)
         await session.layers.change(base.layer, change, base.etag);
       if (change.expression !== undefined)
-        session.layers.put(await session.api.recompute_layer(session.model_id, base.layer.id));
+        session.layers.put(await session.api.recomputeLayer(session.modelId, base.layer.id));
       return;
     }
     const created: LayerCreate = {
       ...wanted,
       kind: purpose === "records" ? "database" : "numeric",
       type: kTypes[purpose],
-      ...(this.named_by_table ? { table: this.table_!.id } : {}),
+      ...(this.namedByTable ? { table: this._table!.id } : {}),
       ...this.resolution(),
     };
-    const layer = await session.api.create_layer(session.model_id, created);
+    const layer = await session.api.createLayer(session.modelId, created);
     // So that painting can begin at once: a number without a record is not painted.
-    if (layer.table !== undefined && !this.named_by_table)
-      await session.api.create_record(layer.table);
-    session.add_created(layer);
+    if (layer.table !== undefined && !this.namedByTable)
+      await session.api.createRecord(layer.table);
+    session.addCreated(layer);
     notices.show("success", texts.layers.created(wanted.name));
   }
 }
 
-const new_class = (at: number): ClassRow => ({
+const newClass = (at: number): ClassRow => ({
   at,
   label: "",
   color: kClassColors[(at - 1) % kClassColors.length]!,

@@ -1,17 +1,17 @@
 // One row over the layers: work that makes some or a file, how far it is, and what came of it.
 
 import { css, html, nothing, type TemplateResult } from "lit";
-import { format_area, format_bytes } from "../../domain/measure";
+import { formatArea, formatBytes } from "../../domain/measure";
 import type { TransferReport } from "../../core/types";
 import { icon } from "../../ui/icons";
-import { is_busy, type LayerJob } from "../../session/layer-jobs";
+import { isBusy, type LayerJob } from "../../session/layer-jobs";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { styled } from "../../ui/styled";
 import { texts } from "../../texts";
-import { share_text } from "./transfer-dialog";
+import { shareText } from "./transfer-dialog";
 
-export const layer_job_styles = css`
+export const layerJobStyles = css`
   .job {
     display: grid;
     gap: 8px;
@@ -70,10 +70,10 @@ export const layer_job_styles = css`
   }
 `;
 
-export function layer_job_row(session: ModelSession, entry: LayerJob): TemplateResult {
+export function layerJobRow(session: ModelSession, entry: LayerJob): TemplateResult {
   const words = texts.layer_jobs;
   const { job, problem, report } = entry;
-  const busy = is_busy(entry);
+  const busy = isBusy(entry);
   const percent = Math.round(job.progress * 100);
   return html`<div class="job ${problem ? "failed" : ""}">
     <div class="head">
@@ -105,15 +105,15 @@ export function layer_job_row(session: ModelSession, entry: LayerJob): TemplateR
           <span class="said hint">${job.state === "queued" ? words.queued : job.message || words.running}</span>`
         : nothing
     }
-    ${job.file && !problem ? html`<span class="said hint">${job.file.name}, <span class="numeric">${format_bytes(job.file.bytes)}</span></span>` : nothing}
+    ${job.file && !problem ? html`<span class="said hint">${job.file.name}, <span class="numeric">${formatBytes(job.file.bytes)}</span></span>` : nothing}
     ${problem ? html`<span class="said" role="alert">${[problem.title, problem.detail].filter(Boolean).join(". ")}</span>` : nothing}
-    ${report ? report_table(report) : nothing}
+    ${report ? reportTable(report) : nothing}
   </div>`;
 }
 
-function report_table(report: TransferReport): TemplateResult {
+function reportTable(report: TransferReport): TemplateResult {
   const words = texts.transfer;
-  return html`<span class="hint">${words.matched(share_text(report.matched_m2, report.area_m2))}</span>
+  return html`<span class="hint">${words.matched(shareText(report.matched_m2, report.area_m2))}</span>
     <table>
       <tr>
         <th scope="col">${words.layer}</th>
@@ -124,8 +124,8 @@ function report_table(report: TransferReport): TemplateResult {
         (layer) =>
           html`<tr>
             <td>${layer.name ?? layer.layer}</td>
-            <td class="numeric">${format_area(layer.transferred_m2)}</td>
-            <td class="numeric">${share_text(layer.lost_m2, layer.source_m2)}</td>
+            <td class="numeric">${formatArea(layer.transferred_m2)}</td>
+            <td class="numeric">${shareText(layer.lost_m2, layer.source_m2)}</td>
           </tr>`,
       )}
     </table>`;

@@ -2,41 +2,41 @@
 // and puts in another order, which is kept for them alone.
 
 import type { Api } from "../../net/api";
-import { same_palette } from "../../domain/palette";
-import { layers_of_view, layers_to_keep, own_part, type LayerShown } from "../../domain/views";
+import { samePalette } from "../../domain/palette";
+import { layersOfView, layersToKeep, ownPart, type LayerShown } from "../../domain/views";
 import type { Highlight, LayerEvent, LayerOverride, PersonalView } from "../../core/protocol.gen";
-import { complete_layer, type Layer, type LayerPatch, type Palette } from "../../core/types";
+import { completeLayer, type Layer, type LayerPatch, type Palette } from "../../core/types";
 import { notices } from "../../ui/notices";
 import { PersonalViewKeeper } from "./personal-view";
 import { texts } from "../../texts";
 
 export interface LayerListHost {
-  send_overrides(overrides: LayerOverride[]): void;
+  sendOverrides(overrides: LayerOverride[]): void;
   changed(): void;
 }
 
 export class LayerList {
   all: Layer[] = []; // in this person's order: the last is on top
-  selected_id: number | null = null;
+  selectedId: number | null = null;
 
   // as it is shown: a named view, and what was changed since
-  private overrides_ = new Map<number, LayerShown>();
-  private own_ = new Map<number, LayerShown>(); // as it is kept
-  private at_view_ = false;
-  private readonly keeper_: PersonalViewKeeper;
+  private _overrides = new Map<number, LayerShown>();
+  private _own = new Map<number, LayerShown>(); // as it is kept
+  private _atView = false;
+  private readonly _keeper: PersonalViewKeeper;
   /** Records that are looked at just now, before those of a view. */
-  private readonly highlights_ = new Map<number, Highlight>();
+  private readonly _highlights = new Map<number, Highlight>();
 
   constructor(
-    private readonly api_: Api,
-    private readonly model_id_: string,
-    private readonly host_: LayerListHost,
+    private readonly _api: Api,
+    private readonly _modelId: string,
+    private readonly _host: LayerListHost,
   ) {
-    this.keeper_ = new PersonalViewKeeper(api_, model_id_);
+    this._keeper = new PersonalViewKeeper(_api, _modelId);
   }
 
   get selected(): Layer | null {
-    return this.find(this.selected_id);
+    return this.find(this.selectedId);
   }
 
   find(id: number | null): Layer | null {
@@ -44,48 +44,48 @@ export class LayerList {
   }
 
   select(layer: Layer): void {
-    this.selected_id = layer.id;
-    this.host_.changed();
+    this.selectedId = layer.id;
+    this._host.changed();
   }
 
   // ── what this person shows
   // ────────────────────────────────────────────────────────────────────────────────────────
 
   visible(layer: Layer): boolean {
-    return this.overrides_.get(layer.id)?.visible ?? layer.visible;
+    return this._overrides.get(layer.id)?.visible ?? layer.visible;
   }
   opacity(layer: Layer): number {
-    return this.overrides_.get(layer.id)?.opacity ?? layer.opacity;
+    return this._overrides.get(layer.id)?.opacity ?? layer.opacity;
   }
   palette(layer: Layer): Palette {
-    return this.overrides_.get(layer.id)?.palette ?? layer.palette;
+    return this._overrides.get(layer.id)?.palette ?? layer.palette;
   }
 
   private order(layer: Layer): number {
-    return this.overrides_.get(layer.id)?.order ?? layer.order;
+    return this._overrides.get(layer.id)?.order ?? layer.order;
   }
 
   /** What is shown differs from what everyone sees at first. */
-  get has_overrides(): boolean {
+  get hasOverrides(): boolean {
     return this.all.some((layer) => {
-      const shown = this.overrides_.get(layer.id);
-      return shown && (own_part(layer, shown) !== null || shown.highlight !== undefined);
+      const shown = this._overrides.get(layer.id);
+      return shown && (ownPart(layer, shown) !== null || shown.highlight !== undefined);
     });
   }
 
-  set_visible(layer: Layer, visible: boolean): void {
+  setVisible(layer: Layer, visible: boolean): void {
     this.override(layer, { visible });
   }
-  set_opacity(layer: Layer, opacity: number): void {
+  setOpacity(layer: Layer, opacity: number): void {
     this.override(layer, { opacity });
   }
   /** Null: the layer's own. */
-  set_palette(layer: Layer, palette: Palette | null): void {
-    for (const shown of [this.overrides_, this.own_]) {
+  setPalette(layer: Layer, palette: Palette | null): void {
+    for (const shown of [this._overrides, this._own]) {
       const { palette: _, ...rest } = shown.get(layer.id) ?? {};
       shown.set(layer.id, palette ? { ...rest, palette } : rest);
     }
-    this.changed_by_hand();
+    this.changedByHand();
   }
   /** Moves the layer to the place `index` of the list, which is bottom to top: for this person. */
   move(layer: Layer, index: number): void {
@@ -98,59 +98,59 @@ export class LayerList {
     wanted.forEach((each, at) => {
       const order = differ ? places[at]! : at;
       if (order === this.order(each)) return;
-      for (const shown of [this.overrides_, this.own_])
+      for (const shown of [this._overrides, this._own])
         shown.set(each.id, { ...shown.get(each.id), order });
     });
-    this.put_all(this.all);
-    this.changed_by_hand();
+    this.putAll(this.all);
+    this.changedByHand();
   }
   /** Null: no records before others. */
-  set_highlight(layer_id: number, highlight: Highlight | null): void {
-    if (highlight) this.highlights_.set(layer_id, highlight);
-    else if (!this.highlights_.delete(layer_id)) return;
-    this.send_overrides();
+  setHighlight(layerId: number, highlight: Highlight | null): void {
+    if (highlight) this._highlights.set(layerId, highlight);
+    else if (!this._highlights.delete(layerId)) return;
+    this.sendOverrides();
   }
-  reset_overrides(): void {
-    this.overrides_.clear();
-    this.own_.clear();
-    this.at_view_ = false;
-    this.put_all(this.all);
-    this.changed_by_hand();
+  resetOverrides(): void {
+    this._overrides.clear();
+    this._own.clear();
+    this._atView = false;
+    this.putAll(this.all);
+    this.changedByHand();
   }
 
   /** The page may be gone in a moment, or the connection is back. */
   flush(): void {
-    this.keeper_.flush();
+    this._keeper.flush();
   }
 
   /** What a named view keeps of all this. */
-  to_keep(): LayerOverride[] {
-    return layers_to_keep(this.all, ({ id }) => this.shown(id));
+  toKeep(): LayerOverride[] {
+    return layersToKeep(this.all, ({ id }) => this.shown(id));
   }
   /**
    * As a named view has it, and no records before those of the view; layers that it does not name
    * as everyone sees them at first. Returns the way back, without the records that were looked at.
    */
-  show_view(view: { layers: LayerOverride[] }): () => void {
-    const { overrides_: overrides, at_view_: was_at_view } = this;
-    this.show_all(layers_of_view(view, this.all), true);
-    this.highlights_.clear();
-    this.send_overrides();
+  showView(view: { layers: LayerOverride[] }): () => void {
+    const { _overrides: overrides, _atView: wasAtView } = this;
+    this.showAll(layersOfView(view, this.all), true);
+    this._highlights.clear();
+    this.sendOverrides();
     return () => {
-      this.show_all(was_at_view ? overrides : new Map(this.own_), was_at_view);
-      this.forget_unknown();
-      this.send_overrides();
+      this.showAll(wasAtView ? overrides : new Map(this._own), wasAtView);
+      this.forgetUnknown();
+      this.sendOverrides();
     };
   }
 
-  async save_overrides_as_default(): Promise<void> {
+  async saveOverridesAsDefault(): Promise<void> {
     for (const layer of this.all) {
       const [visible, opacity, palette] = [
         this.visible(layer),
         this.opacity(layer),
         this.palette(layer),
       ];
-      const recolored = !same_palette(palette, layer.palette);
+      const recolored = !samePalette(palette, layer.palette);
       const order = this.order(layer);
       if (
         visible === layer.visible &&
@@ -161,7 +161,7 @@ export class LayerList {
         continue;
       await this.change(layer, { visible, opacity, order, ...(recolored ? { palette } : {}) });
     }
-    this.reset_overrides();
+    this.resetOverrides();
   }
 
   // ── what everyone has
@@ -169,34 +169,34 @@ export class LayerList {
 
   /** `etag`: the version that the change was thought out for. */
   async change(layer: Layer, change: LayerPatch, etag?: string): Promise<void> {
-    this.put(await this.api_.change_layer(this.model_id_, layer.id, change, etag));
+    this.put(await this._api.changeLayer(this._modelId, layer.id, change, etag));
   }
 
   async remove(layer: Layer): Promise<void> {
-    await this.api_.delete_layer(this.model_id_, layer.id);
+    await this._api.deleteLayer(this._modelId, layer.id);
     this.drop(layer.id);
   }
 
   put(layer: Layer): void {
-    this.put_all([...this.all.filter((other) => other.id !== layer.id), layer]);
+    this.putAll([...this.all.filter((other) => other.id !== layer.id), layer]);
   }
 
   /**
    * What the server says on joining: what is known of other layers is forgotten. `kept`: how this
    * person shows them, where the server knows.
    */
-  take_all(layers: Layer[], kept?: PersonalView): void {
-    this.put_all(layers);
-    this.forget_unknown();
-    if (this.keeper_.is_ahead) this.keeper_.flush();
-    else if (kept) this.take_kept(kept);
-    if (!this.selected) this.select_top();
+  takeAll(layers: Layer[], kept?: PersonalView): void {
+    this.putAll(layers);
+    this.forgetUnknown();
+    if (this._keeper.isAhead) this._keeper.flush();
+    else if (kept) this.takeKept(kept);
+    if (!this.selected) this.selectTop();
   }
 
-  on_event(event: LayerEvent): void {
+  onEvent(event: LayerEvent): void {
     if ((event.event === "created" || event.event === "changed") && event.layer) {
-      this.put(complete_layer(event.layer));
-      if (this.selected_id === null) this.selected_id = event.layer_id;
+      this.put(completeLayer(event.layer));
+      if (this.selectedId === null) this.selectedId = event.layer_id;
     } else if (event.event === "deleted") {
       const gone = this.find(event.layer_id);
       if (gone) notices.show("info", texts.layers.deleted_by_other(gone.name));
@@ -208,72 +208,72 @@ export class LayerList {
           : layer,
       );
     }
-    this.host_.changed();
+    this._host.changed();
   }
 
   private shown(id: number): LayerShown {
-    const highlight = this.highlights_.get(id);
-    return { ...this.overrides_.get(id), ...(highlight ? { highlight } : {}) };
+    const highlight = this._highlights.get(id);
+    return { ...this._overrides.get(id), ...(highlight ? { highlight } : {}) };
   }
 
   /** One unknown layer, and the server refuses what is said of all. */
-  private forget_unknown(): void {
+  private forgetUnknown(): void {
     const known = new Set(this.all.map((layer) => layer.id));
-    for (const kept of [this.overrides_, this.own_, this.highlights_])
+    for (const kept of [this._overrides, this._own, this._highlights])
       for (const id of kept.keys()) if (!known.has(id)) kept.delete(id);
   }
 
   private override(layer: Layer, change: LayerShown): void {
-    for (const shown of [this.overrides_, this.own_])
+    for (const shown of [this._overrides, this._own])
       shown.set(layer.id, { ...shown.get(layer.id), ...change });
-    this.changed_by_hand();
+    this.changedByHand();
   }
 
-  private take_kept(kept: PersonalView): void {
-    this.own_ = layers_of_view(kept, this.all);
-    if (this.at_view_) return;
-    this.show_all(new Map(this.own_), false);
-    this.send_overrides();
+  private takeKept(kept: PersonalView): void {
+    this._own = layersOfView(kept, this.all);
+    if (this._atView) return;
+    this.showAll(new Map(this._own), false);
+    this.sendOverrides();
   }
 
-  private show_all(overrides: Map<number, LayerShown>, at_view: boolean): void {
-    this.overrides_ = overrides;
-    this.at_view_ = at_view;
-    this.put_all(this.all);
+  private showAll(overrides: Map<number, LayerShown>, atView: boolean): void {
+    this._overrides = overrides;
+    this._atView = atView;
+    this.putAll(this.all);
   }
 
   /** What was just set is shown, and kept. */
-  private changed_by_hand(): void {
-    this.send_overrides();
+  private changedByHand(): void {
+    this.sendOverrides();
     const own = this.all.map((layer) => ({
       layer: layer.id,
-      ...own_part(layer, this.own_.get(layer.id) ?? {}),
+      ...ownPart(layer, this._own.get(layer.id) ?? {}),
     }));
-    this.keeper_.keep({ layers: own.filter((each) => Object.keys(each).length > 1) });
+    this._keeper.keep({ layers: own.filter((each) => Object.keys(each).length > 1) });
   }
 
-  private send_overrides(): void {
-    const ids = new Set([...this.overrides_.keys(), ...this.highlights_.keys()]);
-    this.host_.send_overrides([...ids].map((layer) => ({ layer, ...this.shown(layer) })));
-    this.host_.changed();
+  private sendOverrides(): void {
+    const ids = new Set([...this._overrides.keys(), ...this._highlights.keys()]);
+    this._host.sendOverrides([...ids].map((layer) => ({ layer, ...this.shown(layer) })));
+    this._host.changed();
   }
 
-  private put_all(layers: Layer[]): void {
+  private putAll(layers: Layer[]): void {
     this.all = [...layers].sort((a, b) => this.order(a) - this.order(b) || a.id - b.id);
-    this.host_.changed();
+    this._host.changed();
   }
 
-  private select_top(): void {
-    this.selected_id = this.all[this.all.length - 1]?.id ?? null;
-    this.host_.changed();
+  private selectTop(): void {
+    this.selectedId = this.all[this.all.length - 1]?.id ?? null;
+    this._host.changed();
   }
 
   private drop(id: number): void {
     this.all = this.all.filter((layer) => layer.id !== id);
-    this.own_.delete(id);
-    const had = this.overrides_.delete(id);
-    if (this.highlights_.delete(id) || had) this.send_overrides();
-    if (this.selected_id === id) this.select_top();
-    this.host_.changed();
+    this._own.delete(id);
+    const had = this._overrides.delete(id);
+    if (this._highlights.delete(id) || had) this.sendOverrides();
+    if (this.selectedId === id) this.selectTop();
+    this._host.changed();
   }
 }

@@ -4,32 +4,26 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { description_in, label_of } from "../../domain/cells";
-import { is_as_computed, value_range, type Layer, type LayerPatch } from "../../core/types";
-import { ask_to_bin, tell_binned } from "../../ui/trash";
-import { open_bin_of } from "../../ui/trash-dialog";
+import { descriptionIn, labelOf } from "../../domain/cells";
+import { isAsComputed, valueRange, type Layer, type LayerPatch } from "../../core/types";
+import { askToBin, tellBinned } from "../../ui/trash";
+import { openBinOf } from "../../ui/trash-dialog";
 import { ask } from "../../ui/dialog";
 import { DragOrder } from "../../ui/drag-order";
-import { follow_session } from "../../session/follow-session";
+import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
-import { unlock_label } from "../../session/layer-lock";
-import { layer_job_row, layer_job_styles } from "./layer-job-row";
-import { can_be_colored } from "./color-dialog";
-import { layer_chip, legend, legend_styles } from "./legend";
+import { unlockLabel } from "../../session/layer-lock";
+import { layerJobRow, layerJobStyles } from "./layer-job-row";
+import { canBeColored } from "./color-dialog";
+import { layerChip, legend, legendStyles } from "./legend";
 import "../../ui/menu";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { drag_styles, shared_styles } from "../../ui/styles";
-import {
-  choose_raster,
-  formats_of,
-  kFeatureFormats,
-  save_features,
-  save_raster,
-} from "./raster-files";
+import { dragStyles, sharedStyles } from "../../ui/styles";
+import { chooseRaster, formatsOf, kFeatureFormats, saveFeatures, saveRaster } from "./raster-files";
 import type { TermsRequest } from "../../session/requests";
 import { texts } from "../../texts";
-import { visibility_badge } from "../../ui/visibility";
+import { visibilityBadge } from "../../ui/visibility";
 
 export type LayerPanelRequest =
   | TermsRequest
@@ -39,8 +33,8 @@ export type LayerPanelRequest =
 @customElement("strata-layer-panel")
 export class StrataLayerPanel extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  @state() private computing_: number | null = null;
-  private readonly drag_ = new DragOrder<number>(
+  @state() private _computing: number | null = null;
+  private readonly _drag = new DragOrder<number>(
     this,
     () => this.shown.map(({ id }) => id),
     (id, to) => {
@@ -51,14 +45,14 @@ export class StrataLayerPanel extends LitElement {
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
-    legend_styles,
-    layer_job_styles,
-    drag_styles,
+    sharedStyles,
+    legendStyles,
+    layerJobStyles,
+    dragStyles,
     css`
       :host {
         display: block;
@@ -213,7 +207,7 @@ export class StrataLayerPanel extends LitElement {
     return html`<div class="heading">
         <h2>${words.title}</h2>
         ${
-          session.can_curate
+          session.canCurate
             ? html`<button @click=${() => this.request({ dialog: "create" })}>${icon("plus")}${words.new}</button>
               <strata-menu label=${words.more}>
                 <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "template" })}>
@@ -226,24 +220,24 @@ export class StrataLayerPanel extends LitElement {
                   ${icon("import")}${texts.transfer.open}
                 </button>
                 <hr />
-                <button class="quiet" role="menuitem" @click=${() => void open_bin_of(session)}>${icon("trash")}${texts.bin.open}</button>
+                <button class="quiet" role="menuitem" @click=${() => void openBinOf(session)}>${icon("trash")}${texts.bin.open}</button>
               </strata-menu>`
             : nothing
         }
       </div>
-      ${session.jobs.entries.map((entry) => layer_job_row(session, entry))}
+      ${session.jobs.entries.map((entry) => layerJobRow(session, entry))}
       ${
         shown.length === 0
           ? html`<div class="empty">
             <b>${words.empty_title}</b>
             <p>${words.empty_lead}</p>
             ${
-              session.can_curate
+              session.canCurate
                 ? html`<button @click=${() => this.request({ dialog: "template" })}>${icon("layers")}${texts.templates.open}</button>`
                 : nothing
             }
           </div>`
-          : html`<ul class="list" @dragover=${this.drag_.over_list} @drop=${this.drag_.drop}>
+          : html`<ul class="list" @dragover=${this._drag.overList} @drop=${this._drag.drop}>
             ${repeat(
               shown,
               (layer) => layer.id,
@@ -252,15 +246,15 @@ export class StrataLayerPanel extends LitElement {
           </ul>`
       }
       ${
-        session.layers.has_overrides
+        session.layers.hasOverrides
           ? html`<div class="personal">
             <span>${words.personal}</span>
             ${
-              session.can_curate
-                ? html`<button class="link" @click=${() => void this.save_default()}>${words.save_default}</button>`
+              session.canCurate
+                ? html`<button class="link" @click=${() => void this.saveDefault()}>${words.save_default}</button>`
                 : nothing
             }
-            <button class="link" @click=${() => session.layers.reset_overrides()}>${words.reset_default}</button>
+            <button class="link" @click=${() => session.layers.resetOverrides()}>${words.reset_default}</button>
           </div>`
           : nothing
       }`;
@@ -269,12 +263,12 @@ export class StrataLayerPanel extends LitElement {
   private row(layer: Layer, index: number): TemplateResult {
     const { session } = this;
     const words = texts.layers;
-    const selected = session.layers.selected_id === layer.id;
+    const selected = session.layers.selectedId === layer.id;
     const visible = session.layers.visible(layer);
     const count = session.layers.all.length;
     return html`<li
-      class="layer ${selected ? "selected" : ""} ${this.drag_.classes(layer.id, index)}"
-      @dragover=${(event: DragEvent) => this.drag_.over_row(event, index)}
+      class="layer ${selected ? "selected" : ""} ${this._drag.classes(layer.id, index)}"
+      @dragover=${(event: DragEvent) => this._drag.overRow(event, index)}
     >
       <div class="line">
         ${
@@ -282,9 +276,9 @@ export class StrataLayerPanel extends LitElement {
             ? html`<span
               class="grip"
               draggable="true"
-              title=${words.drag(label_of(layer))}
-              @dragstart=${(event: DragEvent) => this.drag_.start(event, layer.id, label_of(layer))}
-              @dragend=${this.drag_.end}
+              title=${words.drag(labelOf(layer))}
+              @dragstart=${(event: DragEvent) => this._drag.start(event, layer.id, labelOf(layer))}
+              @dragend=${this._drag.end}
               >${icon("grip")}</span
             >`
             : nothing
@@ -292,31 +286,31 @@ export class StrataLayerPanel extends LitElement {
         <button
           class="icon quiet"
           aria-pressed=${visible}
-          aria-label=${visible ? words.hide(label_of(layer)) : words.show(label_of(layer))}
-          title=${visible ? words.hide(label_of(layer)) : words.show(label_of(layer))}
-          @click=${() => session.layers.set_visible(layer, !visible)}
+          aria-label=${visible ? words.hide(labelOf(layer)) : words.show(labelOf(layer))}
+          title=${visible ? words.hide(labelOf(layer)) : words.show(labelOf(layer))}
+          @click=${() => session.layers.setVisible(layer, !visible)}
         >
           ${icon(visible ? "eye" : "eye_off")}
         </button>
         <button
           class="quiet name ${visible ? "" : "off"}"
           aria-pressed=${selected}
-          aria-label=${words.select(label_of(layer))}
-          title=${label_of(layer)}
+          aria-label=${words.select(labelOf(layer))}
+          title=${labelOf(layer)}
           @click=${() => session.layers.select(layer)}
         >
-          ${layer_chip(session.layers.palette(layer))}<span class="ellipsis">${label_of(layer)}</span>
+          ${layerChip(session.layers.palette(layer))}<span class="ellipsis">${labelOf(layer)}</span>
         </button>
-        ${visibility_badge(layer.visibility)}
-        ${layer.locked ? html`<span class="lock" role="img" aria-label=${this.who_is_locked(layer)} title=${this.who_is_locked(layer)}>${icon("lock")}</span>` : nothing}
-        <strata-menu label=${words.options(label_of(layer))}>
+        ${visibilityBadge(layer.visibility)}
+        ${layer.locked ? html`<span class="lock" role="img" aria-label=${this.whoIsLocked(layer)} title=${this.whoIsLocked(layer)}>${icon("lock")}</span>` : nothing}
+        <strata-menu label=${words.options(labelOf(layer))}>
           ${
-            session.can_curate
+            session.canCurate
               ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "edit", layer })}>
                   ${icon("edit")}${words.edit}
                 </button>
                 <button class="quiet" role="menuitem" @click=${() => void this.change(layer, { locked: !layer.locked })}>
-                  ${icon(layer.locked ? "unlock" : "lock")}${layer.locked ? unlock_label(layer) : words.lock}
+                  ${icon(layer.locked ? "unlock" : "lock")}${layer.locked ? unlockLabel(layer) : words.lock}
                 </button>
                 ${
                   layer.expression === undefined
@@ -328,7 +322,7 @@ export class StrataLayerPanel extends LitElement {
               : nothing
           }
           ${
-            can_be_colored(layer)
+            canBeColored(layer)
               ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "colors", layer })}>${icon("palette")}${texts.colors.open}</button>`
               : nothing
           }
@@ -338,7 +332,7 @@ export class StrataLayerPanel extends LitElement {
               : html`<button class="quiet" role="menuitem" @click=${() => session.tables.open(layer)}>${icon("table")}${texts.tables.open}</button>`
           }
           ${
-            layer.table !== undefined && layer.type !== "u32" && session.can_curate
+            layer.table !== undefined && layer.type !== "u32" && session.canCurate
               ? html`<button class="quiet" role="menuitem" @click=${() => void this.widen(layer)}>${icon("plus")}${words.widen}</button>`
               : nothing
           }
@@ -346,21 +340,21 @@ export class StrataLayerPanel extends LitElement {
             ${icon("chart")}${words.statistics}
           </button>
           <hr />
-          ${formats_of(layer).map(
+          ${formatsOf(layer).map(
             (format) =>
-              html`<button class="quiet" role="menuitem" @click=${() => save_raster(session, layer, format)}>
+              html`<button class="quiet" role="menuitem" @click=${() => saveRaster(session, layer, format)}>
                 ${icon("import")}${texts.rasters.save[format]}
               </button>`,
           )}
           ${kFeatureFormats.map(
             (format) =>
-              html`<button class="quiet" role="menuitem" @click=${() => save_features(session, layer, format)}>
+              html`<button class="quiet" role="menuitem" @click=${() => saveFeatures(session, layer, format)}>
                 ${icon("import")}${texts.rasters.save_outlines[format]}
               </button>`,
           )}
           ${
-            session.can_paint && !session.is_locked(layer)
-              ? html`<button class="quiet" role="menuitem" @click=${() => choose_raster(session, layer)}>
+            session.canPaint && !session.isLocked(layer)
+              ? html`<button class="quiet" role="menuitem" @click=${() => chooseRaster(session, layer)}>
                   ${icon("upload")}${texts.rasters.import}
                 </button>
                 <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "map", layer })}>
@@ -376,9 +370,9 @@ export class StrataLayerPanel extends LitElement {
             ${icon("down")}${words.down}
           </button>
           ${
-            session.can_curate
+            session.canCurate
               ? html`<hr />
-                <button class="quiet" role="menuitem" @click=${() => void this.delete_layer(layer)}>
+                <button class="quiet" role="menuitem" @click=${() => void this.deleteLayer(layer)}>
                   ${icon("trash")}${words.delete}
                 </button>`
               : nothing
@@ -393,13 +387,13 @@ export class StrataLayerPanel extends LitElement {
     const { session } = this;
     const opacity = session.layers.opacity(layer);
     return html`<div class="more">
-      ${layer.locked ? this.lock_told(layer) : nothing} ${layer.edited_by_hand === true ? this.hand_told(layer) : nothing} ${layer.review ? this.review_told(layer) : nothing}
-      ${description_in(layer) ? html`<p class="description">${description_in(layer)}</p>` : nothing} ${legend(layer, session.layers.palette(layer), session.tables)}
+      ${layer.locked ? this.lockTold(layer) : nothing} ${layer.edited_by_hand === true ? this.handTold(layer) : nothing} ${layer.review ? this.reviewTold(layer) : nothing}
+      ${descriptionIn(layer) ? html`<p class="description">${descriptionIn(layer)}</p>` : nothing} ${legend(layer, session.layers.palette(layer), session.tables)}
       ${layer.expression === undefined ? nothing : this.formula(layer)}
       ${
         layer.table === undefined
           ? nothing
-          : html`<button aria-pressed=${session.tables.view?.layer_id === layer.id} title="${texts.tables.open} (T)" @click=${() => session.toggle_table()}>
+          : html`<button aria-pressed=${session.tables.view?.layerId === layer.id} title="${texts.tables.open} (T)" @click=${() => session.toggleTable()}>
             ${icon("table")}${texts.tables.open}
           </button>`
       }
@@ -410,40 +404,40 @@ export class StrataLayerPanel extends LitElement {
           min="0"
           max="100"
           .value=${String(Math.round(opacity * 100))}
-          aria-label=${texts.layers.opacity_of(label_of(layer))}
-          @input=${(event: Event) => session.layers.set_opacity(layer, Number((event.target as HTMLInputElement).value) / 100)}
+          aria-label=${texts.layers.opacity_of(labelOf(layer))}
+          @input=${(event: Event) => session.layers.setOpacity(layer, Number((event.target as HTMLInputElement).value) / 100)}
         />
         <output class="numeric">${Math.round(opacity * 100)} %</output>
       </div>
     </div>`;
   }
 
-  private who_is_locked(layer: Layer): string {
-    if (is_as_computed(layer)) return texts.layers.locked_computed;
-    return this.session.is_locked(layer)
+  private whoIsLocked(layer: Layer): string {
+    if (isAsComputed(layer)) return texts.layers.locked_computed;
+    return this.session.isLocked(layer)
       ? texts.layers.locked_to_you
       : texts.layers.locked_to_others;
   }
 
-  private lock_told(layer: Layer): TemplateResult {
+  private lockTold(layer: Layer): TemplateResult {
     const unlock = (): void => void this.change(layer, { locked: false });
     return html`<p class="locked">
-      ${icon("lock")}<span>${this.who_is_locked(layer)}</span>
-      ${this.session.can_curate ? html`<button class="link" @click=${unlock}>${unlock_label(layer)}</button>` : nothing}
+      ${icon("lock")}<span>${this.whoIsLocked(layer)}</span>
+      ${this.session.canCurate ? html`<button class="link" @click=${unlock}>${unlockLabel(layer)}</button>` : nothing}
     </p>`;
   }
 
-  private hand_told(layer: Layer): TemplateResult {
+  private handTold(layer: Layer): TemplateResult {
     return html`<p class="locked by-hand">
       ${icon("edit")}<span>${layer.expression === undefined ? texts.layers.by_hand : `${texts.layers.by_hand} ${texts.layers.by_hand_formula}`}</span>
     </p>`;
   }
 
-  private review_told(layer: Layer): TemplateResult {
-    const { can_curate, reviews } = this.session;
-    const waiting = reviews.waiting_on(layer);
+  private reviewTold(layer: Layer): TemplateResult {
+    const { canCurate, reviews } = this.session;
+    const waiting = reviews.waitingOn(layer);
     return html`<p class="locked">
-      ${icon("shield")}<span>${can_curate ? texts.review.asked : texts.review.asked_of_you} ${waiting > 0 ? texts.review.waiting(waiting) : nothing}</span>
+      ${icon("shield")}<span>${canCurate ? texts.review.asked : texts.review.asked_of_you} ${waiting > 0 ? texts.review.waiting(waiting) : nothing}</span>
     </p>`;
   }
 
@@ -460,18 +454,18 @@ export class StrataLayerPanel extends LitElement {
           : nothing
       }
       ${
-        this.may_recompute(layer)
-          ? html`<button ?disabled=${this.computing_ === layer.id} @click=${() => void this.recompute(layer)}>${icon("redo")}${texts.layers.recompute}</button>`
+        this.mayRecompute(layer)
+          ? html`<button ?disabled=${this._computing === layer.id} @click=${() => void this.recompute(layer)}>${icon("redo")}${texts.layers.recompute}</button>`
           : nothing
       }
     </div>`;
   }
 
   /** Whoever may change it may have it computed: its lock is against hands. */
-  private may_recompute(layer: Layer): boolean {
-    const { can_paint, can_curate } = this.session;
+  private mayRecompute(layer: Layer): boolean {
+    const { canPaint, canCurate } = this.session;
     return (
-      (layer.locked || layer.edited_by_hand === true ? can_curate : can_paint) &&
+      (layer.locked || layer.edited_by_hand === true ? canCurate : canPaint) &&
       (layer.recompute !== "automatic" || layer.edited_by_hand === true)
     );
   }
@@ -479,9 +473,9 @@ export class StrataLayerPanel extends LitElement {
   private async recompute(layer: Layer): Promise<void> {
     const { session } = this;
     const words = texts.layers;
-    const by_hand = layer.edited_by_hand === true;
+    const byHand = layer.edited_by_hand === true;
     if (
-      by_hand &&
+      byHand &&
       !(await ask({
         heading: words.overwrite_title(layer.name),
         lead: words.overwrite_lead,
@@ -489,13 +483,13 @@ export class StrataLayerPanel extends LitElement {
       }))
     )
       return;
-    this.computing_ = layer.id;
+    this._computing = layer.id;
     try {
-      session.layers.put(await session.api.recompute_layer(session.model_id, layer.id, by_hand));
+      session.layers.put(await session.api.recomputeLayer(session.modelId, layer.id, byHand));
     } catch (error) {
       notices.error(error);
     } finally {
-      this.computing_ = null;
+      this._computing = null;
     }
   }
 
@@ -509,9 +503,9 @@ export class StrataLayerPanel extends LitElement {
     this.session.layers.move(layer, last - index);
   }
 
-  private async save_default(): Promise<void> {
+  private async saveDefault(): Promise<void> {
     try {
-      await this.session.layers.save_overrides_as_default();
+      await this.session.layers.saveOverridesAsDefault();
       notices.show("success", texts.layers.saved_default);
     } catch (error) {
       notices.error(error);
@@ -521,10 +515,10 @@ export class StrataLayerPanel extends LitElement {
   /** Room for the keys of more records. */
   private async widen(layer: Layer): Promise<void> {
     const words = texts.layers;
-    const [, highest] = value_range(layer.type);
+    const [, highest] = valueRange(layer.type);
     if (
       !(await ask({
-        heading: words.widen_title(label_of(layer)),
+        heading: words.widen_title(labelOf(layer)),
         lead: words.widen_lead(highest),
         yes: words.widen_yes,
       }))
@@ -536,7 +530,7 @@ export class StrataLayerPanel extends LitElement {
       .catch((error: unknown) => notices.error(error));
   }
 
-  private async delete_layer(layer: Layer): Promise<void> {
+  private async deleteLayer(layer: Layer): Promise<void> {
     const words = texts.layers;
     const { api, layers, model } = this.session;
     if (!model) return;
@@ -546,10 +540,10 @@ export class StrataLayerPanel extends LitElement {
       name: layer.name,
       project: model.project,
     } as const;
-    if (!(await ask_to_bin(api, gone, { title: words.delete_title, lead: words.delete_lead })))
+    if (!(await askToBin(api, gone, { title: words.delete_title, lead: words.delete_lead })))
       return;
     await layers.remove(layer).then(
-      () => tell_binned(api, gone),
+      () => tellBinned(api, gone),
       (error: unknown) => notices.error(error),
     );
   }

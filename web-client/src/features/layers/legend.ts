@@ -1,17 +1,17 @@
 // The legend of a palette: gradient with ticks, or swatches with labels.
 
 import { css, html, nothing, type TemplateResult } from "lit";
-import { label_of } from "../../domain/cells";
-import { format_number, ticks } from "../../domain/measure";
-import { css_color, css_gradient, kNoValueColor, swatch_style } from "../../domain/palette";
+import { labelOf } from "../../domain/cells";
+import { formatNumber, ticks } from "../../domain/measure";
+import { cssColor, cssGradient, kNoValueColor, swatchStyle } from "../../domain/palette";
 import type { Layer, Palette, PalettePoint } from "../../core/types";
 import type { Column, Table } from "../../core/protocol.gen";
-import { describe_value, type RecordLabels } from "../../session/layer-values";
+import { describeValue, type RecordLabels } from "../../session/layer-values";
 import { styled } from "../../ui/styled";
 import type { TermTree } from "../../session/fields/term-tree";
 import { texts } from "../../texts";
 
-export const legend_styles = css`
+export const legendStyles = css`
   .legend-gradient {
     height: 0.875rem;
     border-radius: 4px;
@@ -81,7 +81,7 @@ export interface LegendNames extends RecordLabels {
 
 /** `palette`: what the layer is drawn with for this person. */
 export function legend(layer: Layer, palette: Palette, records: LegendNames): TemplateResult {
-  if (palette.column) return column_legend(layer, palette, records);
+  if (palette.column) return columnLegend(layer, palette, records);
   const { unit } = layer;
   if (palette.mode === "categorical") {
     const { table } = layer;
@@ -93,9 +93,9 @@ export function legend(layer: Layer, palette: Palette, records: LegendNames): Te
         : palette.points.filter(({ at }) => !records.lacks(table, at));
     if (there.length === 0)
       return html`<p class="hint">${layer.kind === "database" ? texts.layers.no_records : texts.layers.no_labels}</p>`;
-    const points = in_tree(there, terms);
-    return html`<ul class="legend-classes" aria-label=${label_of(layer)} tabindex=${points.length > kLinesInSight ? 0 : nothing}>
-      ${points.slice(0, kMostLines).map(({ point, depth }) => line(point, describe_value(layer, point.at, records), depth))}
+    const points = inTree(there, terms);
+    return html`<ul class="legend-classes" aria-label=${labelOf(layer)} tabindex=${points.length > kLinesInSight ? 0 : nothing}>
+      ${points.slice(0, kMostLines).map(({ point, depth }) => line(point, describeValue(layer, point.at, records), depth))}
       ${points.length > kMostLines ? html`<li class="hint">${texts.layers.more_classes(points.length - kMostLines)}</li>` : nothing}
     </ul>`;
   }
@@ -103,7 +103,7 @@ export function legend(layer: Layer, palette: Palette, records: LegendNames): Te
 }
 
 /** Points of terms stand as in their list, each below the one above it. */
-function in_tree(
+function inTree(
   points: readonly PalettePoint[],
   terms: TermTree | null,
 ): { point: PalettePoint; depth: number }[] {
@@ -118,20 +118,20 @@ function in_tree(
 
 const kLinesInSight = 8; // of those that may stand in it: with more it scrolls, also by keys
 const kMostLines = 300; // a list of terms may have thousands
-const kIndent_px = 14;
+const kIndentPx = 14;
 
 const line = (
   point: Pick<PalettePoint, "color" | "pattern" | "angle">,
   text: string,
   depth = 0,
 ): TemplateResult =>
-  html`<li ${styled({ "padding-left": depth > 0 ? `${depth * kIndent_px}px` : null })}>
-    <span class="swatch" ${styled(swatch_style(point))}></span>
+  html`<li ${styled({ "padding-left": depth > 0 ? `${depth * kIndentPx}px` : null })}>
+    <span class="swatch" ${styled(swatchStyle(point))}></span>
     <span class="ellipsis">${text}</span>
   </li>`;
 
 /** By what the records say. */
-function column_legend(layer: Layer, palette: Palette, records: LegendNames): TemplateResult {
+function columnLegend(layer: Layer, palette: Palette, records: LegendNames): TemplateResult {
   const column =
     layer.table === undefined
       ? undefined
@@ -139,12 +139,12 @@ function column_legend(layer: Layer, palette: Palette, records: LegendNames): Te
   const unit = column?.unit ?? "";
   const lines =
     palette.mode === "categorical"
-      ? palette.points.map((point) => line(point, value_label(point, column, records)))
+      ? palette.points.map((point) => line(point, valueLabel(point, column, records)))
       : palette.points.map((point, index) =>
-          line(point, class_range(point.at, palette.points[index + 1]?.at ?? palette.max, unit)),
+          line(point, classRange(point.at, palette.points[index + 1]?.at ?? palette.max, unit)),
         );
   return html`<div class="legend-column">
-    <p class="caption">${texts.colors.by(column ? label_of(column) : (palette.column ?? ""))}</p>
+    <p class="caption">${texts.colors.by(column ? labelOf(column) : (palette.column ?? ""))}</p>
     ${palette.mode === "linear" ? gradient(palette, unit) : nothing}
     <ul class="legend-classes">
       ${palette.mode === "linear" ? nothing : lines}
@@ -153,18 +153,18 @@ function column_legend(layer: Layer, palette: Palette, records: LegendNames): Te
   </div>`;
 }
 
-export const class_range = (from: number, to: number, unit: string): string =>
-  `${format_number(from, 4)} – ${format_number(to, 4)}${unit ? ` ${unit}` : ""}`;
+export const classRange = (from: number, to: number, unit: string): string =>
+  `${formatNumber(from, 4)} – ${formatNumber(to, 4)}${unit ? ` ${unit}` : ""}`;
 
 /** What a class of a column's values is called. */
-export function value_label(
+export function valueLabel(
   { label, value, at }: PalettePoint,
   column: Column | undefined,
   records: RecordLabels,
 ): string {
   if (label) return label;
   if (value === undefined || value === "")
-    return `${format_number(at, 6)}${column?.unit ? ` ${column.unit}` : ""}`;
+    return `${formatNumber(at, 6)}${column?.unit ? ` ${column.unit}` : ""}`;
   if (column?.kind === "term")
     return records.label(column.target ?? 0, Number(value)) ?? texts.tables.record(Number(value));
   if (column?.kind === "boolean") return value === "true" ? texts.tables.yes : texts.tables.no;
@@ -175,14 +175,14 @@ function gradient(palette: Palette, unit: string): TemplateResult {
   const span = palette.max - palette.min || 1;
   const marks = ticks(palette.min, palette.max);
   return html`<div>
-    <div class="legend-gradient" ${styled({ background: css_gradient(palette) })}></div>
+    <div class="legend-gradient" ${styled({ background: cssGradient(palette) })}></div>
     <div class="legend-ticks numeric">
       ${marks.map((mark, index) => {
         const share = (mark - palette.min) / span;
         const edge = share < 0.04 ? "first" : share > 0.96 ? "last" : "";
-        const shown_unit = unit && index === marks.length - 1 ? ` ${unit}` : "";
+        const shownUnit = unit && index === marks.length - 1 ? ` ${unit}` : "";
         return html`<span class=${edge} ${styled({ left: `${(share * 100).toFixed(2)}%` })}
-          >${format_number(mark, 4)}${shown_unit}</span
+          >${formatNumber(mark, 4)}${shownUnit}</span
         >`;
       })}
     </div>
@@ -190,21 +190,21 @@ function gradient(palette: Palette, unit: string): TemplateResult {
 }
 
 /** One small square that stands for the layer. */
-export function layer_chip(palette: Palette): TemplateResult {
+export function layerChip(palette: Palette): TemplateResult {
   const first = palette.points[0];
   const background =
     palette.mode !== "categorical"
-      ? css_gradient(palette, "135deg")
+      ? cssGradient(palette, "135deg")
       : palette.points.length > 1
         ? `conic-gradient(${palette.points
             .slice(0, 6)
             .map(
               (point, index, all) =>
-                `${css_color(point.color)} ${index / all.length}turn ${(index + 1) / all.length}turn`,
+                `${cssColor(point.color)} ${index / all.length}turn ${(index + 1) / all.length}turn`,
             )
             .join(", ")})`
         : first
-          ? css_color(first.color)
+          ? cssColor(first.color)
           : "conic-gradient(#e69f00, #56b4e9, #009e73, #cc79a7, #e69f00)";
   return html`<span class="swatch" ${styled({ background })}></span>`;
 }

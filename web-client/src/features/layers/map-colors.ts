@@ -3,13 +3,13 @@
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
-import { format_fixed, read_number } from "../../core/locale";
+import { formatFixed, readNumber } from "../../core/locale";
 import type { Layer } from "../../core/types";
-import { describe_value } from "../../session/layer-values";
+import { describeValue } from "../../session/layer-values";
 import type { ColorRow } from "./map-file";
-import { number_input } from "../../ui/number-input";
+import { numberInput } from "../../ui/number-input";
 import { styled } from "../../ui/styled";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.maps;
@@ -20,7 +20,7 @@ export class StrataMapColors extends LitElement {
   @property({ attribute: false }) rows: readonly ColorRow[] = [];
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: block;
@@ -79,10 +79,10 @@ export class StrataMapColors extends LitElement {
   }
 
   private row(row: ColorRow, index: number): TemplateResult {
-    const number = read_number(row.value);
+    const number = readNumber(row.value);
     const said =
       Number.isFinite(number) && this.layer.palette.mode === "categorical"
-        ? describe_value(this.layer, number)
+        ? describeValue(this.layer, number)
         : "";
     return html`<tr class=${row.used ? "" : "off"}>
       <td>
@@ -95,10 +95,10 @@ export class StrataMapColors extends LitElement {
           <span class="swatch" ${styled({ background: row.color })}></span><span class="numeric">${row.color}</span>
         </label>
       </td>
-      <td class="numeric">${format_fixed(100 * row.share, 1)} %</td>
+      <td class="numeric">${formatFixed(100 * row.share, 1)} %</td>
       <td>
         <span class="value">
-          ${number_input({
+          ${numberInput({
             label: words.value_of(row.color),
             value: row.value,
             disabled: !row.used,

@@ -8,7 +8,7 @@ import { texts } from "../../texts";
 const words = texts.maps.crs;
 
 /** The system to ask about; null: nothing is in doubt. */
-export const crs_in_doubt = (contents: MapContents | null, model: Model | null): string | null =>
+export const crsInDoubt = (contents: MapContents | null, model: Model | null): string | null =>
   contents?.crs && model && model.crs === "" ? contents.crs : null;
 
 /** Whether it was asked for these files, and what was answered. */
@@ -19,10 +19,10 @@ export interface CrsAnswer {
 export const kNotAsked: CrsAnswer = { asked: false, taken: null };
 
 /** For the query: the system whose coordinates the model's are. */
-export const crs_query = ({ taken }: CrsAnswer): { crs?: string } =>
+export const crsQuery = ({ taken }: CrsAnswer): { crs?: string } =>
   taken === null ? {} : { crs: taken };
 
-export function crs_question(crs: string, answer: (takes: boolean) => void): TemplateResult {
+export function crsQuestion(crs: string, answer: (takes: boolean) => void): TemplateResult {
   return html`<div class="crs" role="alertdialog" aria-labelledby="crs" aria-describedby="crs-hint">
     <p id="crs">${words.question(crs)}</p>
     <p id="crs-hint" class="hint">${words.hint}</p>
@@ -34,12 +34,12 @@ export function crs_question(crs: string, answer: (takes: boolean) => void): Tem
 }
 
 /** The question comes into sight and takes the keyboard. */
-export function focus_question(root: ParentNode): void {
+export function focusQuestion(root: ParentNode): void {
   root.querySelector(".crs")?.scrollIntoView({ block: "nearest" });
   root.querySelector<HTMLElement>(".crs button")?.focus({ preventScroll: true });
 }
 
-export const crs_styles = css`
+export const crsStyles = css`
   .crs {
     display: grid;
     gap: 0.5rem;

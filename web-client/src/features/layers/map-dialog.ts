@@ -3,52 +3,52 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { label_of } from "../../domain/cells";
-import { format_list, read_number } from "../../core/locale";
-import { format_area } from "../../domain/measure";
+import { labelOf } from "../../domain/cells";
+import { formatList, readNumber } from "../../core/locale";
+import { formatArea } from "../../domain/measure";
 import type { EditResult } from "../../core/protocol.gen";
 import type { Layer, MapContents } from "../../core/types";
 import "../../ui/dialog";
 import "../../ui/file-choice";
-import { follow_session } from "../../session/follow-session";
+import { followSession } from "../../session/follow-session";
 import "./map-colors";
 import {
-  crs_in_doubt,
-  crs_query,
-  crs_question,
-  crs_styles,
-  focus_question,
+  crsInDoubt,
+  crsQuery,
+  crsQuestion,
+  crsStyles,
+  focusQuestion,
   kNotAsked,
   type CrsAnswer,
 } from "./map-crs";
 import {
   accepted,
-  as_uploads,
-  color_keys,
-  color_rows,
-  file_kind,
+  asUploads,
+  colorKeys,
+  colorRows,
+  fileKind,
   kMapEndings,
   kTableEndings,
-  picture_modes,
-  table_kind,
-  unknown_file,
-  world_numbers,
+  pictureModes,
+  tableKind,
+  unknownFile,
+  worldNumbers,
   type Along,
   type ColorRow,
   type PictureMode,
 } from "./map-file";
-import { direction_field, found_line, progress_line, world_field } from "./map-place";
+import { directionField, foundLine, progressLine, worldField } from "./map-place";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { number_input } from "../../ui/number-input";
-import { radio_group } from "../../ui/radio-group";
+import { numberInput } from "../../ui/number-input";
+import { radioGroup } from "../../ui/radio-group";
 import { Sending, type Begin } from "../../ui/sending";
-import { files_styles, form_styles, number_field_styles, shared_styles } from "../../ui/styles";
+import { filesStyles, formStyles, numberFieldStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import "../../session/fields/value-picker";
 
 const words = texts.maps;
-const kFirstLine_bytes = 65536;
+const kFirstLineBytes = 65536;
 const kTolerance = { least: 1, most: 60, usual: 12 } as const; // of colours
 
 type Kind = "readings" | "vertices" | "polygons" | "picture";
@@ -57,35 +57,35 @@ type Kind = "readings" | "vertices" | "polygons" | "picture";
 export class StrataMapDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) layer!: Layer;
-  @state() private files_: readonly File[] = [];
-  @state() private kind_: Kind | null = null;
-  @state() private contents_: MapContents | null = null;
-  @state() private attribute_ = "";
-  @state() private names_ = "";
-  @state() private mode_: PictureMode = "luminance";
-  @state() private rows_: readonly ColorRow[] = [];
-  @state() private painting_ = false;
-  @state() private crs_: CrsAnswer = kNotAsked;
-  private radius_mm_ = 5;
-  private tolerance_mm_ = 5;
-  private source_ = "";
-  private along_: Along = "-z";
-  private world_ = "";
-  private band_ = 1;
-  private tolerance_: number = kTolerance.usual;
-  private readonly sending_ = new Sending(this);
+  @state() private _files: readonly File[] = [];
+  @state() private _kind: Kind | null = null;
+  @state() private _contents: MapContents | null = null;
+  @state() private _attribute = "";
+  @state() private _names = "";
+  @state() private _mode: PictureMode = "luminance";
+  @state() private _rows: readonly ColorRow[] = [];
+  @state() private _painting = false;
+  @state() private _crs: CrsAnswer = kNotAsked;
+  private _radiusMm = 5;
+  private _toleranceMm = 5;
+  private _source = "";
+  private _along: Along = "-z";
+  private _world = "";
+  private _band = 1;
+  private _tolerance: number = kTolerance.usual;
+  private readonly _sending = new Sending(this);
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
-    files_styles,
-    form_styles,
-    number_field_styles,
-    crs_styles,
+    sharedStyles,
+    filesStyles,
+    formStyles,
+    numberFieldStyles,
+    crsStyles,
     css`
       .pair {
         display: grid;
@@ -99,11 +99,11 @@ export class StrataMapDialog extends LitElement {
   ];
 
   override render(): TemplateResult {
-    const crs = crs_in_doubt(this.contents_, this.session.model);
-    const asking = crs !== null && this.crs_.asked && this.crs_.taken === null;
-    const ready = this.kind_ !== null && !this.sending_.busy && !asking;
-    return html`<strata-dialog heading=${words.title(label_of(this.layer))} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
-      <form id="map" @submit=${(event: Event) => this.on_submit(event)}>
+    const crs = crsInDoubt(this._contents, this.session.model);
+    const asking = crs !== null && this._crs.asked && this._crs.taken === null;
+    const ready = this._kind !== null && !this._sending.busy && !asking;
+    return html`<strata-dialog heading=${words.title(labelOf(this.layer))} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+      <form id="map" @submit=${(event: Event) => this.onSubmit(event)}>
         <p class="hint">${words.lead}</p>
         <div class="part">
           <span class="caption">${words.file}</span>
@@ -111,26 +111,26 @@ export class StrataMapDialog extends LitElement {
             multiple
             label=${words.file}
             accept=${accepted([...kTableEndings, ...kMapEndings])}
-            ?disabled=${this.painting_}
-            .names=${this.files_.map(({ name }) => name)}
-            @files=${(event: CustomEvent<File[]>) => void this.on_files(event.detail)}
+            ?disabled=${this._painting}
+            .names=${this._files.map(({ name }) => name)}
+            @files=${(event: CustomEvent<File[]>) => void this.onFiles(event.detail)}
           ></strata-file-choice>
         </div>
-        ${this.files_.length === 0 ? html`<p class="hint">${words.file_hint}</p>` : nothing} ${this.fields()}
-        ${asking ? crs_question(crs, (takes) => this.on_crs(takes ? crs : null)) : nothing}
-        ${this.sending_.problem ? html`<p class="error" role="alert">${this.sending_.problem}</p>` : nothing}
-        ${this.sending_.busy ? progress_line(this.sending_.share, this.painting_ ? words.working : words.looking) : nothing}
+        ${this._files.length === 0 ? html`<p class="hint">${words.file_hint}</p>` : nothing} ${this.fields()}
+        ${asking ? crsQuestion(crs, (takes) => this.onCrs(takes ? crs : null)) : nothing}
+        ${this._sending.problem ? html`<p class="error" role="alert">${this._sending.problem}</p>` : nothing}
+        ${this._sending.busy ? progressLine(this._sending.share, this._painting ? words.working : words.looking) : nothing}
       </form>
       <button slot="actions" class="primary" form="map" ?disabled=${!ready}>${words.paint}</button>
     </strata-dialog>`;
   }
 
   private fields(): TemplateResult | typeof nothing {
-    const { contents_: contents } = this;
-    if (this.kind_ === "readings") return this.readings();
-    if (this.kind_ === "vertices") return this.vertices();
+    const { _contents: contents } = this;
+    if (this._kind === "readings") return this.readings();
+    if (this._kind === "vertices") return this.vertices();
     if (!contents) return nothing;
-    return html`${found_line(contents)} ${direction_field(this.along_, (along) => (this.along_ = along))}
+    return html`${foundLine(contents)} ${directionField(this._along, (along) => (this._along = along))}
     ${contents.kind === "polygons" ? this.polygons(contents) : this.picture(contents)}`;
   }
 
@@ -142,14 +142,14 @@ export class StrataMapDialog extends LitElement {
       html`<label class="field">
         <span>${label}</span>
         <span class="number">
-          ${number_input({ value, min: 0, changed: (text) => set(read_number(text)) })}
+          ${numberInput({ value, min: 0, changed: (text) => set(readNumber(text)) })}
           <span>mm</span>
         </span>
       </label>`;
     return html`<p class="hint">${words.readings_hint}</p>
       <div class="pair">
-        ${length(words.radius, this.radius_mm_, (mm) => (this.radius_mm_ = mm))}
-        ${length(words.tolerance, this.tolerance_mm_, (mm) => (this.tolerance_mm_ = mm))}
+        ${length(words.radius, this._radiusMm, (mm) => (this._radiusMm = mm))}
+        ${length(words.tolerance, this._toleranceMm, (mm) => (this._toleranceMm = mm))}
       </div>`;
   }
 
@@ -165,8 +165,8 @@ export class StrataMapDialog extends LitElement {
         this.sources.length > 1
           ? html`<label class="field">
             <span>${words.source}</span>
-            <select name="source" @change=${(event: Event) => (this.source_ = (event.target as HTMLSelectElement).value)}>
-              ${this.sources.map((name) => html`<option value=${name} ?selected=${name === this.source_}>${name}</option>`)}
+            <select name="source" @change=${(event: Event) => (this._source = (event.target as HTMLSelectElement).value)}>
+              ${this.sources.map((name) => html`<option value=${name} ?selected=${name === this._source}>${name}</option>`)}
             </select>
           </label>`
           : nothing
@@ -178,35 +178,35 @@ export class StrataMapDialog extends LitElement {
 
   private polygons({ columns = [] }: MapContents): TemplateResult {
     const { session, layer } = this;
-    const has_names = layer.palette.mode === "categorical";
+    const hasNames = layer.palette.mode === "categorical";
     const usable = columns.filter(({ type }) => type !== "mixed");
-    const chosen = usable.find(({ name }) => name === this.attribute_);
-    const name_columns = columns.filter(
+    const chosen = usable.find(({ name }) => name === this._attribute);
+    const nameColumns = columns.filter(
       ({ type, name }) => type === "text" && name !== chosen?.name,
     );
     const option = (value: string, label: string, now: string): TemplateResult =>
       html`<option value=${value} ?selected=${value === now}>${label}</option>`;
     return html`<label class="field">
         <span>${words.attribute}</span>
-        <select name="attribute" @change=${(event: Event) => (this.attribute_ = (event.target as HTMLSelectElement).value)}>
-          ${option("", words.one_value, this.attribute_)}
+        <select name="attribute" @change=${(event: Event) => (this._attribute = (event.target as HTMLSelectElement).value)}>
+          ${option("", words.one_value, this._attribute)}
           ${usable.map(({ name, type }) =>
             option(
               name,
               type === "number" ? words.attribute_number(name) : words.attribute_text(name),
-              this.attribute_,
+              this._attribute,
             ),
           )}
         </select>
       </label>
-      ${chosen && chosen.samples.length > 0 ? html`<p class="hint">${words.samples(format_list(chosen.samples.slice(0, 6)))}</p>` : nothing}
-      ${chosen?.type === "text" ? html`<p class="hint">${has_names ? words.names_become : words.names_need_legend}</p>` : nothing}
+      ${chosen && chosen.samples.length > 0 ? html`<p class="hint">${words.samples(formatList(chosen.samples.slice(0, 6)))}</p>` : nothing}
+      ${chosen?.type === "text" ? html`<p class="hint">${hasNames ? words.names_become : words.names_need_legend}</p>` : nothing}
       ${
-        chosen?.type === "number" && has_names && name_columns.length > 0
+        chosen?.type === "number" && hasNames && nameColumns.length > 0
           ? html`<label class="field">
             <span>${words.names}</span>
-            <select name="names" @change=${(event: Event) => (this.names_ = (event.target as HTMLSelectElement).value)}>
-              ${option("", words.no_names, this.names_)} ${name_columns.map(({ name }) => option(name, name, this.names_))}
+            <select name="names" @change=${(event: Event) => (this._names = (event.target as HTMLSelectElement).value)}>
+              ${option("", words.no_names, this._names)} ${nameColumns.map(({ name }) => option(name, name, this._names))}
             </select>
           </label>`
           : nothing
@@ -217,17 +217,17 @@ export class StrataMapDialog extends LitElement {
           : html`<strata-value-picker
             .session=${session}
             .layer=${layer}
-            .value=${session.painting.brush.value_of(layer)}
+            .value=${session.painting.brush.valueFor(layer)}
           ></strata-value-picker>`
       }`;
   }
 
   private picture(contents: MapContents): TemplateResult {
-    const modes = picture_modes(contents);
-    return html`${world_field(contents, this.world_, (text) => (this.world_ = text))}
+    const modes = pictureModes(contents);
+    return html`${worldField(contents, this._world, (text) => (this._world = text))}
       <div class="part">
         <span class="caption" id="gives">${words.picture_gives}</span>
-        ${radio_group({
+        ${radioGroup({
           label: { id: "gives" },
           class: "segments",
           choices: modes.map((mode) => ({
@@ -235,38 +235,38 @@ export class StrataMapDialog extends LitElement {
             content: words.modes[mode],
             title: words.mode_hints[mode],
           })),
-          chosen: this.mode_,
-          choose: (mode) => (this.mode_ = mode),
+          chosen: this._mode,
+          choose: (mode) => (this._mode = mode),
         })}
-        <p class="hint">${words.mode_hints[this.mode_]}</p>
+        <p class="hint">${words.mode_hints[this._mode]}</p>
       </div>
-      ${this.mode_ === "band" && (contents.bands ?? 1) > 1 ? this.band(contents.bands!) : nothing}
-      ${this.mode_ === "colors" ? this.colors() : nothing}`;
+      ${this._mode === "band" && (contents.bands ?? 1) > 1 ? this.band(contents.bands!) : nothing}
+      ${this._mode === "colors" ? this.colors() : nothing}`;
   }
 
   private band(bands: number): TemplateResult {
     return html`<label class="field">
       <span>${words.band}</span>
-      <span class="short">${number_input({ name: "band", value: this.band_, min: 1, max: bands, changed: (text) => (this.band_ = read_number(text)) })}</span>
+      <span class="short">${numberInput({ name: "band", value: this._band, min: 1, max: bands, changed: (text) => (this._band = readNumber(text)) })}</span>
     </label>`;
   }
 
   private colors(): TemplateResult {
     return html`<strata-map-colors
         .layer=${this.layer}
-        .rows=${this.rows_}
-        @rows=${(event: CustomEvent<ColorRow[]>) => (this.rows_ = event.detail)}
+        .rows=${this._rows}
+        @rows=${(event: CustomEvent<ColorRow[]>) => (this._rows = event.detail)}
       ></strata-map-colors>
       <label class="field">
         <span>${words.color_tolerance}</span>
         <span class="short">
-          ${number_input({
+          ${numberInput({
             name: "tolerance",
             title: words.color_tolerance_hint,
-            value: this.tolerance_,
+            value: this._tolerance,
             min: kTolerance.least,
             max: kTolerance.most,
-            changed: (text) => void this.on_tolerance(read_number(text)),
+            changed: (text) => void this.onTolerance(readNumber(text)),
           })}
         </span>
       </label>`;
@@ -275,25 +275,25 @@ export class StrataMapDialog extends LitElement {
   // ── what is done
   // ──────────────────────────────────────────────────────────────────────────────────────────────────
 
-  private async on_files(files: File[]): Promise<void> {
-    this.sending_.cancel();
-    [this.files_, this.kind_, this.contents_, this.attribute_, this.names_] = [
+  private async onFiles(files: File[]): Promise<void> {
+    this._sending.cancel();
+    [this._files, this._kind, this._contents, this._attribute, this._names] = [
       files,
       null,
       null,
       "",
       "",
     ];
-    this.crs_ = kNotAsked;
-    this.sending_.refuse("");
+    this._crs = kNotAsked;
+    this._sending.refuse("");
     const names = files.map(({ name }) => name);
-    const kind = file_kind(names);
+    const kind = fileKind(names);
     if (kind === null) {
-      this.sending_.refuse(words.unknown(unknown_file(names)));
+      this._sending.refuse(words.unknown(unknownFile(names)));
     } else if (kind === "table") {
-      const read = table_kind(await files[0]!.slice(0, kFirstLine_bytes).text());
-      if (files === this.files_) this.kind_ = read;
-      this.source_ = this.sources[0] ?? "";
+      const read = tableKind(await files[0]!.slice(0, kFirstLineBytes).text());
+      if (files === this._files) this._kind = read;
+      this._source = this.sources[0] ?? "";
     } else {
       await this.look();
     }
@@ -301,36 +301,36 @@ export class StrataMapDialog extends LitElement {
 
   /** Asks the server what the files hold. */
   private async look(): Promise<void> {
-    const { files_: files, session } = this;
-    const query = { tolerance: String(this.tolerance_) };
-    const contents = await this.sending_.run((progress) =>
-      session.api.map_contents(session.model_id, query, as_uploads(files), progress),
+    const { _files: files, session } = this;
+    const query = { tolerance: String(this._tolerance) };
+    const contents = await this._sending.run((progress) =>
+      session.api.mapContents(session.modelId, query, asUploads(files), progress),
     );
-    if (!contents || files !== this.files_) return;
-    this.contents_ = contents;
-    this.kind_ = contents.kind;
+    if (!contents || files !== this._files) return;
+    this._contents = contents;
+    this._kind = contents.kind;
     if (contents.kind === "picture") {
-      const modes = picture_modes(contents);
-      if (!modes.includes(this.mode_) || this.rows_.length === 0)
-        this.mode_ = modes[0] ?? "luminance";
+      const modes = pictureModes(contents);
+      if (!modes.includes(this._mode) || this._rows.length === 0)
+        this._mode = modes[0] ?? "luminance";
       const { mode, points } = this.layer.palette;
-      this.rows_ = color_rows(
+      this._rows = colorRows(
         contents.colors ?? [],
         mode === "categorical" ? points.map(({ at }) => at) : [],
       );
     }
   }
 
-  private async on_tolerance(tolerance: number): Promise<void> {
+  private async onTolerance(tolerance: number): Promise<void> {
     if (!(tolerance >= kTolerance.least && tolerance <= kTolerance.most)) {
-      this.sending_.refuse(words.bad_tolerance(kTolerance.least, kTolerance.most));
+      this._sending.refuse(words.bad_tolerance(kTolerance.least, kTolerance.most));
       return;
     }
-    this.tolerance_ = tolerance;
+    this._tolerance = tolerance;
     await this.look();
   }
 
-  private on_submit(event: Event): void {
+  private onSubmit(event: Event): void {
     event.preventDefault();
     void this.apply();
   }
@@ -338,70 +338,70 @@ export class StrataMapDialog extends LitElement {
   /** The request; a text that says what is missing. */
   private request(kind: Kind): Begin<EditResult> | string {
     const { session, layer } = this;
-    const files = as_uploads(this.files_);
+    const files = asUploads(this._files);
     if (kind === "vertices") {
-      const source = this.sources.length > 1 ? this.source_ : null;
+      const source = this.sources.length > 1 ? this._source : null;
       return (progress) =>
-        session.api.put_vertex_values(session.model_id, layer.id, source, files[0]!, progress);
+        session.api.putVertexValues(session.modelId, layer.id, source, files[0]!, progress);
     }
     const lengths = {
-      radius_mm: String(this.radius_mm_),
-      tolerance_mm: String(this.tolerance_mm_),
+      radius_mm: String(this._radiusMm),
+      tolerance_mm: String(this._toleranceMm),
     };
-    const query = kind === "readings" ? lengths : this.map_query(kind);
+    const query = kind === "readings" ? lengths : this.mapQuery(kind);
     if (typeof query === "string") return query;
     return (progress) =>
-      session.api.paint_map(session.model_id, layer.id, kind, query, files, progress);
+      session.api.paintMap(session.modelId, layer.id, kind, query, files, progress);
   }
 
-  private map_query(kind: "polygons" | "picture"): Record<string, string> | string {
-    const along = { along: this.along_, ...crs_query(this.crs_) };
+  private mapQuery(kind: "polygons" | "picture"): Record<string, string> | string {
+    const along = { along: this._along, ...crsQuery(this._crs) };
     if (kind === "polygons") {
-      const value = String(this.session.painting.brush.value_of(this.layer));
-      if (this.attribute_ === "") return { ...along, value };
+      const value = String(this.session.painting.brush.valueFor(this.layer));
+      if (this._attribute === "") return { ...along, value };
       return {
         ...along,
-        attribute: this.attribute_,
-        ...(this.names_ ? { names: this.names_ } : {}),
+        attribute: this._attribute,
+        ...(this._names ? { names: this._names } : {}),
       };
     }
-    const world = this.contents_?.world ? {} : { world: world_numbers(this.world_) };
+    const world = this._contents?.world ? {} : { world: worldNumbers(this._world) };
     if (world.world === null) return words.world_wrong;
     const placed = { ...along, ...(world as Record<string, string>) };
-    if (this.mode_ === "luminance") return placed;
-    if (this.mode_ === "band") return { ...placed, band: String(this.band_) };
-    const colors = color_keys(this.rows_);
+    if (this._mode === "luminance") return placed;
+    if (this._mode === "band") return { ...placed, band: String(this._band) };
+    const colors = colorKeys(this._rows);
     return colors === null
       ? words.colors_wrong
-      : { ...placed, colors, tolerance: String(this.tolerance_) };
+      : { ...placed, colors, tolerance: String(this._tolerance) };
   }
 
-  private on_crs(taken: string | null): void {
-    this.crs_ = { asked: taken !== null, taken };
+  private onCrs(taken: string | null): void {
+    this._crs = { asked: taken !== null, taken };
     if (taken !== null) void this.apply();
   }
 
   private async apply(): Promise<void> {
-    if (!this.kind_ || this.sending_.busy) return;
-    const request = this.request(this.kind_);
+    if (!this._kind || this._sending.busy) return;
+    const request = this.request(this._kind);
     if (typeof request === "string") {
-      this.sending_.refuse(request);
+      this._sending.refuse(request);
       return;
     }
-    if (crs_in_doubt(this.contents_, this.session.model) !== null && this.crs_.taken === null) {
-      this.crs_ = { asked: true, taken: null };
+    if (crsInDoubt(this._contents, this.session.model) !== null && this._crs.taken === null) {
+      this._crs = { asked: true, taken: null };
       await this.updateComplete;
-      focus_question(this.renderRoot);
+      focusQuestion(this.renderRoot);
       return;
     }
-    this.painting_ = true;
-    this.sending_.gives_up = false; // closing the dialog does not undo it
-    const done = await this.sending_.run(request);
-    this.painting_ = false;
-    this.sending_.gives_up = true;
+    this._painting = true;
+    this._sending.givesUp = false; // closing the dialog does not undo it
+    const done = await this._sending.run(request);
+    this._painting = false;
+    this._sending.givesUp = true;
     if (!done) return;
     if (done.texels_changed === 0) notices.show("info", texts.areas.nothing_changed);
-    else notices.show("success", texts.areas.changed(format_area(done.area_m2)));
+    else notices.show("success", texts.areas.changed(formatArea(done.area_m2)));
     this.dispatchEvent(new CustomEvent("closed"));
   }
 }

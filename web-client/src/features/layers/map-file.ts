@@ -1,7 +1,7 @@
 // Files that are painted over a layer: what they are, and what is asked for.
 
 import type { UploadFile } from "../../net/api";
-import { read_number, typed_number } from "../../core/locale";
+import { readNumber, typedNumber } from "../../core/locale";
 import type { MapColor, MapContents } from "../../core/types";
 
 export const kAlong = ["-z", "+z", "-y", "+y", "-x", "+x"] as const;
@@ -36,11 +36,11 @@ export const kMapEndings = [
 export const accepted = (endings: readonly string[]): string =>
   endings.map((ending) => `.${ending}`).join(",");
 
-const ending_of = (name: string): string => /\.([a-z]+)$/i.exec(name)?.[1]?.toLowerCase() ?? "";
+const endingOf = (name: string): string => /\.([a-z]+)$/i.exec(name)?.[1]?.toLowerCase() ?? "";
 
 /** A table of numbers, or a map that the server looks into; null: something else is among them. */
-export function file_kind(names: readonly string[]): "table" | "map" | null {
-  const endings = names.map(ending_of);
+export function fileKind(names: readonly string[]): "table" | "map" | null {
+  const endings = names.map(endingOf);
   if (endings.length === 1 && (kTableEndings as readonly string[]).includes(endings[0]!))
     return "table";
   return endings.length > 0 &&
@@ -50,22 +50,22 @@ export function file_kind(names: readonly string[]): "table" | "map" | null {
 }
 
 /** The first of the files that is neither. */
-export const unknown_file = (names: readonly string[]): string =>
-  names.find((name) => file_kind([name]) === null) ?? names[0] ?? "";
+export const unknownFile = (names: readonly string[]): string =>
+  names.find((name) => fileKind([name]) === null) ?? names[0] ?? "";
 
 /** By the first line of a table: measured places, or one number for each vertex. */
-export function table_kind(text: string): "readings" | "vertices" {
+export function tableKind(text: string): "readings" | "vertices" {
   const names = (text.trimStart().split(/\r?\n/, 1)[0] ?? "")
     .split(/[,;\t]/)
     .map((name) => name.replace(/["\s]/g, "").toLowerCase());
   return ["x", "y", "z", "value"].every((name) => names.includes(name)) ? "readings" : "vertices";
 }
 
-export const as_uploads = (files: readonly File[]): UploadFile[] =>
+export const asUploads = (files: readonly File[]): UploadFile[] =>
   files.map((file) => ({ file, path: file.name }));
 
 /** The six numbers of a world file, parted by commas; null: there are not six. */
-export function world_numbers(text: string): string | null {
+export function worldNumbers(text: string): string | null {
   const numbers = text.trim().split(/[\s,;]+/);
   return numbers.length === 6 &&
     numbers.every((each) => each !== "" && Number.isFinite(Number(each)))
@@ -77,7 +77,7 @@ export function world_numbers(text: string): string | null {
 export type PictureMode = "luminance" | "band" | "colors";
 
 /** Those that this picture allows, the likeliest first. */
-export function picture_modes(contents: MapContents): PictureMode[] {
+export function pictureModes(contents: MapContents): PictureMode[] {
   const modes: PictureMode[] = [];
   if (contents.bands !== undefined && !contents.is_rgb) modes.push("band");
   if (contents.has_colors && contents.is_rgb && (contents.colors?.length ?? 0) > 1)
@@ -97,18 +97,18 @@ export interface ColorRow {
 }
 
 /** The colours found, each with the next of these values; the paper's is left out. */
-export function color_rows(colors: readonly MapColor[], values: readonly number[]): ColorRow[] {
+export function colorRows(colors: readonly MapColor[], values: readonly number[]): ColorRow[] {
   let next = 0;
   let above = Math.max(0, ...values);
   return colors.map(({ color, share, background }) => {
-    const value = background ? "" : typed_number(values[next++] ?? ++above);
+    const value = background ? "" : typedNumber(values[next++] ?? ++above);
     return { color, share, used: !background, value };
   });
 }
 
 /** `{"#c02020":1}`; null: a colour that is used has no number, or none is used. */
-export function color_keys(rows: readonly ColorRow[]): string | null {
+export function colorKeys(rows: readonly ColorRow[]): string | null {
   const used = rows.filter((row) => row.used);
-  if (used.length === 0 || used.some((row) => Number.isNaN(read_number(row.value)))) return null;
-  return JSON.stringify(Object.fromEntries(used.map((row) => [row.color, read_number(row.value)])));
+  if (used.length === 0 || used.some((row) => Number.isNaN(readNumber(row.value)))) return null;
+  return JSON.stringify(Object.fromEntries(used.map((row) => [row.color, readNumber(row.value)])));
 }

@@ -2,14 +2,14 @@
 // dialogs.
 
 import { html, nothing, type TemplateResult } from "lit";
-import { format_number } from "../../domain/measure";
+import { formatNumber } from "../../domain/measure";
 import type { MapContents } from "../../core/types";
 import { kAlong, type Along } from "./map-file";
 import { texts } from "../../texts";
 
 const words = texts.maps;
 
-export const direction_field = (chosen: Along, choose: (along: Along) => void): TemplateResult =>
+export const directionField = (chosen: Along, choose: (along: Along) => void): TemplateResult =>
   html`<label class="field">
     <span>${words.along}</span>
     <select name="along" @change=${(event: Event) => choose((event.target as HTMLSelectElement).value as Along)}>
@@ -18,7 +18,7 @@ export const direction_field = (chosen: Along, choose: (along: Along) => void): 
   </label>`;
 
 /** A picture that says where it lies needs no numbers. */
-export const world_field = (
+export const worldField = (
   contents: MapContents,
   text: string,
   type: (text: string) => void,
@@ -37,14 +37,14 @@ export const world_field = (
       </label>`;
 
 /** What was found in the files, in one line. */
-export function found_line(contents: MapContents): TemplateResult {
+export function foundLine(contents: MapContents): TemplateResult {
   const { kind, polygons, columns, width, height, bands, bounds, crs } = contents;
   const parts =
     kind === "polygons"
       ? [words.polygons(polygons ?? 0), words.columns(columns?.length ?? 0)]
       : [`${width} × ${height} px`, ...(bands && !contents.is_rgb ? [words.bands(bands)] : [])];
   if (crs) parts.push(crs);
-  const number = (value: number): string => format_number(value, 6);
+  const number = (value: number): string => formatNumber(value, 6);
   return html`<p class="found">
     ${parts.join(" · ")}${
       bounds
@@ -56,7 +56,7 @@ export function found_line(contents: MapContents): TemplateResult {
   </p>`;
 }
 
-export const progress_line = (share: number | null, after: string): TemplateResult =>
+export const progressLine = (share: number | null, after: string): TemplateResult =>
   html`<div role="status">
     <progress max="1" .value=${share ?? 0} ?hidden=${share === null}></progress>
     <p class="hint">${share === null || share >= 1 ? after : words.sending(Math.round(share * 100))}</p>

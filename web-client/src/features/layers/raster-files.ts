@@ -1,86 +1,82 @@
 // A layer's texels as files: saved from the page, and put back from one; and its outlines for maps.
 
-import { label_of } from "../../domain/cells";
-import { page_locale } from "../../core/locale";
+import { labelOf } from "../../domain/cells";
+import { pageLocale } from "../../core/locale";
 import type { Layer } from "../../core/types";
-import { format_area } from "../../domain/measure";
+import { formatArea } from "../../domain/measure";
 import { ask } from "../../ui/dialog";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { save_from } from "../../ui/save-from";
+import { saveFrom } from "../../ui/save-from";
 import { texts } from "../../texts";
 
 export const kRasterFormats = ["tif", "png", "npy"] as const;
 export type RasterFormat = (typeof kRasterFormats)[number];
 
 /** By the file's name; null: none that a layer can be read from. */
-export function raster_format(filename: string): RasterFormat | null {
+export function rasterFormat(filename: string): RasterFormat | null {
   const extension = /\.([a-z]+)$/i.exec(filename)?.[1]?.toLowerCase();
   if (extension === "tiff") return "tif";
   return kRasterFormats.find((format) => format === extension) ?? null;
 }
 
 /** PNG holds numbers of 8 and 16 bits only. */
-export const formats_of = (layer: Layer): RasterFormat[] =>
+export const formatsOf = (layer: Layer): RasterFormat[] =>
   kRasterFormats.filter(
     (format) => format !== "png" || layer.type === "u8" || layer.type === "u16",
   );
 
-export function save_raster(session: ModelSession, layer: Layer, format: RasterFormat): void {
-  save_from(session.api.texels_url(session.model_id, layer.id, format), `${layer.slug}.${format}`);
+export function saveRaster(session: ModelSession, layer: Layer, format: RasterFormat): void {
+  saveFrom(session.api.texelsUrl(session.modelId, layer.id, format), `${layer.slug}.${format}`);
 }
 
 export const kFeatureFormats = ["geojson", "gpkg"] as const;
 export type FeatureFormat = (typeof kFeatureFormats)[number];
 
 /** From above, as the model stands: the map of a wall that is `y` up is its plan in x and z. */
-export const plan_of = (up: string): string => `-${up.at(-1)}`;
+export const planOf = (up: string): string => `-${up.at(-1)}`;
 
-export function save_features(session: ModelSession, layer: Layer, format: FeatureFormat): void {
-  const query = { f: format, along: plan_of(session.model?.up ?? "z"), lang: page_locale() };
-  save_from(session.api.features_url(session.model_id, layer.id, query), `${layer.slug}.${format}`);
+export function saveFeatures(session: ModelSession, layer: Layer, format: FeatureFormat): void {
+  const query = { f: format, along: planOf(session.model?.up ?? "z"), lang: pageLocale() };
+  saveFrom(session.api.featuresUrl(session.modelId, layer.id, query), `${layer.slug}.${format}`);
 }
 
 /** Asks for a file and makes the layer hold what is in it. */
-export function choose_raster(session: ModelSession, layer: Layer): void {
+export function chooseRaster(session: ModelSession, layer: Layer): void {
   const input = document.createElement("input");
   input.type = "file";
   input.accept = ".tif,.tiff,.png,.npy";
   input.addEventListener("change", () => {
     const [file] = input.files ?? [];
-    if (file) void import_raster(session, layer, file);
+    if (file) void importRaster(session, layer, file);
   });
   input.click();
 }
 
-export async function import_raster(
-  session: ModelSession,
-  layer: Layer,
-  file: File,
-): Promise<void> {
+export async function importRaster(session: ModelSession, layer: Layer, file: File): Promise<void> {
   const words = texts.rasters;
-  const format = raster_format(file.name);
+  const format = rasterFormat(file.name);
   if (!format) {
     notices.show("problem", words.unknown(file.name), words.known);
     return;
   }
   if (
     !(await ask({
-      heading: words.title(label_of(layer)),
+      heading: words.title(labelOf(layer)),
       lead: words.lead(file.name),
       yes: words.replace,
     }))
   )
     return;
   try {
-    const { texels_changed, area_m2 } = await session.api.put_texels(
-      session.model_id,
+    const { texels_changed: texelsChanged, area_m2: areaM2 } = await session.api.putTexels(
+      session.modelId,
       layer.id,
       format,
       file,
     );
-    if (texels_changed === 0) notices.show("info", words.same);
-    else notices.show("success", texts.areas.changed(format_area(area_m2)));
+    if (texelsChanged === 0) notices.show("info", words.same);
+    else notices.show("success", texts.areas.changed(formatArea(areaM2)));
   } catch (error) {
     notices.error(error);
   }

@@ -6,17 +6,17 @@ import { customElement, property, state } from "lit/decorators.js";
 import { ApiError } from "../../net/api";
 import type { Model, VertexPropertyName } from "../../core/types";
 import type { ModelSession } from "../../session/model-session";
-import { number_input } from "../../ui/number-input";
+import { numberInput } from "../../ui/number-input";
 import {
   kRays,
   kShapeGroups,
-  other_models,
-  recipe_of,
-  shape_kind,
+  otherModels,
+  recipeOf,
+  shapeKind,
   type ShapeInput,
   type ShapeKind,
 } from "./shape-kinds";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.shape;
@@ -26,7 +26,7 @@ export class StrataShapeFields extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   /** The field that the server or the dialog found wrong. */
   @property() wrong = "";
-  @state() private input_: ShapeInput = {
+  @state() private _input: ShapeInput = {
     kind: "mean_curvature",
     radius: "",
     distance: "",
@@ -35,11 +35,11 @@ export class StrataShapeFields extends LitElement {
     model: "",
     property: "",
   };
-  @state() private models_: Model[] = [];
-  @state() private properties_: VertexPropertyName[] = [];
+  @state() private _models: Model[] = [];
+  @state() private _properties: VertexPropertyName[] = [];
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: grid;
@@ -80,37 +80,34 @@ export class StrataShapeFields extends LitElement {
   }
 
   private async load(): Promise<void> {
-    const { api, model_id, model } = this.session;
+    const { api, modelId, model } = this.session;
     try {
-      const [models, properties] = await Promise.all([
-        api.models(),
-        api.vertex_properties(model_id),
-      ]);
-      this.models_ = model ? other_models(models, model) : [];
-      this.properties_ = properties;
-      const [first_model, first_property] = [this.models_[0], properties[0]];
+      const [models, properties] = await Promise.all([api.models(), api.vertexProperties(modelId)]);
+      this._models = model ? otherModels(models, model) : [];
+      this._properties = properties;
+      const [firstModel, firstProperty] = [this._models[0], properties[0]];
       this.change({
-        model: first_model ? String(first_model.id) : "",
-        property: first_property ? key_of(first_property) : "",
+        model: firstModel ? String(firstModel.id) : "",
+        property: firstProperty ? keyOf(firstProperty) : "",
       });
     } catch (error) {
       if (!(error instanceof ApiError)) throw error; // what needs no list still works
     }
   }
 
-  get kind_title(): string {
-    const { kind, property: chosen } = this.input_;
+  get kindTitle(): string {
+    const { kind, property: chosen } = this._input;
     return kind === "vertex_property" && chosen
       ? chosen.slice(chosen.indexOf("/") + 1)
-      : shape_kind(kind).title;
+      : shapeKind(kind).title;
   }
 
-  recipe(): ReturnType<typeof recipe_of> {
-    return recipe_of(this.input_);
+  recipe(): ReturnType<typeof recipeOf> {
+    return recipeOf(this._input);
   }
 
   override render(): TemplateResult {
-    const info = shape_kind(this.input_.kind);
+    const info = shapeKind(this._input.kind);
     return html`<label class="field">
         <span>${words.kind}</span>
         <select name="kind" @change=${(event: Event) => this.choose((event.target as HTMLSelectElement).value as ShapeKind)}>
@@ -118,7 +115,7 @@ export class StrataShapeFields extends LitElement {
             (group) =>
               html`<optgroup label=${group.title}>
                 ${group.kinds
-                  .filter(({ kind }) => this.is_possible(kind))
+                  .filter(({ kind }) => this.isPossible(kind))
                   .map(
                     ({ kind, title }) =>
                       html`<option value=${kind} ?selected=${kind === info.kind}>${title}</option>`,
@@ -132,38 +129,38 @@ export class StrataShapeFields extends LitElement {
         info.takes.length === 0
           ? nothing
           : html`<div class="parameters">
-            ${info.takes.includes("model") ? this.model_field() : nothing}
-            ${info.takes.includes("property") ? this.property_field() : nothing}
-            ${info.takes.includes("radius") ? this.length_field("radius", words.radius, words.radius_hint) : nothing}
-            ${info.takes.includes("distance") ? this.length_field("distance", words.distance, words.distance_hint) : nothing}
-            ${info.takes.includes("rays") ? this.rays_field() : nothing}
-            ${info.takes.includes("absolute") ? this.absolute_field() : nothing}
+            ${info.takes.includes("model") ? this.modelField() : nothing}
+            ${info.takes.includes("property") ? this.propertyField() : nothing}
+            ${info.takes.includes("radius") ? this.lengthField("radius", words.radius, words.radius_hint) : nothing}
+            ${info.takes.includes("distance") ? this.lengthField("distance", words.distance, words.distance_hint) : nothing}
+            ${info.takes.includes("rays") ? this.raysField() : nothing}
+            ${info.takes.includes("absolute") ? this.absoluteField() : nothing}
           </div>`
       }`;
   }
 
-  private is_possible(kind: ShapeKind): boolean {
-    if (kind === "vertex_property") return this.properties_.length > 0;
-    return kind !== "model_distance" || this.models_.length > 0;
+  private isPossible(kind: ShapeKind): boolean {
+    if (kind === "vertex_property") return this._properties.length > 0;
+    return kind !== "model_distance" || this._models.length > 0;
   }
 
-  private length_field(name: "radius" | "distance", label: string, hint: string): TemplateResult {
+  private lengthField(name: "radius" | "distance", label: string, hint: string): TemplateResult {
     return html`<label class="field">
       <span>${label}</span>
       <div class="length">
-        ${number_input({ name, value: this.input_[name], placeholder: hint, min: 0, wrong: this.wrong === name, typed: (text) => this.change({ [name]: text }) })}
+        ${numberInput({ name, value: this._input[name], placeholder: hint, min: 0, wrong: this.wrong === name, typed: (text) => this.change({ [name]: text }) })}
         mm
       </div>
     </label>`;
   }
 
-  private rays_field(): TemplateResult {
+  private raysField(): TemplateResult {
     return html`<label class="field">
       <span>${words.rays}</span>
-      ${number_input({
+      ${numberInput({
         name: "rays",
         title: words.rays_hint,
-        value: this.input_.rays,
+        value: this._input.rays,
         placeholder: kRays.usual,
         min: kRays.least,
         max: kRays.most,
@@ -173,35 +170,35 @@ export class StrataShapeFields extends LitElement {
     </label>`;
   }
 
-  private absolute_field(): TemplateResult {
+  private absoluteField(): TemplateResult {
     return html`<label class="check">
       <input
         type="checkbox"
         name="absolute"
-        .checked=${this.input_.absolute}
+        .checked=${this._input.absolute}
         @change=${(event: Event) => this.change({ absolute: (event.target as HTMLInputElement).checked })}
       />
       ${words.absolute}
     </label>`;
   }
 
-  private model_field(): TemplateResult {
+  private modelField(): TemplateResult {
     return html`<label class="field">
       <span>${words.model}</span>
       <select name="model" @change=${(event: Event) => this.change({ model: (event.target as HTMLSelectElement).value })}>
-        ${this.models_.map(({ id, name }) => html`<option value=${id} ?selected=${String(id) === this.input_.model}>${name}</option>`)}
+        ${this._models.map(({ id, name }) => html`<option value=${id} ?selected=${String(id) === this._input.model}>${name}</option>`)}
       </select>
     </label>`;
   }
 
-  private property_field(): TemplateResult {
-    const files = new Set(this.properties_.map(({ source }) => source)).size;
+  private propertyField(): TemplateResult {
+    const files = new Set(this._properties.map(({ source }) => source)).size;
     return html`<label class="field">
       <span>${words.property}</span>
       <select name="property" @change=${(event: Event) => this.change({ property: (event.target as HTMLSelectElement).value })}>
-        ${this.properties_.map((each) => {
-          const key = key_of(each);
-          return html`<option value=${key} ?selected=${key === this.input_.property}>
+        ${this._properties.map((each) => {
+          const key = keyOf(each);
+          return html`<option value=${key} ?selected=${key === this._input.property}>
             ${files > 1 ? `${each.property} (${each.source})` : each.property}
           </option>`;
         })}
@@ -215,8 +212,8 @@ export class StrataShapeFields extends LitElement {
   }
 
   private change(change: Partial<ShapeInput>): void {
-    this.input_ = { ...this.input_, ...change };
+    this._input = { ...this._input, ...change };
   }
 }
 
-const key_of = ({ source, property: name }: VertexPropertyName): string => `${source}/${name}`;
+const keyOf = ({ source, property: name }: VertexPropertyName): string => `${source}/${name}`;

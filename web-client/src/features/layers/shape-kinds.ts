@@ -1,6 +1,6 @@
 // What can be computed from a model's shape, in the words of who studies it.
 
-import { read_number } from "../../core/locale";
+import { readNumber } from "../../core/locale";
 import type { Model, ShapeRecipe } from "../../core/types";
 import { texts } from "../../texts";
 
@@ -52,7 +52,7 @@ export const kShapeGroups: readonly { title: string; kinds: readonly ShapeKindIn
   },
 ];
 
-export const shape_kind = (kind: ShapeKind): ShapeKindInfo =>
+export const shapeKind = (kind: ShapeKind): ShapeKindInfo =>
   kShapeGroups.flatMap((group) => group.kinds).find((info) => info.kind === kind)!;
 
 /** What the person filled in, as texts. */
@@ -67,20 +67,20 @@ export interface ShapeInput {
 }
 
 /** The recipe, or what is wrong with the input. Fields that the kind does not take are left out. */
-export function recipe_of(input: ShapeInput): ShapeRecipe | { problem: string; field: string } {
-  const { takes } = shape_kind(input.kind);
+export function recipeOf(input: ShapeInput): ShapeRecipe | { problem: string; field: string } {
+  const { takes } = shapeKind(input.kind);
   const recipe: ShapeRecipe = { kind: input.kind };
   for (const [name, member, text] of [
     ["radius", "radius_mm", input.radius],
     ["distance", "distance_mm", input.distance],
   ] as const) {
     if (!takes.includes(name) || text.trim() === "") continue;
-    const value = read_number(text);
+    const value = readNumber(text);
     if (!(value > 0)) return { problem: texts.shape.bad_length, field: name };
     recipe[member] = value;
   }
   if (takes.includes("rays") && input.rays.trim() !== "") {
-    const rays = read_number(input.rays);
+    const rays = readNumber(input.rays);
     const { least, most } = kRays;
     if (!Number.isInteger(rays) || rays < least || rays > most)
       return { problem: texts.shape.bad_rays(least, most), field: "rays" };
@@ -101,7 +101,7 @@ export function recipe_of(input: ShapeInput): ShapeRecipe | { problem: string; f
 }
 
 /** Others that this one can be compared with: of the same project first. */
-export function other_models(all: readonly Model[], model: Model): Model[] {
+export function otherModels(all: readonly Model[], model: Model): Model[] {
   const others = all.filter((other) => other.id !== model.id);
   return [
     ...others.filter((other) => other.project === model.project),

@@ -2,21 +2,21 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { format_area, format_number } from "../../domain/measure";
-import { color_of, css_color, with_range } from "../../domain/palette";
+import { formatArea, formatNumber } from "../../domain/measure";
+import { colorOf, cssColor, withRange } from "../../domain/palette";
 import type { SheetQuery } from "../../net/api";
 import type { KeyStatistics, Layer, Palette, Statistics } from "../../core/types";
-import { label_of } from "../../domain/cells";
-import { describe_value } from "../../session/layer-values";
+import { labelOf } from "../../domain/cells";
+import { describeValue } from "../../session/layer-values";
 import "./cross-table";
-import { has_classes } from "./cross-table";
+import { hasClasses } from "./cross-table";
 import "../../ui/dialog";
-import { follow_session } from "../../session/follow-session";
+import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
-import { save_from } from "../../ui/save-from";
-import { sheet_buttons, sheet_query } from "../../ui/workbook-buttons";
+import { saveFrom } from "../../ui/save-from";
+import { sheetButtons, sheetQuery } from "../../ui/workbook-buttons";
 import { styled } from "../../ui/styled";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const kMostRows = 60;
@@ -25,19 +25,19 @@ const kMostRows = 60;
 export class StrataStatisticsDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) layer!: Layer;
-  @state() private statistics_: Statistics | null = null;
-  @state() private problem_ = "";
-  @state() private tried_: Palette | null = null; // while a limit of the colours is moved
-  private saving_ = false;
-  private counted_ = 0; // the layer's sequence then
+  @state() private _statistics: Statistics | null = null;
+  @state() private _problem = "";
+  @state() private _tried: Palette | null = null; // while a limit of the colours is moved
+  private _saving = false;
+  private _counted = 0; // the layer's sequence then
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       .total {
         display: flex;
@@ -152,33 +152,33 @@ export class StrataStatisticsDialog extends LitElement {
 
   /** Counted again where somebody painted. */
   override updated(): void {
-    if (this.statistics_ && this.layer.sequence > this.counted_) void this.load();
+    if (this._statistics && this.layer.sequence > this._counted) void this.load();
   }
 
   private async load(): Promise<void> {
-    this.problem_ = "";
-    this.counted_ = this.layer.sequence;
+    this._problem = "";
+    this._counted = this.layer.sequence;
     try {
-      this.statistics_ = await this.session.api.statistics(this.session.model_id, this.layer.id);
+      this._statistics = await this.session.api.statistics(this.session.modelId, this.layer.id);
     } catch (error) {
-      this.problem_ = error instanceof Error ? error.message : texts.problems.unexpected;
+      this._problem = error instanceof Error ? error.message : texts.problems.unexpected;
     }
   }
 
   override render(): TemplateResult {
     return html`<strata-dialog
       wide
-      heading=${texts.statistics.title(label_of(this.layer))}
+      heading=${texts.statistics.title(labelOf(this.layer))}
       @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
     >
       ${
-        this.problem_
-          ? html`<p class="error" role="alert">${this.problem_}</p>`
-          : this.statistics_
-            ? this.content(this.statistics_)
+        this._problem
+          ? html`<p class="error" role="alert">${this._problem}</p>`
+          : this._statistics
+            ? this.content(this._statistics)
             : html`<p class="hint" role="status">${texts.loading}</p>`
       }
-      ${this.statistics_ && has_classes(this.layer) ? html`<strata-cross-table .session=${this.session} .layer=${this.layer}></strata-cross-table>` : nothing}
+      ${this._statistics && hasClasses(this.layer) ? html`<strata-cross-table .session=${this.session} .layer=${this.layer}></strata-cross-table>` : nothing}
       <button slot="actions" @click=${() => void this.load()}>${texts.statistics.refresh}</button>
     </strata-dialog>`;
   }
@@ -188,19 +188,19 @@ export class StrataStatisticsDialog extends LitElement {
     if (statistics.texels === 0) return html`<p>${words.nothing}</p>`;
     const share = this.share(statistics.area_m2);
     return html`<div class="total numeric">
-        <b>${format_area(statistics.area_m2)}</b>
+        <b>${formatArea(statistics.area_m2)}</b>
         ${share ? html`<span class="hint">${words.of_surface(share)}</span>` : nothing}
       </div>
-      <div class="row" role="group" aria-label=${words.title(label_of(this.layer))}>
-        ${sheet_buttons({ what: words.title(label_of(this.layer)), rows: () => this.rows(statistics), save: (f) => this.save(f) })}
+      <div class="row" role="group" aria-label=${words.title(labelOf(this.layer))}>
+        ${sheetButtons({ what: words.title(labelOf(this.layer)), rows: () => this.rows(statistics), save: (f) => this.save(f) })}
       </div>
       ${this.layer.palette.mode === "categorical" ? this.keys(statistics) : this.spread(statistics)}`;
   }
 
   /** Of the model's surface. */
-  private share(area_m2: number): string {
+  private share(areaM2: number): string {
     const whole = this.session.model?.area_m2 ?? 0;
-    return whole > 0 ? `${format_number((area_m2 / whole) * 100)} %` : "";
+    return whole > 0 ? `${formatNumber((areaM2 / whole) * 100)} %` : "";
   }
 
   /** As they are copied: what is read here, each number in a cell. */
@@ -208,33 +208,33 @@ export class StrataStatisticsDialog extends LitElement {
     const words = texts.statistics;
     const line = (name: string, area: number): string[] => [
       name,
-      format_area(area),
+      formatArea(area),
       this.share(area),
     ];
     if (this.layer.palette.mode === "categorical")
       return [
         [words.class, words.area, words.share],
         ...sorted(statistics).map((key) =>
-          line(describe_value(this.layer, key.key, this.session.tables), key.area_m2),
+          line(describeValue(this.layer, key.key, this.session.tables), key.area_m2),
         ),
         line(words.sum, statistics.area_m2),
       ];
     const { unit } = this.layer;
     return [
       line(words.area, statistics.area_m2),
-      ...this.measures(statistics).map(([name, value]) => [name, format_number(value, 4), unit]),
+      ...this.measures(statistics).map(([name, value]) => [name, formatNumber(value, 4), unit]),
       [words.from, words.to, words.area],
       ...statistics.histogram.map((bin) => [
-        format_number(bin.from, 4),
-        format_number(bin.to, 4),
-        format_area(bin.area_m2),
+        formatNumber(bin.from, 4),
+        formatNumber(bin.to, 4),
+        formatArea(bin.area_m2),
       ]),
     ];
   }
 
   private save(f: SheetQuery["f"]): void {
-    save_from(
-      this.session.api.quantities_url(this.session.model_id, this.layer.id, sheet_query(f)),
+    saveFrom(
+      this.session.api.quantitiesUrl(this.session.modelId, this.layer.id, sheetQuery(f)),
       `${this.layer.slug}-quantities.${f}`,
     );
   }
@@ -257,13 +257,13 @@ export class StrataStatisticsDialog extends LitElement {
     const largest = keys[0]?.area_m2 ?? 1;
     return html`<ul class="bars">
       ${keys.slice(0, kMostRows).map((key) => {
-        const color = color_of(this.layer.palette, key.key);
-        const background = color ? css_color(color) : "var(--line-strong)";
+        const color = colorOf(this.layer.palette, key.key);
+        const background = color ? cssColor(color) : "var(--line-strong)";
         return html`<li>
           <div class="words">
             <span class="swatch" ${styled({ background })}></span>
-            <span class="grow ellipsis">${describe_value(this.layer, key.key, this.session.tables)}</span>
-            <span class="numeric">${format_area(key.area_m2)}</span>
+            <span class="grow ellipsis">${describeValue(this.layer, key.key, this.session.tables)}</span>
+            <span class="numeric">${formatArea(key.area_m2)}</span>
             <span class="numeric hint share">${this.share(key.area_m2)}</span>
           </div>
           <div class="track"><i ${styled({ width: `${(key.area_m2 / largest) * 100}%`, background })}></i></div>
@@ -277,9 +277,9 @@ export class StrataStatisticsDialog extends LitElement {
     const unit = this.layer.unit ? ` ${this.layer.unit}` : "";
     const bins = statistics.histogram;
     const largest = Math.max(...bins.map((bin) => bin.area_m2), Number.MIN_VALUE);
-    const palette = this.tried_ ?? this.layer.palette;
+    const palette = this._tried ?? this.layer.palette;
     return html`<dl class="numeric">
-        ${this.measures(statistics).map(([name, value]) => html`<div><dt>${name}</dt><dd>${format_number(value, 4)}${unit}</dd></div>`)}
+        ${this.measures(statistics).map(([name, value]) => html`<div><dt>${name}</dt><dd>${formatNumber(value, 4)}${unit}</dd></div>`)}
       </dl>
       ${
         bins.length > 1
@@ -287,15 +287,15 @@ export class StrataStatisticsDialog extends LitElement {
             <p class="caption">${words.spread}</p>
             <div class="histogram" role="img" aria-label=${words.spread}>
               ${bins.map((bin) => {
-                const color = color_of(palette, (bin.from + bin.to) / 2);
+                const color = colorOf(palette, (bin.from + bin.to) / 2);
                 const height = `${((bin.area_m2 / largest) * 100).toFixed(1)}%`;
-                return html`<i ${styled({ height, background: color ? css_color(color) : "var(--calm)" })}></i>`;
+                return html`<i ${styled({ height, background: color ? cssColor(color) : "var(--calm)" })}></i>`;
               })}
             </div>
-            ${this.session.can_curate ? this.limits(palette, bins[0]!.from, bins[bins.length - 1]!.to, unit) : nothing}
+            ${this.session.canCurate ? this.limits(palette, bins[0]!.from, bins[bins.length - 1]!.to, unit) : nothing}
             <div class="ends numeric">
-              <span>${format_number(bins[0]!.from, 4)}${unit}</span>
-              <span>${format_number(bins[bins.length - 1]!.to, 4)}${unit}</span>
+              <span>${formatNumber(bins[0]!.from, 4)}${unit}</span>
+              <span>${formatNumber(bins[bins.length - 1]!.to, 4)}${unit}</span>
             </div>
           </div>`
           : nothing
@@ -313,38 +313,38 @@ export class StrataStatisticsDialog extends LitElement {
       html`<input
         type="range"
         aria-label=${label}
-        aria-valuetext="${format_number(value, 4)}${unit}"
+        aria-valuetext="${formatNumber(value, 4)}${unit}"
         min=${from}
         max=${to}
         step=${(to - from) / 200}
         .value=${String(value)}
         @input=${(event: Event) => {
           const [min, max] = range(Number((event.target as HTMLInputElement).value));
-          if (min < max) this.tried_ = with_range(this.layer.palette, min, max);
+          if (min < max) this._tried = withRange(this.layer.palette, min, max);
         }}
-        @change=${() => void this.save_range()}
+        @change=${() => void this.saveRange()}
       />`;
     return html`<div class="limits">
         ${handle(words.range_from, palette.min, (moved) => [moved, palette.max])} ${handle(words.range_to, palette.max, (moved) => [palette.min, moved])}
       </div>
-      <p class="hint numeric" role="status">${words.range(`${format_number(palette.min, 4)}${unit}`, `${format_number(palette.max, 4)}${unit}`)}</p>`;
+      <p class="hint numeric" role="status">${words.range(`${formatNumber(palette.min, 4)}${unit}`, `${formatNumber(palette.max, 4)}${unit}`)}</p>`;
   }
 
   /** One after the other: each key press is a change, and the newest is what stays. */
-  private async save_range(): Promise<void> {
-    if (this.saving_) return;
-    this.saving_ = true;
+  private async saveRange(): Promise<void> {
+    if (this._saving) return;
+    this._saving = true;
     try {
-      while (this.tried_) {
-        const palette = this.tried_;
+      while (this._tried) {
+        const palette = this._tried;
         await this.session.layers.change(this.layer, { palette });
-        if (this.tried_ === palette) this.tried_ = null;
+        if (this._tried === palette) this._tried = null;
       }
     } catch (error) {
-      this.tried_ = null;
-      this.problem_ = error instanceof Error ? error.message : texts.problems.unexpected;
+      this._tried = null;
+      this._problem = error instanceof Error ? error.message : texts.problems.unexpected;
     } finally {
-      this.saving_ = false;
+      this._saving = false;
     }
   }
 }

@@ -4,15 +4,15 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../../net/api";
-import { label_of } from "../../domain/cells";
-import { person_languages } from "../../core/locale";
+import { labelOf } from "../../domain/cells";
+import { personLanguages } from "../../core/locale";
 import type { Template, TemplateTable } from "../../core/protocol.gen";
 import "../../ui/dialog";
 import type { StrataDialog } from "../../ui/dialog";
 import { icon } from "../../ui/icons";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
 import { texts } from "../../texts";
 
@@ -22,14 +22,14 @@ const kMostColors = 6; // of a list, to give an idea of it
 @customElement("strata-template-dialog")
 export class StrataTemplateDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  @state() private templates_: Template[] | null = null;
-  @state() private problem_ = "";
-  @state() private refused_: { slug: string; problem: string } | null = null;
-  @state() private making_ = ""; // slug
-  @query("strata-dialog") private dialog_!: StrataDialog;
+  @state() private _templates: Template[] | null = null;
+  @state() private _problem = "";
+  @state() private _refused: { slug: string; problem: string } | null = null;
+  @state() private _making = ""; // slug
+  @query("strata-dialog") private _dialog!: StrataDialog;
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       ul {
         display: grid;
@@ -92,17 +92,17 @@ export class StrataTemplateDialog extends LitElement {
   }
 
   private async load(): Promise<void> {
-    this.problem_ = "";
+    this._problem = "";
     try {
-      this.templates_ = await this.session.api.templates();
+      this._templates = await this.session.api.templates();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.problem_ = error.message;
+      this._problem = error.message;
     }
   }
 
   override render(): TemplateResult {
-    const { templates_: templates } = this;
+    const { _templates: templates } = this;
     return html`<strata-dialog wide prose heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <p class="hint">${words.lead}</p>
       ${
@@ -110,10 +110,10 @@ export class StrataTemplateDialog extends LitElement {
           ? templates.length === 0
             ? html`<p>${words.none}</p>`
             : html`<ul>${templates.map((template) => this.card(template))}</ul>`
-          : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`
+          : html`<p class="hint" role="status" ?hidden=${this._problem !== ""}>${texts.loading}</p>`
       }
-      <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
-      ${this.problem_ ? html`<button slot="actions" class="primary" @click=${() => void this.load()}>${texts.try_again}</button>` : nothing}
+      <p class="error" role="alert" ?hidden=${!this._problem}>${this._problem}</p>
+      ${this._problem ? html`<button slot="actions" class="primary" @click=${() => void this.load()}>${texts.try_again}</button>` : nothing}
     </strata-dialog>`;
   }
 
@@ -125,8 +125,8 @@ export class StrataTemplateDialog extends LitElement {
         <b>${name}</b>
         <p class="hint">${description}</p>
       </div>
-      <button class="primary" aria-label=${words.make_of(name)} ?disabled=${this.making_ !== ""} @click=${() => void this.make(template)}>
-        ${this.making_ === slug ? words.making : words.make}
+      <button class="primary" aria-label=${words.make_of(name)} ?disabled=${this._making !== ""} @click=${() => void this.make(template)}>
+        ${this._making === slug ? words.making : words.make}
       </button>
       <div class="made">
         ${template.tables.map(
@@ -140,7 +140,7 @@ export class StrataTemplateDialog extends LitElement {
             html`<div>${icon("brush")}<span class="ellipsis">${named(layer)}</span><span class="hint">${words.layer}</span></div>`,
         )}
       </div>
-      ${this.refused_?.slug === slug ? html`<p class="error" role="alert">${this.refused_.problem}</p>` : nothing}
+      ${this._refused?.slug === slug ? html`<p class="error" role="alert">${this._refused.problem}</p>` : nothing}
     </li>`;
   }
 
@@ -148,23 +148,23 @@ export class StrataTemplateDialog extends LitElement {
     const { session } = this;
     const { slug = "" } = template;
     if (!session.model) return;
-    this.making_ = slug;
-    this.refused_ = null;
+    this._making = slug;
+    this._refused = null;
     try {
-      const { tables, layers } = await session.api.use_template(session.model.project, slug, {
-        model: session.model_id,
-        language: person_languages()[0]!,
+      const { tables, layers } = await session.api.useTemplate(session.model.project, slug, {
+        model: session.modelId,
+        language: personLanguages()[0]!,
       });
       for (const layer of layers) session.layers.put(layer);
       const first = layers.find(({ kind }) => kind === "database");
-      if (first) session.add_created(first);
+      if (first) session.addCreated(first);
       notices.show("success", words.made(tables.length, layers.length));
-      this.dialog_.close();
+      this._dialog.close();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.refused_ = { slug, problem: error.message };
+      this._refused = { slug, problem: error.message };
     } finally {
-      this.making_ = "";
+      this._making = "";
     }
   }
 }
@@ -174,7 +174,7 @@ export class StrataTemplateDialog extends LitElement {
  * same.
  */
 const named = ({ name, labels = {} }: Pick<Template, "name" | "labels">): string =>
-  label_of({ name, labels });
+  labelOf({ name, labels });
 
 const contents = ({ terms, columns }: TemplateTable): string =>
   terms ? words.terms(terms.length) : words.columns(columns?.length ?? 0);

@@ -2,18 +2,18 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { label_of } from "../../domain/cells";
+import { labelOf } from "../../domain/cells";
 import { ApiError } from "../../net/api";
-import { format_area } from "../../domain/measure";
+import { formatArea } from "../../domain/measure";
 import type { Layer } from "../../core/types";
 import "../../ui/dialog";
 import "./expression-field";
 import type { StrataExpressionField } from "./expression-field";
-import { follow_session } from "../../session/follow-session";
+import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { radio_group } from "../../ui/radio-group";
-import { form_styles, shared_styles } from "../../ui/styles";
+import { radioGroup } from "../../ui/radio-group";
+import { formStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import "../../session/fields/value-picker";
 
@@ -21,18 +21,18 @@ import "../../session/fields/value-picker";
 export class StrataWhereDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) layer!: Layer;
-  @state() private erases_ = false;
-  @state() private working_ = false;
-  @query("strata-expression-field") private condition_!: StrataExpressionField;
+  @state() private _erases = false;
+  @state() private _working = false;
+  @query("strata-expression-field") private _condition!: StrataExpressionField;
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
-    form_styles,
+    sharedStyles,
+    formStyles,
     css`
       dl {
         display: grid;
@@ -55,8 +55,8 @@ export class StrataWhereDialog extends LitElement {
   override render(): TemplateResult {
     const words = texts.areas;
     const { session, layer } = this;
-    return html`<strata-dialog heading=${words.where_title(label_of(layer))} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
-      <form id="where" @submit=${(event: Event) => this.on_submit(event)}>
+    return html`<strata-dialog heading=${words.where_title(labelOf(layer))} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+      <form id="where" @submit=${(event: Event) => this.onSubmit(event)}>
         <p class="hint">${words.where_lead}</p>
         <strata-expression-field
           .session=${session}
@@ -65,63 +65,67 @@ export class StrataWhereDialog extends LitElement {
           @submitted=${() => void this.apply()}
         ></strata-expression-field>
         <dl>${words.grammar.map(([text, does]) => html`<dt>${text}</dt><dd>${does}</dd>`)}</dl>
-        ${radio_group<boolean>({
+        ${radioGroup<boolean>({
           label: words.does,
           class: "segments",
           choices: [
             { value: false, content: words.paints },
             { value: true, content: words.erases },
           ],
-          chosen: this.erases_,
-          choose: (chosen) => (this.erases_ = chosen),
+          chosen: this._erases,
+          choose: (chosen) => (this._erases = chosen),
         })}
         ${
-          this.erases_
+          this._erases
             ? nothing
             : html`<strata-value-picker
               .session=${session}
               .layer=${layer}
-              .value=${session.painting.brush.value_of(layer)}
+              .value=${session.painting.brush.valueFor(layer)}
             ></strata-value-picker>`
         }
       </form>
-      <button slot="actions" class="primary" form="where" ?disabled=${this.working_} @click=${() => void this.apply()}>
-        ${this.erases_ ? words.apply_erase : words.apply}
+      <button slot="actions" class="primary" form="where" ?disabled=${this._working} @click=${() => void this.apply()}>
+        ${this._erases ? words.apply_erase : words.apply}
       </button>
     </strata-dialog>`;
   }
 
-  private on_submit(event: Event): void {
+  private onSubmit(event: Event): void {
     event.preventDefault();
     void this.apply();
   }
 
   private async apply(): Promise<void> {
-    const where = this.condition_.value;
-    if (where === "" || this.working_) {
-      this.condition_.focus();
+    const where = this._condition.value;
+    if (where === "" || this._working) {
+      this._condition.focus();
       return;
     }
     const { session, layer } = this;
-    const paint = this.erases_
+    const paint = this._erases
       ? { erase: true }
-      : { value: session.painting.brush.value_of(layer) };
-    this.working_ = true;
+      : { value: session.painting.brush.valueFor(layer) };
+    this._working = true;
     try {
-      const { texels_changed, area_m2 } = await session.api.edit(session.model_id, layer.id, {
-        op: "fill",
-        ...paint,
-        mode: "where",
-        where,
-      });
-      if (texels_changed === 0) notices.show("info", texts.areas.nothing_changed);
-      else notices.show("success", texts.areas.changed(format_area(area_m2)));
+      const { texels_changed: texelsChanged, area_m2: areaM2 } = await session.api.edit(
+        session.modelId,
+        layer.id,
+        {
+          op: "fill",
+          ...paint,
+          mode: "where",
+          where,
+        },
+      );
+      if (texelsChanged === 0) notices.show("info", texts.areas.nothing_changed);
+      else notices.show("success", texts.areas.changed(formatArea(areaM2)));
       this.dispatchEvent(new CustomEvent("closed"));
     } catch (error) {
-      if (error instanceof ApiError) this.condition_.refuse(error);
+      if (error instanceof ApiError) this._condition.refuse(error);
       else notices.error(error);
     } finally {
-      this.working_ = false;
+      this._working = false;
     }
   }
 }

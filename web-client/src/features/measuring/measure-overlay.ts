@@ -5,7 +5,7 @@ import { html, nothing, svg, type TemplateResult } from "lit";
 import type { OrbitCamera } from "../../math/camera";
 import type { Vec3 } from "../../math/vector";
 import type { ModelSession } from "../../session/model-session";
-import { length_so_far } from "../../session/line-length";
+import { lengthSoFar } from "../../session/line-length";
 import { faces } from "../../session/pin-sight";
 
 interface Seen {
@@ -15,7 +15,7 @@ interface Seen {
   towards: boolean;
 }
 
-export function measure_overlay({
+export function measureOverlay({
   measuring,
   view,
   pointer,
@@ -58,13 +58,13 @@ export function measure_overlay({
             <circle cx=${mark.x} cy=${mark.y} r="8" fill="none" stroke="var(--mark-dark)" stroke-width="2.4" stroke-dasharray=${mark.towards ? "none" : "3 3"} />`
           : nothing
       }
-      ${pointer.at || measuring.ended ? nothing : cross_at(middle)}
+      ${pointer.at || measuring.ended ? nothing : crossAt(middle)}
     </svg>
-    ${tip ? length_so_far(view, measuring.so_far, tip) : nothing}`;
+    ${tip ? lengthSoFar(view, measuring.soFar, tip) : nothing}`;
 }
 
 /** Where the key sets a place, while no pointer says another one. */
-const cross_at = ({ x, y }: { x: number; y: number }): TemplateResult =>
+const crossAt = ({ x, y }: { x: number; y: number }): TemplateResult =>
   svg`${[
     ["var(--mark-light)", 3.6],
     ["var(--mark-dark)", 1.4],
@@ -82,7 +82,7 @@ function project(
   const at = camera.project(position);
   if (!at) return null;
   const towards =
-    (normal === null || faces(camera, { position, normal })) && !camera.cuts_away(position);
+    (normal === null || faces(camera, { position, normal })) && !camera.cutsAway(position);
   return { x: at.x / scale, y: at.y / scale, towards };
 }
 

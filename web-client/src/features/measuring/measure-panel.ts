@@ -3,20 +3,20 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../../net/api";
-import { axis_name } from "../../math/camera";
-import { flat_polygon, height_of, legs_of, sum } from "../../math/measured-line";
-import { kMeasuredDigits, measured_area, measured_length, metres_per } from "../../domain/measure";
+import { axisName } from "../../math/camera";
+import { flatPolygon, heightOf, legsOf, sum } from "../../math/measured-line";
+import { kMeasuredDigits, measuredArea, measuredLength, metresPer } from "../../domain/measure";
 import type { Model } from "../../core/types";
 import { length, subtract } from "../../math/vector";
-import { follow_session } from "../../session/follow-session";
+import { followSession } from "../../session/follow-session";
 import { kMostPlaces, type MeasuredProfile, type Way } from "./measuring";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import "./profile-plot";
 import type { StrataProfilePlot } from "./profile-plot";
-import { radio_group } from "../../ui/radio-group";
-import { save_blob } from "../../ui/save-from";
-import { shared_styles } from "../../ui/styles";
+import { radioGroup } from "../../ui/radio-group";
+import { saveBlob } from "../../ui/save-from";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.measure;
@@ -25,17 +25,17 @@ const kFlat = 0.005; // of the polygon's size: nearer to its plane all places co
 @customElement("strata-measure-panel")
 export class StrataMeasurePanel extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  @state() private equal_ = false;
-  @query("strata-profile-plot") private plot_!: StrataProfilePlot | null;
-  private has_keyboard_ = false; // one of its buttons, before it is drawn anew
+  @state() private _equal = false;
+  @query("strata-profile-plot") private _plot!: StrataProfilePlot | null;
+  private _hasKeyboard = false; // one of its buttons, before it is drawn anew
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: block;
@@ -108,12 +108,12 @@ export class StrataMeasurePanel extends LitElement {
   }
 
   override willUpdate(): void {
-    this.has_keyboard_ = this.shadowRoot?.activeElement instanceof HTMLButtonElement;
+    this._hasKeyboard = this.shadowRoot?.activeElement instanceof HTMLButtonElement;
   }
 
   /** The button that was pressed may have gone with what it was for. */
   override updated(): void {
-    if (this.has_keyboard_ && !this.shadowRoot?.activeElement)
+    if (this._hasKeyboard && !this.shadowRoot?.activeElement)
       this.renderRoot.querySelector<HTMLElement>(".acts button")?.focus();
   }
 
@@ -128,11 +128,11 @@ export class StrataMeasurePanel extends LitElement {
         ${places.length === 0 ? words.how : ended ? words.how_anew : places.length === kMostPlaces ? words.most(kMostPlaces) : words.how_on}
       </p>
       <div class="acts">
-        ${ended ? nothing : html`<button @click=${() => measuring.set_in_middle()} title="${words.set_in_middle} (M)">${words.set_in_middle}</button>`}
+        ${ended ? nothing : html`<button @click=${() => measuring.setInMiddle()} title="${words.set_in_middle} (M)">${words.set_in_middle}</button>`}
         ${places.length > 1 && !ended ? html`<button class="primary" @click=${() => measuring.end()} title="${words.end} (Enter)">${words.end}</button>` : nothing}
         ${
           places.length > 0
-            ? html`<button @click=${() => measuring.take_back()} title="${words.take_back} (${words.backspace})">${words.take_back}</button>
+            ? html`<button @click=${() => measuring.takeBack()} title="${words.take_back} (${words.backspace})">${words.take_back}</button>
               <button @click=${() => measuring.clear()} title="${words.clear} (Escape)">${words.clear}</button>`
             : nothing
         }
@@ -146,39 +146,39 @@ export class StrataMeasurePanel extends LitElement {
 
   private figures(model: Model): TemplateResult {
     const { measuring } = this.session;
-    const metres = metres_per(model.unit);
-    const told = (units: number): string => measured_length(units * metres);
+    const metres = metresPer(model.unit);
+    const told = (units: number): string => measuredLength(units * metres);
     const { positions } = measuring;
     const [first, last] = [positions[0]!, positions.at(-1)!];
-    const straight = sum(legs_of(positions));
-    const rise = round_like(height_of(last, model.up) - height_of(first, model.up), straight);
-    const polygon = flat_polygon(positions);
+    const straight = sum(legsOf(positions));
+    const rise = roundLike(heightOf(last, model.up) - heightOf(first, model.up), straight);
+    const polygon = flatPolygon(positions);
     const parts = measuring.profile?.parts.length ?? 1;
-    const { has_way } = measuring;
-    const is_flat = polygon !== null && polygon.off_plane <= kFlat * Math.sqrt(polygon.area);
+    const { hasWay } = measuring;
+    const isFlat = polygon !== null && polygon.off_plane <= kFlat * Math.sqrt(polygon.area);
     return html`<dl class="numeric">
         <dt>${words.straight}</dt>
         <dd data-figure="straight">${told(straight)}</dd>
         ${positions.length > 2 ? html`<dt>${words.ends}</dt><dd data-figure="ends">${told(length(subtract(last, first)))}</dd>` : nothing}
-        <dt>${parts > 1 && has_way ? words.along_parts(parts) : words.along}</dt>
+        <dt>${parts > 1 && hasWay ? words.along_parts(parts) : words.along}</dt>
         ${
-          measuring.along === null || !has_way
+          measuring.along === null || !hasWay
             ? html`<dd class="wait">${measuring.busy ? words.busy : "–"}</dd>`
             : html`<dd data-figure="along">${told(measuring.along)}</dd>`
         }
-        <dt>${words.rise(axis_name(model.up))}</dt>
+        <dt>${words.rise(axisName(model.up))}</dt>
         <dd data-figure="rise">${rise > 0 ? "+" : ""}${told(rise)}</dd>
         ${
           polygon
             ? html`<dt>${words.area}</dt>
-              <dd data-figure="area">${measured_area(polygon.area * metres * metres)}</dd>
+              <dd data-figure="area">${measuredArea(polygon.area * metres * metres)}</dd>
               <dt>${words.perimeter}</dt>
               <dd data-figure="perimeter">${told(polygon.perimeter)}</dd>`
             : nothing
         }
       </dl>
-      ${polygon ? html`<p class="hint">${words.area_hint} ${is_flat ? nothing : words.off_plane(told(round_like(polygon.off_plane, straight)))}</p>` : nothing}
-      ${parts > 1 ? html`<p class="chip">${has_way ? words.gaps(parts - 1) : words.no_way}</p>` : nothing}`;
+      ${polygon ? html`<p class="hint">${words.area_hint} ${isFlat ? nothing : words.off_plane(told(roundLike(polygon.off_plane, straight)))}</p>` : nothing}
+      ${parts > 1 ? html`<p class="chip">${hasWay ? words.gaps(parts - 1) : words.no_way}</p>` : nothing}`;
   }
 
   private profile(model: Model, profile: MeasuredProfile): TemplateResult {
@@ -189,15 +189,15 @@ export class StrataMeasurePanel extends LitElement {
         .profile=${profile}
         .model=${model}
         .layer=${layer}
-        .equal=${this.equal_}
+        .equal=${this._equal}
         .pointed=${measuring.pointed}
-        @point-out=${(event: CustomEvent<number | null>) => measuring.point_out(event.detail)}
+        @point-out=${(event: CustomEvent<number | null>) => measuring.pointOut(event.detail)}
       ></strata-profile-plot>
       <div class="choices">
         <label class="field">
           <span>${words.shows}</span>
-          <select @change=${(event: Event) => measuring.choose_layer(Number((event.target as HTMLSelectElement).value) || null)}>
-            <option value="" ?selected=${layer === null}>${words.height(axis_name(model.up))}</option>
+          <select @change=${(event: Event) => measuring.chooseLayer(Number((event.target as HTMLSelectElement).value) || null)}>
+            <option value="" ?selected=${layer === null}>${words.height(axisName(model.up))}</option>
             ${layers.map((each) => html`<option value=${each.id} ?selected=${layer?.id === each.id}>${each.name}${each.unit ? ` (${each.unit})` : ""}</option>`)}
           </select>
         </label>
@@ -205,14 +205,14 @@ export class StrataMeasurePanel extends LitElement {
           layer
             ? nothing
             : html`<label class="check"
-              ><input type="checkbox" .checked=${this.equal_} @change=${(event: Event) => (this.equal_ = (event.target as HTMLInputElement).checked)} />
+              ><input type="checkbox" .checked=${this._equal} @change=${(event: Event) => (this._equal = (event.target as HTMLInputElement).checked)} />
               ${words.equal}</label
             >`
         }
       </div>
       <div>
         <p class="caption" id="way">${words.way}</p>
-        ${radio_group<Way>({
+        ${radioGroup<Way>({
           label: { id: "way" },
           class: "segments",
           choices: [
@@ -220,26 +220,26 @@ export class StrataMeasurePanel extends LitElement {
             { value: "nearest", content: words.ways.nearest },
           ],
           chosen: profile.way,
-          choose: (way) => measuring.choose_way(way),
+          choose: (way) => measuring.chooseWay(way),
         })}
         <p class="hint">${words.way_hints[profile.way]}</p>
       </div>
       <div class="acts">
-        <button @click=${() => void this.save_csv(model)}>${words.save_csv}</button>
-        <button @click=${() => this.save_svg(model)}>${words.save_svg}</button>
+        <button @click=${() => void this.saveCsv(model)}>${words.save_csv}</button>
+        <button @click=${() => this.saveSvg(model)}>${words.save_svg}</button>
       </div>`;
   }
 
   /** For those who cannot see the figures change. */
   private said(model: Model): string {
     const { measuring } = this.session;
-    const told = (units: number): string => measured_length(units * metres_per(model.unit));
+    const told = (units: number): string => measuredLength(units * metresPer(model.unit));
     return [
       words.places(measuring.places.length),
       measuring.places.length > 1
-        ? `${words.straight}: ${told(sum(legs_of(measuring.positions)))}`
+        ? `${words.straight}: ${told(sum(legsOf(measuring.positions)))}`
         : "",
-      measuring.along === null || !measuring.has_way
+      measuring.along === null || !measuring.hasWay
         ? ""
         : `${words.along}: ${told(measuring.along)}`,
     ]
@@ -247,22 +247,22 @@ export class StrataMeasurePanel extends LitElement {
       .join(". ");
   }
 
-  private async save_csv({ slug }: Model): Promise<void> {
+  private async saveCsv({ slug }: Model): Promise<void> {
     try {
-      save_blob(await this.session.measuring.csv(), `${slug}-profile.csv`);
+      saveBlob(await this.session.measuring.csv(), `${slug}-profile.csv`);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       notices.error(error);
     }
   }
 
-  private save_svg({ slug }: Model): void {
-    if (this.plot_) save_blob(this.plot_.file(), `${slug}-profile.svg`);
+  private saveSvg({ slug }: Model): void {
+    if (this._plot) saveBlob(this._plot.file(), `${slug}-profile.svg`);
   }
 }
 
 /** A difference of lengths has no more decimals than they have digits. */
-function round_like(difference: number, measured: number): number {
+function roundLike(difference: number, measured: number): number {
   if (!(measured > 0)) return difference;
   const step = 10 ** (Math.floor(Math.log10(measured)) - kMeasuredDigits + 1);
   return Math.round(difference / step) * step || 0;

@@ -7,10 +7,10 @@ import type { Tool } from "../../tools/tool";
 
 export interface MeasureHost extends Navigator {
   /** Where the next place would be; null: the pointer left. */
-  point_at(sample: PointerSample | null): void;
-  set_in_middle(): void;
+  pointAt(sample: PointerSample | null): void;
+  setInMiddle(): void;
   end(): void;
-  take_back(): void;
+  takeBack(): void;
   clear(): void;
   /** There are places, or one is on its way. */
   begun(): boolean;
@@ -19,30 +19,30 @@ export interface MeasureHost extends Navigator {
 export class MeasureTool extends DragTool implements Tool {
   readonly name = "measure";
 
-  constructor(private readonly host_: MeasureHost) {
-    super(host_);
+  constructor(private readonly _host: MeasureHost) {
+    super(_host);
   }
 
   override deactivate(): void {
-    this.host_.clear();
+    this._host.clear();
   }
 
   hover(sample: PointerSample | null): void {
-    this.host_.point_at(sample);
+    this._host.pointAt(sample);
   }
 
   key(key: string): boolean {
     if (key === "m" || key === "M")
-      this.host_.set_in_middle(); // without a pointer
-    else if (!this.host_.begun()) return false;
-    else if (key === "Enter") this.host_.end();
-    else if (key === "Backspace" || key === "Delete") this.host_.take_back();
-    else if (key === "Escape") this.host_.clear();
+      this._host.setInMiddle(); // without a pointer
+    else if (!this._host.begun()) return false;
+    else if (key === "Enter") this._host.end();
+    else if (key === "Backspace" || key === "Delete") this._host.takeBack();
+    else if (key === "Escape") this._host.clear();
     else return false;
     return true;
   }
 
   protected dragged(dx: number, dy: number): void {
-    this.host_.orbit(dx, dy);
+    this._host.orbit(dx, dy);
   }
 }

@@ -3,20 +3,20 @@
 
 import { css, html, LitElement, nothing, render, svg, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { axis_name } from "../../math/camera";
-import { label_of } from "../../domain/cells";
-import { format_fixed, format_place } from "../../core/locale";
-import { height_of } from "../../math/measured-line";
-import { format_number, kMeasuredDigits, measured_length, metres_per } from "../../domain/measure";
-import { make_plot, nearest_index, type Plot, type PlotPoint } from "../../domain/plot";
+import { axisName } from "../../math/camera";
+import { labelOf } from "../../domain/cells";
+import { formatFixed, formatPlace } from "../../core/locale";
+import { heightOf } from "../../math/measured-line";
+import { formatNumber, kMeasuredDigits, measuredLength, metresPer } from "../../domain/measure";
+import { makePlot, nearestIndex, type Plot, type PlotPoint } from "../../domain/plot";
 import type { ProfilePlace } from "../../domain/profile";
 import type { Layer, Model } from "../../core/types";
 import type { MeasuredProfile } from "./measuring";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.measure;
-const kHeight_px = 190;
+const kHeightPx = 190;
 const kFile = { width: 960, height: 400 };
 
 interface PlotColors {
@@ -50,13 +50,13 @@ export class StrataProfilePlot extends LitElement {
   @property({ type: Boolean }) equal = false;
   /** Index of the place that is pointed at. */
   @property({ attribute: false }) pointed: number | null = null;
-  @state() private width_ = 0;
+  @state() private _width = 0;
 
-  private observer_: ResizeObserver | null = null;
-  private plot_: Plot | null = null;
+  private _observer: ResizeObserver | null = null;
+  private _plot: Plot | null = null;
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: block;
@@ -86,26 +86,26 @@ export class StrataProfilePlot extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    this.observer_ = new ResizeObserver(
-      ([entry]) => (this.width_ = Math.floor(entry!.contentRect.width)),
+    this._observer = new ResizeObserver(
+      ([entry]) => (this._width = Math.floor(entry!.contentRect.width)),
     );
-    this.observer_.observe(this);
+    this._observer.observe(this);
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.observer_?.disconnect();
-    this.point_out(null);
+    this._observer?.disconnect();
+    this.pointOut(null);
   }
 
   override willUpdate(changed: Map<PropertyKey, unknown>): void {
-    const only_pointed = changed.size === 1 && changed.has("pointed");
-    if (this.width_ > 0 && !(only_pointed && this.plot_))
-      this.plot_ = this.make(this.width_, kHeight_px);
+    const onlyPointed = changed.size === 1 && changed.has("pointed");
+    if (this._width > 0 && !(onlyPointed && this._plot))
+      this._plot = this.make(this._width, kHeightPx);
   }
 
   override render(): TemplateResult {
-    const { plot_: plot, profile } = this;
+    const { _plot: plot, profile } = this;
     const last = profile.places.length - 1;
     const place = this.pointed === null ? undefined : profile.places[this.pointed];
     return html`<div
@@ -118,10 +118,10 @@ export class StrataProfilePlot extends LitElement {
         aria-valuemax=${Math.max(0, last)}
         aria-valuenow=${this.pointed ?? 0}
         aria-valuetext=${place ? this.describe(place) : words.none_pointed}
-        @pointerdown=${this.on_pointer}
-        @pointermove=${this.on_pointer}
-        @pointerleave=${(event: PointerEvent) => event.pointerType === "mouse" && this.point_out(null)}
-        @keydown=${this.on_key}
+        @pointerdown=${this.onPointer}
+        @pointermove=${this.onPointer}
+        @pointerleave=${(event: PointerEvent) => event.pointerType === "mouse" && this.pointOut(null)}
+        @keydown=${this.onKey}
       >
         ${plot ? this.draw(plot, kOnPage, place) : nothing}
       </div>
@@ -134,9 +134,9 @@ export class StrataProfilePlot extends LitElement {
     render(this.draw(this.make(kFile.width, kFile.height), kOnPaper), holder);
     const drawn = holder.querySelector("svg")!;
     const comments = document.createTreeWalker(drawn, NodeFilter.SHOW_COMMENT);
-    const left_by_lit: Node[] = [];
-    while (comments.nextNode()) left_by_lit.push(comments.currentNode);
-    for (const each of left_by_lit) each.parentNode?.removeChild(each);
+    const leftByLit: Node[] = [];
+    while (comments.nextNode()) leftByLit.push(comments.currentNode);
+    for (const each of leftByLit) each.parentNode?.removeChild(each);
     return new Blob(
       [`<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(drawn)}\n`],
       { type: "image/svg+xml" },
@@ -144,19 +144,19 @@ export class StrataProfilePlot extends LitElement {
   }
 
   private get metres(): number {
-    return metres_per(this.model.unit);
+    return metresPer(this.model.unit);
   }
 
   private make(width: number, height: number): Plot {
     const { layer, metres } = this;
-    const y_of = ({ place, value }: ProfilePlace): number | null =>
-      layer ? value : height_of(place, this.model.up) * metres;
+    const yOf = ({ place, value }: ProfilePlace): number | null =>
+      layer ? value : heightOf(place, this.model.up) * metres;
     const parts = this.profile.parts.map((part) =>
-      part.map((each): PlotPoint => ({ x: each.along * metres, y: y_of(each) })),
+      part.map((each): PlotPoint => ({ x: each.along * metres, y: yOf(each) })),
     );
-    return make_plot({
+    return makePlot({
       parts,
-      y_unit: layer ? layer.unit : null,
+      yUnit: layer ? layer.unit : null,
       equal: this.equal,
       width,
       height,
@@ -166,9 +166,9 @@ export class StrataProfilePlot extends LitElement {
   private draw(plot: Plot, colors: PlotColors, place?: ProfilePlace): TemplateResult {
     const { left, right, top, bottom, width, height } = plot;
     const named = (name: string, unit: string): string => (unit ? `${name}, ${unit}` : name);
-    const y_name = this.layer ? label_of(this.layer) : words.height(axis_name(this.model.up));
-    const x = place ? plot.x_at(place.along * this.metres) : 0;
-    const y = place && this.y_of_pointed(plot, place);
+    const yName = this.layer ? labelOf(this.layer) : words.height(axisName(this.model.up));
+    const x = place ? plot.xAt(place.along * this.metres) : 0;
+    const y = place && this.yOfPointed(plot, place);
     return html`<svg viewBox="0 0 ${width} ${height}" width=${width} height=${height} font-family="system-ui, sans-serif" font-size="11" aria-hidden="true">
       <rect width=${width} height=${height} fill=${colors.ground} />
       ${plot.y.ticks.map(
@@ -186,7 +186,7 @@ export class StrataProfilePlot extends LitElement {
           <text x=${at} y=${bottom + 15} text-anchor="middle" fill=${colors.soft}>${label}</text>`,
       )}
       <path d="M${left} ${top}V${bottom}H${right}" stroke=${colors.soft} fill="none" />
-      <text x="2" y="12" fill=${colors.ink} font-weight="600">${named(y_name, plot.y.unit)}</text>
+      <text x="2" y="12" fill=${colors.ink} font-weight="600">${named(yName, plot.y.unit)}</text>
       <text x=${right} y=${height - 6} text-anchor="end" fill=${colors.ink} font-weight="600">${named(words.along, plot.x.unit)}</text>
       ${plot.breaks.map((at) => svg`<path class="break" d="M${at.toFixed(1)} ${top}V${bottom}" stroke=${colors.soft} stroke-dasharray="2 3" fill="none" />`)}
       ${plot.curves.map((curve) => svg`<path class="curve" d=${curve} stroke=${colors.curve} stroke-width="1.8" stroke-linejoin="round" stroke-linecap="round" fill="none" />`)}
@@ -199,37 +199,37 @@ export class StrataProfilePlot extends LitElement {
     </svg>`;
   }
 
-  private y_of_pointed(plot: Plot, { place, value }: ProfilePlace): number | null {
-    if (!this.layer) return plot.y_at(height_of(place, this.model.up) * this.metres);
-    return value === null ? null : plot.y_at(value);
+  private yOfPointed(plot: Plot, { place, value }: ProfilePlace): number | null {
+    if (!this.layer) return plot.yAt(heightOf(place, this.model.up) * this.metres);
+    return value === null ? null : plot.yAt(value);
   }
 
-  private value_of({ place, value }: ProfilePlace): string {
+  private valueFor({ place, value }: ProfilePlace): string {
     const { layer, model } = this;
-    if (!layer) return measured_length(height_of(place, model.up) * this.metres);
+    if (!layer) return measuredLength(heightOf(place, model.up) * this.metres);
     if (value === null) return words.no_value;
-    return `${format_number(value, kMeasuredDigits)}${layer.unit ? ` ${layer.unit}` : ""}`;
+    return `${formatNumber(value, kMeasuredDigits)}${layer.unit ? ` ${layer.unit}` : ""}`;
   }
 
   private describe(place: ProfilePlace): string {
-    const name = this.layer ? label_of(this.layer) : words.height(axis_name(this.model.up));
-    return words.sample(measured_length(place.along * this.metres), name, this.value_of(place));
+    const name = this.layer ? labelOf(this.layer) : words.height(axisName(this.model.up));
+    return words.sample(measuredLength(place.along * this.metres), name, this.valueFor(place));
   }
 
   private told(place: ProfilePlace): TemplateResult {
     const { unit } = this.model;
     const decimals = unit === "mm" ? 2 : unit === "cm" ? 3 : 4;
     return html`<span class="numeric"
-      ><b>${this.describe(place)}</b><br />${texts.value.position} ${format_place(place.place.map((each) => format_fixed(each, decimals)))} ${unit}</span
+      ><b>${this.describe(place)}</b><br />${texts.value.position} ${formatPlace(place.place.map((each) => formatFixed(each, decimals)))} ${unit}</span
     >`;
   }
 
-  private point_out(index: number | null): void {
+  private pointOut(index: number | null): void {
     this.dispatchEvent(new CustomEvent("point-out", { detail: index }));
   }
 
-  private readonly on_pointer = (event: PointerEvent): void => {
-    const { plot_: plot, profile } = this;
+  private readonly onPointer = (event: PointerEvent): void => {
+    const { _plot: plot, profile } = this;
     if (
       !plot ||
       profile.places.length === 0 ||
@@ -237,16 +237,16 @@ export class StrataProfilePlot extends LitElement {
     )
       return;
     const { left } = (event.currentTarget as HTMLElement).getBoundingClientRect();
-    const along = plot.x_of(event.clientX - left) / this.metres;
-    this.point_out(
-      nearest_index(
+    const along = plot.xOf(event.clientX - left) / this.metres;
+    this.pointOut(
+      nearestIndex(
         profile.places.map((each) => each.along),
         along,
       ),
     );
   };
 
-  private readonly on_key = (event: KeyboardEvent): void => {
+  private readonly onKey = (event: KeyboardEvent): void => {
     const last = this.profile.places.length - 1;
     if (event.altKey || event.ctrlKey || event.metaKey || last < 0) return;
     const step = event.shiftKey ? 1 : Math.max(1, Math.round(last / 100));
@@ -265,6 +265,6 @@ export class StrataProfilePlot extends LitElement {
     const next = to[event.key];
     if (next === undefined) return;
     event.preventDefault();
-    this.point_out(Math.min(last, Math.max(0, next)));
+    this.pointOut(Math.min(last, Math.max(0, next)));
   };
 }

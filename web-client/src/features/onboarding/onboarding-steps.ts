@@ -9,31 +9,31 @@ export type StepName = (typeof kSteps)[number];
 const kForPainters: readonly StepName[] = ["brush", "undo"];
 
 /** Those for who may paint here, or only look. */
-export const steps_for = (can_paint: boolean): StepName[] =>
-  kSteps.filter((name) => can_paint || !kForPainters.includes(name));
+export const stepsFor = (canPaint: boolean): StepName[] =>
+  kSteps.filter((name) => canPaint || !kForPainters.includes(name));
 
 /**
  * The step itself where its thing is there; otherwise the next one whose is, or else the last one
  * before. Null: nothing is there.
  */
-export function nearest_step(name: StepName, there: readonly StepName[]): StepName | null {
+export function nearestStep(name: StepName, there: readonly StepName[]): StepName | null {
   const after = kSteps.slice(kSteps.indexOf(name)).find((each) => there.includes(each));
   return after ?? there[there.length - 1] ?? null;
 }
 
 /**
- * What a step speaks of, and the bar that it stands in. `is_room`: there is no one thing to mark.
+ * What a step speaks of, and the bar that it stands in. `isRoom`: there is no one thing to mark.
  */
 export interface TourThing {
   element: Element;
   bar: Element;
-  is_room?: boolean;
+  isRoom?: boolean;
   /** What it speaks of is put away; this brings it back. */
-  is_way?: boolean;
+  isWay?: boolean;
 }
 
 /** Where it is on the page; null: nowhere, or not to be seen. */
-export function thing_of(name: StepName, page: ParentNode): TourThing | null {
+export function thingOf(name: StepName, page: ParentNode): TourThing | null {
   const found = find(name, page);
   return found && found.element.checkVisibility() && found.element.getClientRects().length > 0
     ? found
@@ -54,12 +54,12 @@ function find(name: StepName, page: ParentNode): TourThing | null {
   switch (name) {
     case "turn": {
       const stage = page.querySelector("strata-stage");
-      return stage && { element: stage, bar: stage, is_room: true };
+      return stage && { element: stage, bar: stage, isRoom: true };
     }
     case "layers": {
       const panel = within(page.querySelector("aside"), page, "strata-layer-panel");
       const button = within(head, head, "[data-tour=panel]");
-      return panel?.bar.checkVisibility() ? panel : button && { ...button, is_way: true };
+      return panel?.bar.checkVisibility() ? panel : button && { ...button, isWay: true };
     }
     case "brush":
     case "undo":
@@ -71,9 +71,9 @@ function find(name: StepName, page: ParentNode): TourThing | null {
 }
 
 /** The part of an element that lies in its bar and in the window. */
-export function seen_box({ element, bar, is_room }: TourThing): Box {
+export function seenBox({ element, bar, isRoom }: TourThing): Box {
   const [own, outer] = [element.getBoundingClientRect(), bar.getBoundingClientRect()];
-  if (is_room) return middle_of(own);
+  if (isRoom) return middleOf(own);
   const left = Math.max(own.left, outer.left, 0);
   const top = Math.max(own.top, outer.top, 0);
   return {
@@ -86,7 +86,7 @@ export function seen_box({ element, bar, is_room }: TourThing): Box {
 
 const kMargin = 0.3; // of the stage, beside what is looked at
 
-const middle_of = ({ left, top, width, height }: DOMRect): Box => ({
+const middleOf = ({ left, top, width, height }: DOMRect): Box => ({
   left: left + kMargin * width,
   top: top + kMargin * height,
   width: (1 - 2 * kMargin) * width,

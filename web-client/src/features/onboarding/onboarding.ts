@@ -4,49 +4,49 @@
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { beside_bar, type Box, type Size } from "../../ui/beside";
-import { docked_is_open, modal_is_open } from "../../ui/dialog";
-import { follow_session } from "../../session/follow-session";
-import { has_keyboard } from "../../ui/keyboard";
+import { besideBar, type Box, type Size } from "../../ui/beside";
+import { dockedIsOpen, modalIsOpen } from "../../ui/dialog";
+import { followSession } from "../../session/follow-session";
+import { hasKeyboard } from "../../ui/keyboard";
 import type { ModelSession } from "../../session/model-session";
-import { has_fingers_only } from "../../ui/pointers";
-import { keep_tour_over, tour_is_over } from "../../ui/preferences";
-import { shared_styles } from "../../ui/styles";
+import { hasFingersOnly } from "../../ui/pointers";
+import { keepTourOver, tourIsOver } from "../../ui/preferences";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import {
   kSteps,
-  nearest_step,
-  seen_box,
-  steps_for,
-  thing_of,
+  nearestStep,
+  seenBox,
+  stepsFor,
+  thingOf,
   type StepName,
   type TourThing,
 } from "./onboarding-steps";
 
 const words = texts.tour;
-const kGap_px = 12;
-const kLarge_px = 100; // things that get room within their ring
-const kNarrow = "(max-width: 820px)"; // as in model_styles
+const kGapPx = 12;
+const kLargePx = 100; // things that get room within their ring
+const kNarrow = "(max-width: 820px)"; // as in modelStyles
 
 @customElement("strata-tour")
 export class StrataTour extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   /** The page asks something else now: the tour does not begin by itself. */
   @property({ type: Boolean }) held = false;
-  @state() private step_: StepName | null = null;
-  @query("section") private card_!: HTMLElement | null;
-  @query(".ring") private ring_!: HTMLElement | null;
-  @query("button.primary") private next_!: HTMLButtonElement | null;
-  private opener_: HTMLElement | null = null; // had the keyboard before
-  private has_keyboard_ = false;
+  @state() private _step: StepName | null = null;
+  @query("section") private _card!: HTMLElement | null;
+  @query(".ring") private _ring!: HTMLElement | null;
+  @query("button.primary") private _next!: HTMLButtonElement | null;
+  private _opener: HTMLElement | null = null; // had the keyboard before
+  private _hasKeyboard = false;
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: contents;
@@ -113,84 +113,84 @@ export class StrataTour extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    addEventListener("resize", this.moved_);
+    addEventListener("resize", this._moved);
     // of whatever scrolls
-    addEventListener("scroll", this.moved_, { capture: true, passive: true });
+    addEventListener("scroll", this._moved, { capture: true, passive: true });
   }
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    removeEventListener("resize", this.moved_);
-    removeEventListener("scroll", this.moved_, { capture: true });
+    removeEventListener("resize", this._moved);
+    removeEventListener("scroll", this._moved, { capture: true });
   }
-  private readonly moved_ = (): void => {
-    if (this.step_ !== null) this.requestUpdate();
+  private readonly _moved = (): void => {
+    if (this._step !== null) this.requestUpdate();
   };
 
   /** Because somebody asked for it: it has the keyboard, and gives it back. */
   async start(): Promise<void> {
-    this.opener_ = has_keyboard();
+    this._opener = hasKeyboard();
     this.go(kSteps[0]);
     await this.updateComplete;
-    this.next_?.focus({ preventScroll: true });
+    this._next?.focus({ preventScroll: true });
   }
 
   /** For good: at this browser it does not begin by itself again. False: there was none. */
   end(): boolean {
-    if (this.step_ === null) return false;
-    const { is_at_keyboard } = this;
-    this.step_ = null;
-    keep_tour_over();
-    if (is_at_keyboard && this.opener_?.isConnected) this.opener_.focus({ preventScroll: true });
-    this.opener_ = null;
+    if (this._step === null) return false;
+    const { isAtKeyboard } = this;
+    this._step = null;
+    keepTourOver();
+    if (isAtKeyboard && this._opener?.isConnected) this._opener.focus({ preventScroll: true });
+    this._opener = null;
     return true;
   }
 
   override willUpdate(changed: PropertyValues<this>): void {
     super.willUpdate(changed);
-    this.has_keyboard_ = this.is_at_keyboard;
-    if (this.step_ !== null) this.step_ = nearest_step(this.step_, this.there());
-    else if (this.may_begin()) this.go(kSteps[0]);
+    this._hasKeyboard = this.isAtKeyboard;
+    if (this._step !== null) this._step = nearestStep(this._step, this.there());
+    else if (this.mayBegin()) this.go(kSteps[0]);
   }
 
-  private get is_at_keyboard(): boolean {
+  private get isAtKeyboard(): boolean {
     return (this.shadowRoot?.activeElement ?? null) !== null;
   }
 
-  private may_begin(): boolean {
+  private mayBegin(): boolean {
     const { session } = this;
     return (
-      session.view.frames_drawn > 0 &&
+      session.view.framesDrawn > 0 &&
       session.comments.card === null &&
       !this.held &&
-      !modal_is_open() &&
-      !docked_is_open() &&
-      !tour_is_over()
+      !modalIsOpen() &&
+      !dockedIsOpen() &&
+      !tourIsOver()
     );
   }
 
   private thing(name: StepName): TourThing | null {
-    return thing_of(name, this.getRootNode() as ShadowRoot);
+    return thingOf(name, this.getRootNode() as ShadowRoot);
   }
   private there(): StepName[] {
-    return steps_for(this.session.can_paint).filter((name) => this.thing(name) !== null);
+    return stepsFor(this.session.canPaint).filter((name) => this.thing(name) !== null);
   }
 
   private go(name: StepName): void {
-    this.step_ = nearest_step(name, this.there());
-    const thing = this.step_ && this.thing(this.step_);
-    if (thing && !thing.is_room) bring_into_bar(thing);
+    this._step = nearestStep(name, this.there());
+    const thing = this._step && this.thing(this._step);
+    if (thing && !thing.isRoom) bringIntoBar(thing);
   }
 
   /** To the step after or before; past the last one it is over. */
   private step(by: 1 | -1): void {
     const there = this.there();
-    const to = there[there.indexOf(this.step_!) + by];
+    const to = there[there.indexOf(this._step!) + by];
     if (to) this.go(to);
     else if (by === 1) this.end();
   }
 
   override render(): TemplateResult {
-    const { step_: step } = this;
+    const { _step: step } = this;
     const there = step === null ? [] : this.there();
     const thing = step === null ? null : this.thing(step);
     const text = step === null || !thing ? "" : this.text(step, thing);
@@ -206,8 +206,8 @@ export class StrataTour extends LitElement {
   ): TemplateResult {
     const at = there.indexOf(step);
     const last = at === there.length - 1;
-    return html`${thing.is_room ? nothing : html`<div class="ring" aria-hidden="true"></div>`}
-      <section class=${thing.is_room ? "wide" : ""} role="dialog" aria-modal="false" aria-labelledby="heading" aria-describedby="text" data-step=${step} @keydown=${this.on_key}>
+    return html`${thing.isRoom ? nothing : html`<div class="ring" aria-hidden="true"></div>`}
+      <section class=${thing.isRoom ? "wide" : ""} role="dialog" aria-modal="false" aria-labelledby="heading" aria-describedby="text" data-step=${step} @keydown=${this.onKey}>
         <div class="row head">
           <h2 id="heading">${words.steps[step].title}</h2>
           <span class="hint numeric">${words.progress(at + 1, there.length)}</span>
@@ -221,12 +221,12 @@ export class StrataTour extends LitElement {
       </section>`;
   }
 
-  private text(step: StepName, { is_way }: TourThing): string {
-    const hand = has_fingers_only() ? "touch" : "mouse";
+  private text(step: StepName, { isWay }: TourThing): string {
+    const hand = hasFingersOnly() ? "touch" : "mouse";
     switch (step) {
       case "layers": {
         const { way, paint, look } = words.steps.layers;
-        return [is_way ? way : "", this.session.can_paint ? paint : look].filter(Boolean).join(" ");
+        return [isWay ? way : "", this.session.canPaint ? paint : look].filter(Boolean).join(" ");
       }
       case "share":
         return words.steps.share.text;
@@ -235,37 +235,37 @@ export class StrataTour extends LitElement {
     }
   }
 
-  private on_key(event: KeyboardEvent): void {
+  private onKey(event: KeyboardEvent): void {
     if (event.ctrlKey || event.altKey || event.metaKey || event.shiftKey) return;
     if (event.key === "Escape") this.end();
-    else if (event.key === "ArrowRight") this.step_from_key(1);
-    else if (event.key === "ArrowLeft") this.step_from_key(-1);
+    else if (event.key === "ArrowRight") this.stepFromKey(1);
+    else if (event.key === "ArrowLeft") this.stepFromKey(-1);
     else return;
     event.preventDefault();
   }
 
   /** The arrows end nothing: one too many would take the card away. */
-  private step_from_key(by: 1 | -1): void {
+  private stepFromKey(by: 1 | -1): void {
     const there = this.there();
-    if (there[there.indexOf(this.step_!) + by]) this.step(by);
+    if (there[there.indexOf(this._step!) + by]) this.step(by);
   }
 
   override updated(): void {
-    const { card_: card, ring_: ring, step_: step } = this;
+    const { _card: card, _ring: ring, _step: step } = this;
     const thing = step === null ? null : this.thing(step);
     if (!card || !thing) return;
     // the button that had it is gone
-    if (this.has_keyboard_ && !this.is_at_keyboard) this.next_?.focus({ preventScroll: true });
-    const box = seen_box(thing);
+    if (this._hasKeyboard && !this.isAtKeyboard) this._next?.focus({ preventScroll: true });
+    const box = seenBox(thing);
     card.style.maxHeight = ""; // as high as it would like to be
-    const place = place_of(thing, box, { width: card.offsetWidth, height: card.offsetHeight });
+    const place = placeOf(thing, box, { width: card.offsetWidth, height: card.offsetHeight });
     Object.assign(card.style, {
       left: `${place.left}px`,
       top: `${place.top}px`,
-      maxHeight: `${place.most_height}px`,
+      maxHeight: `${place.mostHeight}px`,
     });
     if (ring) {
-      const around = box.width > kLarge_px ? 9 : 4;
+      const around = box.width > kLargePx ? 9 : 4;
       const [x, y] = [Math.max(0, box.left - around), Math.max(0, box.top - around)];
       Object.assign(ring.style, {
         left: `${x}px`,
@@ -278,10 +278,10 @@ export class StrataTour extends LitElement {
 }
 
 /** What was scrolled out of it, or is hardly seen at its end. */
-function bring_into_bar(thing: TourThing): void {
+function bringIntoBar(thing: TourThing): void {
   const enough = Math.min(thing.element.clientHeight, 0.8 * thing.bar.clientHeight);
   thing.element.scrollIntoView({
-    block: seen_box(thing).height >= enough ? "nearest" : "start",
+    block: seenBox(thing).height >= enough ? "nearest" : "start",
     inline: "nearest",
   });
 }
@@ -290,23 +290,19 @@ function bring_into_bar(thing: TourThing): void {
  * Beside the bar of the thing; of the model at the upper edge of its stage (on phones the lower
  * one, which is nearer to the hand), where that leaves it the middle.
  */
-function place_of(
-  { bar, is_room }: TourThing,
-  thing: Box,
-  card: Size,
-): ReturnType<typeof beside_bar> {
+function placeOf({ bar, isRoom }: TourThing, thing: Box, card: Size): ReturnType<typeof besideBar> {
   const outer = bar.getBoundingClientRect();
-  const free = outer.height - card.height - 2 * kGap_px;
-  if (!is_room || free < outer.height / 2)
-    return beside_bar(
+  const free = outer.height - card.height - 2 * kGapPx;
+  if (!isRoom || free < outer.height / 2)
+    return besideBar(
       thing,
-      is_room ? thing : outer,
+      isRoom ? thing : outer,
       card,
       { width: innerWidth, height: innerHeight },
-      kGap_px,
+      kGapPx,
     );
   const top = matchMedia(kNarrow).matches
-    ? outer.bottom - kGap_px - card.height
-    : outer.top + kGap_px;
-  return { left: outer.left + (outer.width - card.width) / 2, top, most_height: card.height };
+    ? outer.bottom - kGapPx - card.height
+    : outer.top + kGapPx;
+  return { left: outer.left + (outer.width - card.width) / 2, top, mostHeight: card.height };
 }

@@ -3,22 +3,22 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
-import { label_of } from "../../domain/cells";
-import { read_number, typed_number } from "../../core/locale";
+import { labelOf } from "../../domain/cells";
+import { readNumber, typedNumber } from "../../core/locale";
 import type { MarkKind } from "../../domain/marks";
-import { format_length, format_number } from "../../domain/measure";
+import { formatLength, formatNumber } from "../../domain/measure";
 import type { Layer } from "../../core/types";
 import { kWidths, type WidthUnit } from "./brush-settings";
-import { describe_value } from "../../session/layer-values";
+import { describeValue } from "../../session/layer-values";
 import { ask } from "../../ui/dialog";
-import { follow_session } from "../../session/follow-session";
+import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
-import { unlock_label, why_locked } from "../../session/layer-lock";
+import { unlockLabel, whyLocked } from "../../session/layer-lock";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { number_input } from "../../ui/number-input";
-import { radio_group } from "../../ui/radio-group";
-import { number_field_styles, shared_styles } from "../../ui/styles";
+import { numberInput } from "../../ui/number-input";
+import { radioGroup } from "../../ui/radio-group";
+import { numberFieldStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import "./shape-picker";
 import "../../session/fields/value-picker";
@@ -34,12 +34,12 @@ export class StrataBrushPanel extends LitElement {
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
-    number_field_styles,
+    sharedStyles,
+    numberFieldStyles,
     css`
       :host {
         display: grid;
@@ -93,25 +93,25 @@ export class StrataBrushPanel extends LitElement {
     const layer = session.layers.selected;
     if (!layer) return html`<p class="hint">${texts.brush.no_layer}</p>`;
     const tool = session.tools.active;
-    if (session.locked_target) return this.locked(session.locked_target);
+    if (session.lockedTarget) return this.locked(session.lockedTarget);
     if (tool === "brush" || tool === "eraser") return this.strokes(layer, tool === "eraser");
     if (tool === "line" || tool === "point") return this.marks(layer, tool);
     return this.areas(layer, tool === "bucket" ? "bucket" : tool === "lasso" ? "lasso" : "polygon");
   }
 
   private locked(layer: Layer): TemplateResult {
-    const { layers, can_curate } = this.session;
+    const { layers, canCurate } = this.session;
     const unlock = (): void =>
       void layers.change(layer, { locked: false }).catch((error: unknown) => notices.error(error));
     return html`<h2>${texts.tools[this.session.tools.active]}</h2>
-      <p class="locked" role="status">${icon("lock")}<span>${why_locked(layer)}</span></p>
-      ${can_curate ? html`<button @click=${unlock}>${icon("unlock")}${unlock_label(layer)}</button>` : nothing}`;
+      <p class="locked" role="status">${icon("lock")}<span>${whyLocked(layer)}</span></p>
+      ${canCurate ? html`<button @click=${unlock}>${icon("unlock")}${unlockLabel(layer)}</button>` : nothing}`;
   }
 
   private strokes(layer: Layer, erases: boolean): TemplateResult {
     return html`<h2>${erases ? texts.brush.eraser_title : texts.brush.title}</h2>
-      ${erases ? html`<p class="hint">${texts.brush.erases(label_of(layer))}</p>` : this.value(layer)} ${this.width()}
-      ${this.through()} ${this.slant()} ${this.session.painting.pen_used ? this.pressure() : nothing} ${erases ? nothing : this.whole(layer)}`;
+      ${erases ? html`<p class="hint">${texts.brush.erases(labelOf(layer))}</p>` : this.value(layer)} ${this.width()}
+      ${this.through()} ${this.slant()} ${this.session.painting.penUsed ? this.pressure() : nothing} ${erases ? nothing : this.whole(layer)}`;
   }
 
   private areas(layer: Layer, tool: "bucket" | "lasso" | "polygon"): TemplateResult {
@@ -120,7 +120,7 @@ export class StrataBrushPanel extends LitElement {
     const words = texts.areas;
     return html`<h2>${texts.tools[tool]}</h2>
       <p class="hint">${words.how[tool]}</p>
-      ${radio_group<boolean>({
+      ${radioGroup<boolean>({
         label: words.does,
         class: "segments",
         choices: [
@@ -128,12 +128,12 @@ export class StrataBrushPanel extends LitElement {
           { value: true, content: words.erases },
         ],
         chosen: erases,
-        choose: (chosen) => painting.set_brush((brush) => (brush.areas.erases = chosen)),
+        choose: (chosen) => painting.setBrush((brush) => (brush.areas.erases = chosen)),
       })}
-      ${erases ? html`<p class="hint">${texts.brush.erases(label_of(layer))}</p>` : this.value(layer)}
+      ${erases ? html`<p class="hint">${texts.brush.erases(labelOf(layer))}</p>` : this.value(layer)}
       ${
         tool === "bucket"
-          ? radio_group<typeof reach>({
+          ? radioGroup<typeof reach>({
               label: words.reach,
               class: "segments",
               choices: [
@@ -141,7 +141,7 @@ export class StrataBrushPanel extends LitElement {
                 { value: "island", content: words.island, title: words.island_hint },
               ],
               chosen: reach,
-              choose: (chosen) => painting.set_brush((brush) => (brush.areas.reach = chosen)),
+              choose: (chosen) => painting.setBrush((brush) => (brush.areas.reach = chosen)),
             })
           : this.through()
       }
@@ -160,7 +160,7 @@ export class StrataBrushPanel extends LitElement {
       const chosen = columns.find(
         ({ id }) => `${id}` === (event.target as HTMLSelectElement).value,
       );
-      if (chosen) marks.choose_column(table, chosen);
+      if (chosen) marks.chooseColumn(table, chosen);
     };
     return html`<h2>${texts.tools[kind]}</h2>
       <p class="hint">${words.how[kind]}</p>
@@ -170,7 +170,7 @@ export class StrataBrushPanel extends LitElement {
           ? html`<label class="field">
             <span>${words.into}</span>
             <select @change=${choose}>
-              ${columns.map((column) => html`<option value=${column.id} ?selected=${column.id === marks.column(kind)?.id}>${label_of(column)}</option>`)}
+              ${columns.map((column) => html`<option value=${column.id} ?selected=${column.id === marks.column(kind)?.id}>${labelOf(column)}</option>`)}
             </select>
           </label>`
           : nothing
@@ -181,7 +181,7 @@ export class StrataBrushPanel extends LitElement {
     return html`<strata-value-picker
       .session=${this.session}
       .layer=${layer}
-      .value=${this.session.painting.brush.value_of(layer)}
+      .value=${this.session.painting.brush.valueFor(layer)}
     ></strata-value-picker>`;
   }
 
@@ -193,7 +193,7 @@ export class StrataBrushPanel extends LitElement {
         .checked=${painting.brush.through}
         @change=${(event: Event) => {
           const { checked } = event.target as HTMLInputElement;
-          painting.set_brush((brush) => (brush.through = checked));
+          painting.setBrush((brush) => (brush.through = checked));
         }}
       />
       <span>${texts.areas.through}</span>
@@ -208,7 +208,7 @@ export class StrataBrushPanel extends LitElement {
         .checked=${painting.brush.pressure}
         @change=${(event: Event) => {
           const { checked } = event.target as HTMLInputElement;
-          painting.set_brush((brush) => (brush.pressure = checked));
+          painting.setBrush((brush) => (brush.pressure = checked));
         }}
       />
       <span>${texts.brush.pressure}</span>
@@ -227,21 +227,21 @@ export class StrataBrushPanel extends LitElement {
           ?disabled=${through}
           @change=${(event: Event) => {
             const { checked } = event.target as HTMLInputElement;
-            painting.set_brush((brush) => (brush.slant.limited = checked));
+            painting.setBrush((brush) => (brush.slant.limited = checked));
           }}
         />
         <span>${texts.brush.slant}</span>
       </label>
       <span class="number">
-        ${number_input({
+        ${numberInput({
           label: texts.brush.slant_degrees,
-          value: slant.max_deg,
+          value: slant.maxDeg,
           min: 1,
           max: 90,
           disabled: !limited,
           changed: (text, input) => {
-            painting.set_brush((brush) => brush.set_slant(read_number(text)));
-            input.value = typed_number(painting.brush.slant.max_deg);
+            painting.setBrush((brush) => brush.setSlant(readNumber(text)));
+            input.value = typedNumber(painting.brush.slant.maxDeg);
           },
         })}
         <span>°</span>
@@ -252,11 +252,11 @@ export class StrataBrushPanel extends LitElement {
   /** What needs no pointer. */
   private whole(layer: Layer): TemplateResult {
     const detail: WhereRequest = { dialog: "where", layer };
-    const ask_where = (): void =>
+    const askWhere = (): void =>
       void this.dispatchEvent(new CustomEvent<WhereRequest>("request", { detail }));
     return html`<div class="pair">
       <button class="quiet" @click=${() => void this.fill(layer)}>${icon("drop")}${texts.brush.fill}</button>
-      <button class="quiet" @click=${ask_where}>${icon("formula")}${texts.areas.where}</button>
+      <button class="quiet" @click=${askWhere}>${icon("formula")}${texts.areas.where}</button>
     </div>`;
   }
 
@@ -274,21 +274,21 @@ export class StrataBrushPanel extends LitElement {
           max=${kSliderSteps}
           .value=${String(Math.round(slider))}
           aria-label=${texts.brush.width}
-          aria-valuetext="${format_number(now)} ${unit}"
+          aria-valuetext="${formatNumber(now)} ${unit}"
           @input=${(event: Event) => {
             const share = Number((event.target as HTMLInputElement).value) / kSliderSteps;
             const value = range.min * Math.pow(range.max / range.min, share);
-            this.set_width(unit, unit === "px" ? Math.round(value) : Number(value.toPrecision(2)));
+            this.setWidth(unit, unit === "px" ? Math.round(value) : Number(value.toPrecision(2)));
           }}
         />
         <span class="number">
-          ${number_input({
+          ${numberInput({
             label: `${texts.brush.width}, ${unit}`,
             value: now,
             ...range,
             changed: (text, input) => {
-              this.set_width(unit, read_number(text));
-              input.value = typed_number(this.session.painting.brush.width[unit]);
+              this.setWidth(unit, readNumber(text));
+              input.value = typedNumber(this.session.painting.brush.width[unit]);
             },
           })}
           <span>${unit === "px" ? texts.brush.width_px : texts.brush.width_mm}</span>
@@ -296,7 +296,7 @@ export class StrataBrushPanel extends LitElement {
       </div>
       <p class="hint numeric">${this.equivalent(unit)}</p>
       <div class="pair">
-        ${radio_group<WidthUnit>({
+        ${radioGroup<WidthUnit>({
           label: texts.brush.fixed_on,
           class: "segments",
           choices: [
@@ -304,7 +304,7 @@ export class StrataBrushPanel extends LitElement {
             { value: "mm", content: texts.brush.on_object },
           ],
           chosen: unit,
-          choose: (chosen) => this.set_unit(chosen),
+          choose: (chosen) => this.setUnit(chosen),
         })}
       </div>
       <strata-shape-picker .session=${session}></strata-shape-picker>`;
@@ -314,40 +314,40 @@ export class StrataBrushPanel extends LitElement {
   private equivalent(unit: WidthUnit): string {
     const { session } = this;
     if (!session.model) return "";
-    const radius_px = session.painting.radius_window_px();
+    const radiusPx = session.painting.radiusWindowPx();
     if (unit === "mm")
-      return `≈ ${format_number((2 * radius_px) / session.view.scale, 2)} ${texts.brush.width_px} ${texts.brush.on_screen}`;
-    const metres = session.painting.width_metres();
-    return `≈ ${format_length(metres)} ${texts.brush.on_object}`;
+      return `≈ ${formatNumber((2 * radiusPx) / session.view.scale, 2)} ${texts.brush.width_px} ${texts.brush.on_screen}`;
+    const metres = session.painting.widthMetres();
+    return `≈ ${formatLength(metres)} ${texts.brush.on_object}`;
   }
 
   /** Keeps the brush as wide as it looks now. */
-  private set_unit(unit: WidthUnit): void {
+  private setUnit(unit: WidthUnit): void {
     const { session } = this;
     if (session.painting.brush.unit === unit || !session.model) return;
-    const radius_px = session.painting.radius_window_px();
-    const mm = session.painting.width_metres() * 1000;
-    session.painting.set_brush((brush) => {
+    const radiusPx = session.painting.radiusWindowPx();
+    const mm = session.painting.widthMetres() * 1000;
+    session.painting.setBrush((brush) => {
       brush.unit = unit;
-      if (unit === "mm") brush.set_width("mm", Number(mm.toPrecision(2)));
-      else brush.set_width("px", Math.round((2 * radius_px) / session.view.scale));
+      if (unit === "mm") brush.setWidth("mm", Number(mm.toPrecision(2)));
+      else brush.setWidth("px", Math.round((2 * radiusPx) / session.view.scale));
     });
   }
 
-  private set_width(unit: WidthUnit, width: number): void {
-    this.session.painting.set_brush((brush) => brush.set_width(unit, width));
+  private setWidth(unit: WidthUnit, width: number): void {
+    this.session.painting.setBrush((brush) => brush.setWidth(unit, width));
   }
 
   private async fill(layer: Layer): Promise<void> {
-    const what = describe_value(
+    const what = describeValue(
       layer,
-      this.session.painting.brush.value_of(layer),
+      this.session.painting.brush.valueFor(layer),
       this.session.tables,
     );
     const words = texts.brush;
     if (
       await ask({
-        heading: words.fill_title(label_of(layer)),
+        heading: words.fill_title(labelOf(layer)),
         lead: words.fill_lead(`“${what}”`),
         yes: words.fill,
       })

@@ -1,7 +1,7 @@
 // What is painted with: width, shape, reach, and one value per layer.
 
-import { purpose_of } from "../../domain/palette";
-import { holds_fractions, type Layer } from "../../core/types";
+import { purposeOf } from "../../domain/palette";
+import { holdsFractions, type Layer } from "../../core/types";
 import type { ToolShape } from "../../core/protocol.gen";
 
 export type WidthUnit = "px" | "mm";
@@ -18,48 +18,48 @@ export class BrushSettings {
    * What is seen at more of a slant is left out, where that is wanted. Not together with what is
    * hidden.
    */
-  slant = { limited: false, max_deg: 60 };
+  slant = { limited: false, maxDeg: 60 };
   /** Of polygon, lasso and bucket. */
   areas: { erases: boolean; reach: "connected" | "island" } = { erases: false, reach: "connected" };
-  private readonly values_ = new Map<number, number>();
+  private readonly _values = new Map<number, number>();
 
-  set_width(unit: WidthUnit, width: number): void {
+  setWidth(unit: WidthUnit, width: number): void {
     if (!Number.isFinite(width)) return;
     this.width[unit] = Math.min(kWidths[unit].max, Math.max(kWidths[unit].min, width));
   }
 
-  set_slant(max_deg: number): void {
-    if (Number.isFinite(max_deg)) this.slant.max_deg = Math.min(90, Math.max(1, max_deg));
+  setSlant(maxDeg: number): void {
+    if (Number.isFinite(maxDeg)) this.slant.maxDeg = Math.min(90, Math.max(1, maxDeg));
   }
 
   /** One step of the [ and ] keys. */
-  step_width(direction: 1 | -1): void {
+  stepWidth(direction: 1 | -1): void {
     const grown = this.width[this.unit] * (direction > 0 ? 1.15 : 1 / 1.15);
-    this.set_width(
+    this.setWidth(
       this.unit,
       this.unit === "px" ? Math.round(grown + direction * 0.5) : Number(grown.toPrecision(3)),
     );
   }
 
-  value_of(layer: Layer): number {
-    return this.values_.get(layer.id) ?? first_value(layer);
+  valueFor(layer: Layer): number {
+    return this._values.get(layer.id) ?? firstValue(layer);
   }
 
-  set_value(layer: Layer, value: number): void {
-    this.values_.set(layer.id, value);
+  setValue(layer: Layer, value: number): void {
+    this._values.set(layer.id, value);
   }
 }
 
-function first_value(layer: Layer): number {
+function firstValue(layer: Layer): number {
   const { palette } = layer;
-  switch (purpose_of(layer)) {
+  switch (purposeOf(layer)) {
     case "presence":
     case "classes":
     case "records":
       return palette.column ? 1 : (palette.points[0]?.at ?? 1);
     case "measurement": {
       const middle = (palette.min + palette.max) / 2;
-      return holds_fractions(layer.type) ? Number(middle.toPrecision(3)) : Math.round(middle);
+      return holdsFractions(layer.type) ? Number(middle.toPrecision(3)) : Math.round(middle);
     }
   }
 }

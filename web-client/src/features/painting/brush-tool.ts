@@ -6,30 +6,30 @@ import type { Tool } from "../../tools/tool";
 
 export interface BrushHost {
   /** Null when there is nothing to paint on; the host has then told the person why. */
-  begin_stroke(erase: boolean): StrokeHandle | null;
-  stroke_ended(): void;
+  beginStroke(erase: boolean): StrokeHandle | null;
+  strokeEnded(): void;
   /** The radius in window pixels at the pointer; points closer than a tenth of it add nothing. */
-  radius_px(): number;
+  radiusPx(): number;
   /** What share of its radius the brush has where a pen is pressed so strongly. */
-  width_of(pressure: number): number;
-  next_frame(callback: () => void): void;
+  widthOf(pressure: number): number;
+  nextFrame(callback: () => void): void;
 }
 
 const kWidthStep = 0.1; // of the radius
 
 export class BrushTool implements Tool {
-  private stroke_: StrokeHandle | null = null;
-  private waiting_: Point[] = [];
-  private widths_: number[] = []; // of the waiting points
-  private last_: Point | null = null; // the last point taken
-  private newest_: Point | null = null; // where the pointer is
-  private newest_width_ = 1;
-  private last_width_ = 1;
-  private scheduled_ = false;
+  private _stroke: StrokeHandle | null = null;
+  private _waiting: Point[] = [];
+  private _widths: number[] = []; // of the waiting points
+  private _last: Point | null = null; // the last point taken
+  private _newest: Point | null = null; // where the pointer is
+  private _newestWidth = 1;
+  private _lastWidth = 1;
+  private _scheduled = false;
 
   constructor(
     readonly name: "brush" | "eraser",
-    private readonly host_: BrushHost,
+    private readonly _host: BrushHost,
   ) {}
 
   activate(): void {}
@@ -39,38 +39,38 @@ export class BrushTool implements Tool {
 
   down(sample: PointerSample): void {
     this.finish();
-    this.stroke_ = this.host_.begin_stroke(this.name === "eraser");
-    if (!this.stroke_) return;
-    this.waiting_ = [];
-    this.widths_ = [];
+    this._stroke = this._host.beginStroke(this.name === "eraser");
+    if (!this._stroke) return;
+    this._waiting = [];
+    this._widths = [];
     this.see(sample);
     this.take();
     this.flush();
   }
 
   move(samples: PointerSample[]): void {
-    if (!this.stroke_ || !this.last_) return;
-    const spacing = Math.max(0.5, this.host_.radius_px() * 0.1);
+    if (!this._stroke || !this._last) return;
+    const spacing = Math.max(0.5, this._host.radiusPx() * 0.1);
     for (const sample of samples) {
       this.see(sample);
       // in place, too
-      const pressed = Math.abs(this.newest_width_ - this.last_width_) >= kWidthStep;
-      if (pressed || Math.hypot(sample.x - this.last_[0], sample.y - this.last_[1]) >= spacing)
+      const pressed = Math.abs(this._newestWidth - this._lastWidth) >= kWidthStep;
+      if (pressed || Math.hypot(sample.x - this._last[0], sample.y - this._last[1]) >= spacing)
         this.take();
     }
     this.schedule();
   }
 
   private see({ x, y, pressure }: PointerSample): void {
-    this.newest_ = [x, y];
-    this.newest_width_ = pressure === undefined ? 1 : this.host_.width_of(pressure);
+    this._newest = [x, y];
+    this._newestWidth = pressure === undefined ? 1 : this._host.widthOf(pressure);
   }
   private take(): void {
-    if (!this.newest_) return;
-    this.last_ = this.newest_;
-    this.waiting_.push(this.last_);
-    this.widths_.push(this.newest_width_);
-    this.last_width_ = this.newest_width_;
+    if (!this._newest) return;
+    this._last = this._newest;
+    this._waiting.push(this._last);
+    this._widths.push(this._newestWidth);
+    this._lastWidth = this._newestWidth;
   }
 
   up(): void {
@@ -83,31 +83,31 @@ export class BrushTool implements Tool {
   }
 
   private schedule(): void {
-    if (this.scheduled_ || this.waiting_.length === 0) return;
-    this.scheduled_ = true;
-    this.host_.next_frame(() => {
-      this.scheduled_ = false;
+    if (this._scheduled || this._waiting.length === 0) return;
+    this._scheduled = true;
+    this._host.nextFrame(() => {
+      this._scheduled = false;
       this.flush();
     });
   }
 
   private flush(): void {
-    if (this.waiting_.length === 0) return;
-    this.stroke_?.extend(
-      this.waiting_,
-      this.widths_.some((width) => width !== 1) ? this.widths_ : undefined,
+    if (this._waiting.length === 0) return;
+    this._stroke?.extend(
+      this._waiting,
+      this._widths.some((width) => width !== 1) ? this._widths : undefined,
     );
-    this.waiting_ = [];
-    this.widths_ = [];
+    this._waiting = [];
+    this._widths = [];
   }
 
   private finish(): void {
-    if (!this.stroke_) return;
-    if (this.newest_ !== this.last_) this.take();
+    if (!this._stroke) return;
+    if (this._newest !== this._last) this.take();
     this.flush();
-    this.stroke_.end();
-    this.stroke_ = null;
-    this.last_ = this.newest_ = null;
-    this.host_.stroke_ended();
+    this._stroke.end();
+    this._stroke = null;
+    this._last = this._newest = null;
+    this._host.strokeEnded();
   }
 }

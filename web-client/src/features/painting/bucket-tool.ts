@@ -6,12 +6,12 @@ import type { Tool } from "../../tools/tool";
 export class BucketTool implements Tool {
   readonly name = "bucket";
 
-  constructor(private readonly fill_at_: (sample: PointerSample) => void) {}
+  constructor(private readonly _fillAt: (sample: PointerSample) => void) {}
 
   activate(): void {}
   deactivate(): void {}
   down(sample: PointerSample): void {
-    this.fill_at_(sample);
+    this._fillAt(sample);
   }
   move(): void {}
   up(): void {}

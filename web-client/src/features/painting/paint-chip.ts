@@ -4,15 +4,15 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
-import { format_number } from "../../domain/measure";
-import { label_of } from "../../domain/cells";
-import { color_of, css_color } from "../../domain/palette";
+import { formatNumber } from "../../domain/measure";
+import { labelOf } from "../../domain/cells";
+import { colorOf, cssColor } from "../../domain/palette";
 import { kPaintingTools } from "../../tools/tool";
-import { describe_value } from "../../session/layer-values";
-import { follow_session } from "../../session/follow-session";
+import { describeValue } from "../../session/layer-values";
+import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import type { ModelSession } from "../../session/model-session";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
 import { texts } from "../../texts";
 
@@ -22,11 +22,11 @@ export class StrataPaintChip extends LitElement {
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: none;
@@ -75,17 +75,17 @@ export class StrataPaintChip extends LitElement {
     const { brush } = painting;
     const areas = tool === "polygon" || tool === "lasso" || tool === "bucket";
     const erases = tool === "eraser" || (areas && brush.areas.erases);
-    const value = brush.value_of(layer);
-    const color = erases ? null : color_of(session.layers.palette(layer), value);
-    const what = erases ? texts.areas.erases : describe_value(layer, value, session.tables);
+    const value = brush.valueFor(layer);
+    const color = erases ? null : colorOf(session.layers.palette(layer), value);
+    const what = erases ? texts.areas.erases : describeValue(layer, value, session.tables);
     const width =
       tool === "brush" || tool === "eraser"
-        ? `${format_number(brush.width[brush.unit])} ${brush.unit === "px" ? words.width_px : words.width_mm}`
+        ? `${formatNumber(brush.width[brush.unit])} ${brush.unit === "px" ? words.width_px : words.width_mm}`
         : "";
     return html`<button class="quiet" title=${words.change} @click=${() => this.dispatchEvent(new CustomEvent("options"))}>
-      ${session.locked_target ? icon("lock") : color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : icon(tool === "face" ? "brush" : tool)}
+      ${session.lockedTarget ? icon("lock") : color ? html`<span class="swatch" ${styled({ background: cssColor(color) })}></span>` : icon(tool === "face" ? "brush" : tool)}
       <b class="ellipsis">${what}</b>
-      <span class="on ellipsis">${label_of(layer)}</span>
+      <span class="on ellipsis">${labelOf(layer)}</span>
       ${width ? html`<span class="width numeric">${width}</span>` : nothing} ${icon("up")}
     </button>`;
   }

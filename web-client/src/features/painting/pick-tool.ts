@@ -6,16 +6,16 @@ import type { Tool } from "../../tools/tool";
 export class PickTool implements Tool {
   readonly name = "pick";
 
-  constructor(private readonly picked_: (sample: PointerSample) => void) {}
+  constructor(private readonly _picked: (sample: PointerSample) => void) {}
 
   activate(): void {}
   deactivate(): void {}
   down(sample: PointerSample): void {
-    this.picked_(sample);
+    this._picked(sample);
   }
   move(samples: PointerSample[]): void {
     const last = samples[samples.length - 1];
-    if (last) this.picked_(last);
+    if (last) this._picked(last);
   }
   up(): void {}
   cancel(): void {}

@@ -3,12 +3,12 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError, name_of_file } from "../../net/api";
-import { in_square, kShapeSide, likely_part, to_shape, type ShapePart } from "../../domain/shape";
+import { ApiError, nameOfFile } from "../../net/api";
+import { inSquare, kShapeSide, likelyPart, toShape, type ShapePart } from "../../domain/shape";
 import "../../ui/dialog";
 import type { ModelSession } from "../../session/model-session";
-import { radio_group } from "../../ui/radio-group";
-import { form_styles, shared_styles } from "../../ui/styles";
+import { radioGroup } from "../../ui/radio-group";
+import { formStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const kParts: readonly ShapePart[] = ["opaque", "light", "dark"];
@@ -17,17 +17,17 @@ const kParts: readonly ShapePart[] = ["opaque", "light", "dark"];
 export class StrataShapeDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) file!: File;
-  @state() private part_: ShapePart | null = null; // null: the picture is being read
-  @state() private problem_ = "";
-  @state() private working_ = false;
-  @query("canvas") private canvas_!: HTMLCanvasElement;
-  @query("input") private name_!: HTMLInputElement;
+  @state() private _part: ShapePart | null = null; // null: the picture is being read
+  @state() private _problem = "";
+  @state() private _working = false;
+  @query("canvas") private _canvas!: HTMLCanvasElement;
+  @query("input") private _name!: HTMLInputElement;
 
-  private picture_: ImageBitmap | null = null;
+  private _picture: ImageBitmap | null = null;
 
   static override styles = [
-    shared_styles,
-    form_styles,
+    sharedStyles,
+    formStyles,
     css`
       canvas {
         justify-self: center;
@@ -46,24 +46,24 @@ export class StrataShapeDialog extends LitElement {
   override render(): TemplateResult {
     const words = texts.shapes;
     return html`<strata-dialog heading=${words.new_title} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
-      <form id="shape" @submit=${(event: Event) => this.on_submit(event)}>
+      <form id="shape" @submit=${(event: Event) => this.onSubmit(event)}>
         <p class="hint">${words.lead}</p>
         <canvas width=${kShapeSide} height=${kShapeSide} role="img" aria-label=${words.preview}></canvas>
-        ${radio_group<ShapePart>({
+        ${radioGroup<ShapePart>({
           label: words.part,
           class: "segments",
           choices: kParts.map((value) => ({ value, content: words.parts[value] })),
-          chosen: this.part_,
+          chosen: this._part,
           choose: (part) => this.show(part),
         })}
         <label class="field">
           <span>${words.name}</span>
-          <input type="text" required maxlength="100" .value=${name_of_file(this.file.name)} />
+          <input type="text" required maxlength="100" .value=${nameOfFile(this.file.name)} />
         </label>
-        ${this.problem_ ? html`<p class="error" role="alert">${this.problem_}</p>` : nothing}
+        ${this._problem ? html`<p class="error" role="alert">${this._problem}</p>` : nothing}
       </form>
-      <button slot="actions" class="primary" form="shape" ?disabled=${this.part_ === null || this.working_ || this.problem_ !== ""}>
-        ${this.working_ ? words.adding : words.add}
+      <button slot="actions" class="primary" form="shape" ?disabled=${this._part === null || this._working || this._problem !== ""}>
+        ${this._working ? words.adding : words.add}
       </button>
     </strata-dialog>`;
   }
@@ -74,61 +74,57 @@ export class StrataShapeDialog extends LitElement {
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.picture_?.close();
+    this._picture?.close();
   }
 
   private async read(): Promise<void> {
     try {
-      this.picture_ = await createImageBitmap(this.file);
+      this._picture = await createImageBitmap(this.file);
     } catch {
-      this.problem_ = texts.shapes.unreadable(this.file.name);
+      this._problem = texts.shapes.unreadable(this.file.name);
       return;
     }
     // Looked at without the square around it, which would seem transparent.
-    const { width, height } = this.picture_;
-    const { width: small_width, height: small_height } = in_square(width, height, kShapeSide);
+    const { width, height } = this._picture;
+    const { width: smallWidth, height: smallHeight } = inSquare(width, height, kShapeSide);
     const canvas = new OffscreenCanvas(
-      Math.max(1, Math.round(small_width)),
-      Math.max(1, Math.round(small_height)),
+      Math.max(1, Math.round(smallWidth)),
+      Math.max(1, Math.round(smallHeight)),
     );
     const context = canvas.getContext("2d")!;
-    context.drawImage(this.picture_, 0, 0, canvas.width, canvas.height);
-    this.show(likely_part(context.getImageData(0, 0, canvas.width, canvas.height)));
+    context.drawImage(this._picture, 0, 0, canvas.width, canvas.height);
+    this.show(likelyPart(context.getImageData(0, 0, canvas.width, canvas.height)));
   }
 
   private show(part: ShapePart): void {
-    if (!this.picture_) return;
-    this.part_ = part;
-    const { x, y, width, height } = in_square(
-      this.picture_.width,
-      this.picture_.height,
-      kShapeSide,
-    );
-    const context = this.canvas_.getContext("2d", { willReadFrequently: true })!;
+    if (!this._picture) return;
+    this._part = part;
+    const { x, y, width, height } = inSquare(this._picture.width, this._picture.height, kShapeSide);
+    const context = this._canvas.getContext("2d", { willReadFrequently: true })!;
     context.clearRect(0, 0, kShapeSide, kShapeSide);
     context.imageSmoothingQuality = "high";
-    context.drawImage(this.picture_, x, y, width, height);
+    context.drawImage(this._picture, x, y, width, height);
     const pixels = context.getImageData(0, 0, kShapeSide, kShapeSide);
-    const any = to_shape(pixels, part);
+    const any = toShape(pixels, part);
     context.putImageData(pixels, 0, 0);
-    this.problem_ = any ? "" : texts.shapes.empty;
+    this._problem = any ? "" : texts.shapes.empty;
   }
 
-  private on_submit(event: Event): void {
+  private onSubmit(event: Event): void {
     event.preventDefault();
-    const name = this.name_.value.trim();
-    if (this.part_ && name && !this.working_) void this.add(name, this.part_);
+    const name = this._name.value.trim();
+    if (this._part && name && !this._working) void this.add(name, this._part);
   }
 
   private async add(name: string, part: ShapePart): Promise<void> {
-    this.working_ = true;
+    this._working = true;
     try {
       await this.session.shapes.add(this.file, name, part);
       this.dispatchEvent(new CustomEvent("closed"));
     } catch (error) {
-      this.problem_ = error instanceof ApiError ? error.message : texts.problems.unexpected;
+      this._problem = error instanceof ApiError ? error.message : texts.problems.unexpected;
     } finally {
-      this.working_ = false;
+      this._working = false;
     }
   }
 }

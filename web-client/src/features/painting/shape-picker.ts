@@ -4,41 +4,41 @@
 import { css, html, LitElement, nothing, svg, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import type { Tool, ToolShape } from "../../core/protocol.gen";
-import { ask, ask_text } from "../../ui/dialog";
+import { ask, askText } from "../../ui/dialog";
 import { FileDrop } from "../../ui/drop";
-import { follow_session } from "../../session/follow-session";
+import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { radio_group, type RadioChoice } from "../../ui/radio-group";
+import { radioGroup, type RadioChoice } from "../../ui/radio-group";
 import "./shape-dialog";
 import { styled } from "../../ui/styled";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
-import { shape_picture } from "./tool-shapes";
+import { shapePicture } from "./tool-shapes";
 
-const is_picture = ({ type }: { type: string }): boolean =>
+const isPicture = ({ type }: { type: string }): boolean =>
   type === "image/png" || type === "image/jpeg";
 
 @customElement("strata-shape-picker")
 export class StrataShapePicker extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  @state() private file_: File | null = null; // that becomes a shape
-  @query("input[type=file]") private input_!: HTMLInputElement;
-  private readonly drop_ = new FileDrop(
+  @state() private _file: File | null = null; // that becomes a shape
+  @query("input[type=file]") private _input!: HTMLInputElement;
+  private readonly _drop = new FileDrop(
     this,
     ([file]) => file && this.take(file),
-    () => this.session.can_paint,
+    () => this.session.canPaint,
   );
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: grid;
@@ -117,8 +117,8 @@ export class StrataShapePicker extends LitElement {
       content: html`<svg viewBox="0 0 24 24" aria-hidden="true">${content}</svg><span class="visually-hidden">${texts.brush[value]}</span>`,
     });
     return html`<span class="caption">${texts.brush.shape}</span>
-      <div class="area ${this.drop_.over ? "over" : ""}">
-        ${radio_group<ToolShape>({
+      <div class="area ${this._drop.over ? "over" : ""}">
+        ${radioGroup<ToolShape>({
           label: texts.brush.shape,
           class: "shapes",
           choices: [
@@ -127,48 +127,48 @@ export class StrataShapePicker extends LitElement {
             ...session.shapes.list.map(({ id, name }) => ({
               value: id,
               title: name,
-              content: html`<span class="shape" ${styled({ "mask-image": `url(${shape_picture(id)})` })}></span
+              content: html`<span class="shape" ${styled({ "mask-image": `url(${shapePicture(id)})` })}></span
                 ><span class="visually-hidden">${name}</span>`,
             })),
           ],
           chosen: shape,
-          choose: (chosen) => session.painting.set_brush((brush) => (brush.shape = chosen)),
+          choose: (chosen) => session.painting.setBrush((brush) => (brush.shape = chosen)),
         })}
         ${
-          session.can_paint
-            ? html`<button aria-label=${words.new_shape} title=${words.new_hint} @click=${() => this.input_.click()}>${icon("plus")}</button>
-              <input type="file" accept="image/png,image/jpeg" hidden aria-label=${words.new_shape} @change=${this.on_file} />`
+          session.canPaint
+            ? html`<button aria-label=${words.new_shape} title=${words.new_hint} @click=${() => this._input.click()}>${icon("plus")}</button>
+              <input type="file" accept="image/png,image/jpeg" hidden aria-label=${words.new_shape} @change=${this.onFile} />`
             : nothing
         }
       </div>
       ${
-        tool && session.can_curate
+        tool && session.canCurate
           ? html`<strata-menu label=${texts.layers.options(tool.name)}>
             <button class="quiet" role="menuitem" @click=${() => void this.rename(tool)}>${icon("edit")}${words.rename}</button>
-            <button class="quiet" role="menuitem" @click=${() => void this.remove_tool(tool)}>${icon("trash")}${texts.layers.delete}</button>
+            <button class="quiet" role="menuitem" @click=${() => void this.removeTool(tool)}>${icon("trash")}${texts.layers.delete}</button>
           </strata-menu>`
           : nothing
       }
       ${
-        this.file_
-          ? html`<strata-shape-dialog .session=${session} .file=${this.file_} @closed=${() => (this.file_ = null)}></strata-shape-dialog>`
+        this._file
+          ? html`<strata-shape-dialog .session=${session} .file=${this._file} @closed=${() => (this._file = null)}></strata-shape-dialog>`
           : nothing
       }`;
   }
 
-  private on_file(): void {
-    this.file_ = this.input_.files?.[0] ?? null;
-    this.input_.value = "";
+  private onFile(): void {
+    this._file = this._input.files?.[0] ?? null;
+    this._input.value = "";
   }
 
   private take(file: File): void {
-    if (is_picture(file)) this.file_ = file;
+    if (isPicture(file)) this._file = file;
     else notices.show("problem", texts.shapes.unreadable(file.name));
   }
 
   private async rename(tool: Tool): Promise<void> {
     const words = texts.shapes;
-    const name = await ask_text({
+    const name = await askText({
       heading: words.rename_title(tool.name),
       label: words.name,
       text: tool.name,
@@ -178,7 +178,7 @@ export class StrataShapePicker extends LitElement {
       await this.session.shapes.rename(tool, name).catch((error: unknown) => notices.error(error));
   }
 
-  private async remove_tool(tool: Tool): Promise<void> {
+  private async removeTool(tool: Tool): Promise<void> {
     const words = texts.shapes;
     const question = {
       heading: words.delete_title(tool.name),

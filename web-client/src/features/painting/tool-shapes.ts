@@ -2,7 +2,7 @@
 // All people share them.
 
 import type { Api } from "../../net/api";
-import { compare_words } from "../../core/locale";
+import { compareWords } from "../../core/locale";
 import type { Tool, ToolEvent, ToolShape } from "../../core/protocol.gen";
 import type { ShapePart } from "../../domain/shape";
 import { notices } from "../../ui/notices";
@@ -16,24 +16,24 @@ export interface ToolShapesHost {
 
 export class ToolShapes {
   list: Tool[] = []; // by name
-  private wanted_ = false;
+  private _wanted = false;
 
   constructor(
-    private readonly api_: Api,
-    private readonly host_: ToolShapesHost,
+    private readonly _api: Api,
+    private readonly _host: ToolShapesHost,
   ) {}
 
   /** Somebody looks at them: from now on they are kept up to date. */
   want(): void {
-    if (this.wanted_) return;
-    this.wanted_ = true;
+    if (this._wanted) return;
+    this._wanted = true;
     this.refresh();
   }
 
   /** After a connection that was lost: what happened meanwhile was not told. */
   refresh(): void {
-    if (!this.wanted_) return;
-    this.api_.tools().then(
+    if (!this._wanted) return;
+    this._api.tools().then(
       (tools) => this.take(tools),
       (error: unknown) => notices.error(error),
     );
@@ -44,23 +44,23 @@ export class ToolShapes {
   }
 
   async add(file: Blob, name: string, part: ShapePart): Promise<void> {
-    const tool = await this.api_.create_tool(file, name, part);
+    const tool = await this._api.createTool(file, name, part);
     this.put(tool);
-    this.host_.choose(tool.id);
+    this._host.choose(tool.id);
   }
 
   async rename(tool: Tool, name: string): Promise<void> {
-    this.put(await this.api_.rename_tool(tool.id, name));
+    this.put(await this._api.renameTool(tool.id, name));
   }
 
   async remove(tool: Tool): Promise<void> {
-    if (this.host_.chosen() === tool.id) this.host_.choose("disc");
-    await this.api_.delete_tool(tool.id);
+    if (this._host.chosen() === tool.id) this._host.choose("disc");
+    await this._api.deleteTool(tool.id);
     this.take(this.list.filter(({ id }) => id !== tool.id));
   }
 
-  on_event({ event, tool_id, tool }: ToolEvent): void {
-    if (event === "deleted") this.take(this.list.filter(({ id }) => id !== tool_id));
+  onEvent({ event, tool_id: toolId, tool }: ToolEvent): void {
+    if (event === "deleted") this.take(this.list.filter(({ id }) => id !== toolId));
     else if (tool) this.put(tool);
   }
 
@@ -69,14 +69,14 @@ export class ToolShapes {
   }
 
   private take(tools: Tool[]): void {
-    const before = this.find(this.host_.chosen());
-    this.list = tools.sort((a, b) => compare_words(a.name, b.name));
+    const before = this.find(this._host.chosen());
+    this.list = tools.sort((a, b) => compareWords(a.name, b.name));
     if (before && !this.find(before.id)) {
-      this.host_.choose("disc");
+      this._host.choose("disc");
       notices.show("info", texts.shapes.gone(before.name));
     }
-    this.host_.changed();
+    this._host.changed();
   }
 }
 
-export const shape_picture = (tool: number): string => `/api/v1/tools/${tool}/picture`;
+export const shapePicture = (tool: number): string => `/api/v1/tools/${tool}/picture`;

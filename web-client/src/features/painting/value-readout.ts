@@ -2,15 +2,15 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
-import { label_of } from "../../domain/cells";
-import { format_fixed, format_place } from "../../core/locale";
-import { color_of, css_color } from "../../domain/palette";
+import { labelOf } from "../../domain/cells";
+import { formatFixed, formatPlace } from "../../core/locale";
+import { colorOf, cssColor } from "../../domain/palette";
 import type { Layer } from "../../core/types";
-import { describe_value } from "../../session/layer-values";
-import { follow_session } from "../../session/follow-session";
+import { describeValue } from "../../session/layer-values";
+import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
 import { styled } from "../../ui/styled";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 @customElement("strata-value-readout")
@@ -19,11 +19,11 @@ export class StrataValueReadout extends LitElement {
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: block;
@@ -75,7 +75,7 @@ export class StrataValueReadout extends LitElement {
       .reverse()
       .filter((layer) => layers.visible(layer) || layer === layers.selected);
     const decimals = model.unit === "mm" ? 2 : model.unit === "cm" ? 3 : 4;
-    const coordinates = format_place(picked.position.map((each) => format_fixed(each, decimals)));
+    const coordinates = formatPlace(picked.position.map((each) => formatFixed(each, decimals)));
     return html`<div class="card">
       ${shown.map((layer) => this.line(layer))}
       <span class="position numeric">${texts.value.position} ${coordinates} ${model.unit}</span>
@@ -85,11 +85,11 @@ export class StrataValueReadout extends LitElement {
   private line(layer: Layer): TemplateResult {
     const found = this.session.pointer.picked?.values?.[layer.slug];
     const valid = found?.valid === true && found.value !== undefined;
-    const color = valid ? color_of(this.session.layers.palette(layer), found.value!) : null;
+    const color = valid ? colorOf(this.session.layers.palette(layer), found.value!) : null;
     return html`<span class="line">
-      ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}
-      <span class="ellipsis">${label_of(layer)}</span>
-      <b class=${valid ? "numeric" : "none"}>${valid ? describe_value(layer, found.value!, this.session.tables) : texts.value.nothing}</b>
+      ${color ? html`<span class="swatch" ${styled({ background: cssColor(color) })}></span>` : nothing}
+      <span class="ellipsis">${labelOf(layer)}</span>
+      <b class=${valid ? "numeric" : "none"}>${valid ? describeValue(layer, found.value!, this.session.tables) : texts.value.nothing}</b>
     </span>`;
   }
 }

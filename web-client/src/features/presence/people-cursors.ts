@@ -2,16 +2,16 @@
 // glides between; whether a place is hidden behind the surface the server is asked, one place at a
 // time: what would a ray through its pixel meet?
 
-import { new_id } from "../../net/api";
-import { bounding_radius, type CameraMessage, type OrbitCamera } from "../../math/camera";
+import { newId } from "../../net/api";
+import { boundingRadius, type CameraMessage, type OrbitCamera } from "../../math/camera";
 import type { Picked, PresencePointer, PresenceUser } from "../../core/protocol.gen";
 import { dot, length, mix, subtract, type Vec3 } from "../../math/vector";
 
-const kGlide_ms = { least: 90, most: 400 };
-const kFadesAfter_ms = 10_000;
-const kAskEvery_ms = 100;
-const kGiveUpAfter_ms = 2000;
-const kSlack_px = 4; // the ray's end and the place may differ by so much, seen from the side
+const kGlideMs = { least: 90, most: 400 };
+const kFadesAfterMs = 10_000;
+const kAskEveryMs = 100;
+const kGiveUpAfterMs = 2000;
+const kSlackPx = 4; // the ray's end and the place may differ by so much, seen from the side
 
 export interface PersonCursor {
   viewer: PresenceUser;
@@ -28,15 +28,15 @@ export interface PeopleCursorsHost {
   scale(): number;
   ready(): boolean;
   ask(id: string, x: number, y: number, camera: CameraMessage): void;
-  wants_less_motion(): boolean;
+  wantsLessMotion(): boolean;
 }
 
 interface Cursor {
   viewer: PresenceUser;
   from: Vec3;
   to: Vec3;
-  moved_ms: number;
-  glide_ms: number;
+  movedMs: number;
+  glideMs: number;
   radius: number | null; // world
   hidden: boolean;
   asked: boolean; // nothing changed since it was asked whether it is hidden
@@ -44,49 +44,49 @@ interface Cursor {
 
 export class PeopleCursors {
   /** Set by the element that draws them. */
-  on_change: () => void = () => {};
+  onChange: () => void = () => {};
 
-  private readonly cursors_ = new Map<string, Cursor>(); // by session
-  private question_: {
+  private readonly _cursors = new Map<string, Cursor>(); // by session
+  private _question: {
     id: string;
     session: string;
     to: Vec3;
     back: Vec3;
     slack: number;
-    at_ms: number;
+    atMs: number;
   } | null = null;
-  private ask_timer_: ReturnType<typeof setTimeout> | null = null;
-  private fade_timer_: ReturnType<typeof setTimeout> | null = null;
+  private _askTimer: ReturnType<typeof setTimeout> | null = null;
+  private _fadeTimer: ReturnType<typeof setTimeout> | null = null;
 
-  constructor(private readonly host_: PeopleCursorsHost) {}
+  constructor(private readonly _host: PeopleCursorsHost) {}
 
   /** Everybody but this connection. */
   receive(viewers: readonly PresenceUser[]): void {
     const pointing = viewers.filter(({ pointer }) => pointer);
-    for (const session of this.cursors_.keys())
-      if (!pointing.some((viewer) => viewer.session === session)) this.cursors_.delete(session);
+    for (const session of this._cursors.keys())
+      if (!pointing.some((viewer) => viewer.session === session)) this._cursors.delete(session);
     for (const viewer of pointing) this.put(viewer, viewer.pointer!);
-    this.wait_to_fade();
+    this.waitToFade();
     this.ask();
-    this.on_change();
+    this.onChange();
   }
 
   /** The view is another, or the surface: what was hidden may be seen. */
-  look_again(): void {
-    for (const cursor of this.cursors_.values()) cursor.asked = false;
+  lookAgain(): void {
+    for (const cursor of this._cursors.values()) cursor.asked = false;
     this.ask();
   }
 
   /** Those whose place is in the window, as they are to be drawn now. */
   now(): PersonCursor[] {
-    const [camera, scale, now] = [this.host_.camera(), this.host_.scale(), performance.now()];
-    return [...this.cursors_.values()].flatMap((cursor) => {
+    const [camera, scale, now] = [this._host.camera(), this._host.scale(), performance.now()];
+    return [...this._cursors.values()].flatMap((cursor) => {
       const place = this.place(cursor, now);
-      const seen = camera.project_inside(place);
+      const seen = camera.projectInside(place);
       if (!seen) return [];
       const radius =
-        cursor.radius === null ? null : cursor.radius / camera.unit_per_pixel(seen.depth) / scale;
-      const hidden = cursor.hidden || camera.cuts_away(place);
+        cursor.radius === null ? null : cursor.radius / camera.unitPerPixel(seen.depth) / scale;
+      const hidden = cursor.hidden || camera.cutsAway(place);
       return [
         {
           viewer: cursor.viewer,
@@ -94,7 +94,7 @@ export class PeopleCursors {
           y: seen.y / scale,
           radius,
           hidden,
-          faded: now - cursor.moved_ms >= kFadesAfter_ms,
+          faded: now - cursor.movedMs >= kFadesAfterMs,
         },
       ];
     });
@@ -103,52 +103,52 @@ export class PeopleCursors {
   /** One of them is on its way: they are to be drawn again with the next picture. */
   get gliding(): boolean {
     const now = performance.now();
-    return [...this.cursors_.values()].some(({ moved_ms, glide_ms }) => now < moved_ms + glide_ms);
+    return [...this._cursors.values()].some(({ movedMs, glideMs }) => now < movedMs + glideMs);
   }
 
   /** True when it was the answer to a question of these. */
   answer({ id, hit, position }: Picked): boolean {
-    const { question_: question } = this;
+    const { _question: question } = this;
     if (!question || id !== question.id) return false;
-    this.question_ = null;
-    const cursor = this.cursors_.get(question.session);
+    this._question = null;
+    const cursor = this._cursors.get(question.session);
     // A place that has moved on is asked for again.
     if (cursor && cursor.to === question.to) {
       cursor.hidden =
         hit &&
         position !== undefined &&
         dot(subtract(position, question.to), question.back) > question.slack;
-      this.on_change();
+      this.onChange();
     }
     this.ask();
     return true;
   }
   refused(ref: string | undefined): boolean {
-    if (ref === undefined || ref !== this.question_?.id) return false;
-    this.question_ = null;
+    if (ref === undefined || ref !== this._question?.id) return false;
+    this._question = null;
     return true;
   }
   /** The connection is gone, and the answer with it. */
   reset(): void {
-    this.question_ = null;
-    this.cursors_.clear();
-    this.on_change();
+    this._question = null;
+    this._cursors.clear();
+    this.onChange();
   }
 
   stop(): void {
-    if (this.ask_timer_) clearTimeout(this.ask_timer_);
-    if (this.fade_timer_) clearTimeout(this.fade_timer_);
-    this.ask_timer_ = this.fade_timer_ = null;
-    this.cursors_.clear();
-    this.on_change = () => {};
+    if (this._askTimer) clearTimeout(this._askTimer);
+    if (this._fadeTimer) clearTimeout(this._fadeTimer);
+    this._askTimer = this._fadeTimer = null;
+    this._cursors.clear();
+    this.onChange = () => {};
   }
 
   private put(viewer: PresenceUser, { position, radius }: PresencePointer): void {
     const now = performance.now();
-    const known = this.cursors_.get(viewer.session);
+    const known = this._cursors.get(viewer.session);
     if (!known) {
-      const still = { from: position, to: position, moved_ms: now, glide_ms: 0 };
-      this.cursors_.set(viewer.session, {
+      const still = { from: position, to: position, movedMs: now, glideMs: 0 };
+      this._cursors.set(viewer.session, {
         viewer,
         ...still,
         radius: radius ?? null,
@@ -162,62 +162,62 @@ export class PeopleCursors {
     if (length(subtract(position, known.to)) === 0) return;
     known.from = this.place(known, now);
     known.to = position;
-    known.glide_ms = this.host_.wants_less_motion()
+    known.glideMs = this._host.wantsLessMotion()
       ? 0
-      : Math.min(kGlide_ms.most, Math.max(kGlide_ms.least, now - known.moved_ms));
-    known.moved_ms = now;
+      : Math.min(kGlideMs.most, Math.max(kGlideMs.least, now - known.movedMs));
+    known.movedMs = now;
     known.asked = false;
   }
 
-  private place({ from, to, moved_ms, glide_ms }: Cursor, now: number): Vec3 {
-    return now >= moved_ms + glide_ms ? to : mix(from, to, (now - moved_ms) / glide_ms);
+  private place({ from, to, movedMs, glideMs }: Cursor, now: number): Vec3 {
+    return now >= movedMs + glideMs ? to : mix(from, to, (now - movedMs) / glideMs);
   }
 
-  private wait_to_fade(): void {
-    if (this.fade_timer_) clearTimeout(this.fade_timer_);
-    this.fade_timer_ = null;
+  private waitToFade(): void {
+    if (this._fadeTimer) clearTimeout(this._fadeTimer);
+    this._fadeTimer = null;
     const now = performance.now();
-    const waits = [...this.cursors_.values()]
-      .map(({ moved_ms }) => moved_ms + kFadesAfter_ms - now)
+    const waits = [...this._cursors.values()]
+      .map(({ movedMs }) => movedMs + kFadesAfterMs - now)
       .filter((wait) => wait > 0);
     if (waits.length === 0) return;
-    this.fade_timer_ = setTimeout(
+    this._fadeTimer = setTimeout(
       () => {
-        this.on_change();
-        this.wait_to_fade();
+        this.onChange();
+        this.waitToFade();
       },
       Math.min(...waits) + 1,
     );
   }
 
   private ask(): void {
-    if (this.ask_timer_ || !this.host_.ready()) return;
+    if (this._askTimer || !this._host.ready()) return;
     const now = performance.now();
     // its answer asks on
-    if (this.question_ && now - this.question_.at_ms < kGiveUpAfter_ms) return;
-    const camera = this.host_.camera();
-    for (const [session, cursor] of this.cursors_) {
+    if (this._question && now - this._question.atMs < kGiveUpAfterMs) return;
+    const camera = this._host.camera();
+    for (const [session, cursor] of this._cursors) {
       if (cursor.asked) continue;
-      const seen = camera.project_inside(cursor.to);
+      const seen = camera.projectInside(cursor.to);
       if (!seen) continue;
       cursor.asked = true;
       const slack = Math.max(
-        kSlack_px * camera.unit_per_pixel(seen.depth),
-        1e-3 * bounding_radius(camera.bounds),
+        kSlackPx * camera.unitPerPixel(seen.depth),
+        1e-3 * boundingRadius(camera.bounds),
       );
-      this.question_ = {
-        id: new_id(),
+      this._question = {
+        id: newId(),
         session,
         to: cursor.to,
         back: camera.axes().back,
         slack,
-        at_ms: now,
+        atMs: now,
       };
-      this.host_.ask(this.question_.id, seen.x, seen.y, camera.message());
-      this.ask_timer_ = setTimeout(() => {
-        this.ask_timer_ = null;
+      this._host.ask(this._question.id, seen.x, seen.y, camera.message());
+      this._askTimer = setTimeout(() => {
+        this._askTimer = null;
         this.ask();
-      }, kAskEvery_ms);
+      }, kAskEveryMs);
       return;
     }
   }

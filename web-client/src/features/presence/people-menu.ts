@@ -3,14 +3,14 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { format_list } from "../../core/locale";
-import { called, initials, name_with } from "../../domain/people";
-import { ink_on, type PersonHere } from "../../domain/people-here";
-import { follow_session } from "../../session/follow-session";
+import { formatList } from "../../core/locale";
+import { called, initials, nameWith } from "../../domain/people";
+import { inkOn, type PersonHere } from "../../domain/people-here";
+import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
 import type { ModelSession } from "../../session/model-session";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
 import { texts } from "../../texts";
 
@@ -20,25 +20,25 @@ const kMostFacesOnPhone = 2;
 @customElement("strata-people-menu")
 export class StrataPeopleMenu extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  private readonly narrow_ = matchMedia("(max-width: 820px)");
-  private readonly resized_ = (): void => this.requestUpdate();
+  private readonly _narrow = matchMedia("(max-width: 820px)");
+  private readonly _resized = (): void => this.requestUpdate();
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   override connectedCallback(): void {
     super.connectedCallback();
-    this.narrow_.addEventListener("change", this.resized_);
+    this._narrow.addEventListener("change", this._resized);
   }
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.narrow_.removeEventListener("change", this.resized_);
+    this._narrow.removeEventListener("change", this._resized);
   }
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: inline-flex;
@@ -111,15 +111,15 @@ export class StrataPeopleMenu extends LitElement {
     const others = people.filter(({ viewer }) => viewer !== null);
     // On a phone, who is alone has their face at the menu of the account already, and the title
     // needs the room.
-    if (this.narrow_.matches && people.length === 1 && others.length === 0 && !together.leading)
+    if (this._narrow.matches && people.length === 1 && others.length === 0 && !together.leading)
       return html``;
-    const most = this.narrow_.matches ? kMostFacesOnPhone : kMostFaces;
+    const most = this._narrow.matches ? kMostFacesOnPhone : kMostFaces;
     const seen = [
       ...people.slice(0, most).map(initials),
       ...(people.length > most ? [`+${people.length - most}`] : []),
     ].join(" ");
-    const label = `${texts.people.here(people.length)}: ${format_list(people.map((person) => this.name(person)))}`;
-    return html`<strata-menu wide label=${name_with(label, seen)}>
+    const label = `${texts.people.here(people.length)}: ${formatList(people.map((person) => this.name(person)))}`;
+    return html`<strata-menu wide label=${nameWith(label, seen)}>
       <span class="faces" slot="face">${this.faces(most)}</span>
       ${others.length === 0 ? html`<p class="alone">${words.nobody_else}</p>` : nothing}
       ${repeat(
@@ -154,13 +154,13 @@ export class StrataPeopleMenu extends LitElement {
     const { viewer } = person;
     if (!viewer) return html``;
     const follows = together.followed?.session === viewer.session;
-    const able = follows || together.can_follow(person);
-    const follows_back = person.following.includes(session);
+    const able = follows || together.canFollow(person);
+    const followsBack = person.following.includes(session);
     const hint = !able
       ? words.follows_you
       : person.leading
         ? words.asks
-        : follows_back
+        : followsBack
           ? words.follows_you
           : "";
     const label = follows
@@ -172,7 +172,7 @@ export class StrataPeopleMenu extends LitElement {
       class="quiet"
       role="menuitem"
       ?disabled=${!able}
-      @click=${() => (follows ? together.stop_following() : together.follow(viewer))}
+      @click=${() => (follows ? together.stopFollowing() : together.follow(viewer))}
     >
       ${face(person, "")}<span class="who"><b class="ellipsis">${label}</b>${hint ? html`<span>${hint}</span>` : nothing}</span>
     </button>`;
@@ -181,7 +181,7 @@ export class StrataPeopleMenu extends LitElement {
 
 function face(person: PersonHere, title: string): TemplateResult {
   const { color } = person;
-  return html`<span class="face ${person.leading ? "leading" : ""}" title=${title} ${styled({ background: color, color: ink_on(color) })}
+  return html`<span class="face ${person.leading ? "leading" : ""}" title=${title} ${styled({ background: color, color: inkOn(color) })}
     >${initials(person)}</span
   >`;
 }

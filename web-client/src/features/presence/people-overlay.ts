@@ -4,29 +4,29 @@
 import { css, html, LitElement, svg, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { ink_on } from "../../domain/people-here";
-import { follow_session } from "../../session/follow-session";
+import { inkOn } from "../../domain/people-here";
+import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
 import type { PersonCursor } from "./people-cursors";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
-import { name_of } from "./together";
+import { nameOf } from "./together";
 
-const kLeastRadius_px = 4; // a smaller brush is a pointer
-const kRoomForName_px = 150;
+const kLeastRadiusPx = 4; // a smaller brush is a pointer
+const kRoomForNamePx = 150;
 
 @customElement("strata-people-overlay")
 export class StrataPeopleOverlay extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  private next_ = 0; // of requestAnimationFrame; 0: none
+  private _next = 0; // of requestAnimationFrame; 0: none
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         position: absolute;
@@ -86,12 +86,12 @@ export class StrataPeopleOverlay extends LitElement {
   }
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    if (this.next_) cancelAnimationFrame(this.next_);
-    this.next_ = 0;
+    if (this._next) cancelAnimationFrame(this._next);
+    this._next = 0;
   }
 
   override willUpdate(): void {
-    this.session.cursors.on_change = () => this.requestUpdate();
+    this.session.cursors.onChange = () => this.requestUpdate();
   }
 
   override render(): TemplateResult {
@@ -103,23 +103,23 @@ export class StrataPeopleOverlay extends LitElement {
   }
 
   override updated(): void {
-    if (this.next_ || !this.session.cursors.gliding) return;
-    this.next_ = requestAnimationFrame(() => {
-      this.next_ = 0;
+    if (this._next || !this.session.cursors.gliding) return;
+    this._next = requestAnimationFrame(() => {
+      this._next = 0;
       this.requestUpdate();
     });
   }
 
   private person({ viewer, x, y, radius, hidden, faded }: PersonCursor): TemplateResult {
     const { color } = viewer;
-    const leftwards = x > this.clientWidth - kRoomForName_px && x > kRoomForName_px;
+    const leftwards = x > this.clientWidth - kRoomForNamePx && x > kRoomForNamePx;
     const classes = [
       "person",
       leftwards ? "leftwards" : "",
       hidden ? "hidden" : "",
       faded ? "faded" : "",
     ].join(" ");
-    const brush = radius !== null && radius >= kLeastRadius_px;
+    const brush = radius !== null && radius >= kLeastRadiusPx;
     const beside = brush ? Math.min(radius, 40) * 0.7 : 0; // the name lies at the rim of the brush
     return html`<div class=${classes} data-session=${viewer.session} ${styled({ transform: `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)` })}>
       <svg>
@@ -130,8 +130,8 @@ export class StrataPeopleOverlay extends LitElement {
             : svg`<path d="M0 0l5.2 14.5 2.4-6.1 6.3-2.200z" fill=${color} stroke="var(--mark-light)" stroke-width="1.3" />`
         }
       </svg>
-      <b class="ellipsis" ${styled({ background: color, color: ink_on(color), transform: brush ? `translate(${leftwards ? -beside : beside}px, ${beside - 8}px)` : null })}
-        >${name_of(viewer)}</b
+      <b class="ellipsis" ${styled({ background: color, color: inkOn(color), transform: brush ? `translate(${leftwards ? -beside : beside}px, ${beside - 8}px)` : null })}
+        >${nameOf(viewer)}</b
       >
     </div>`;
   }

@@ -3,16 +3,16 @@
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
-import { format_list } from "../../core/locale";
+import { formatList } from "../../core/locale";
 import { called } from "../../domain/people";
-import { ink_on } from "../../domain/people-here";
-import { follow_session } from "../../session/follow-session";
+import { inkOn } from "../../domain/people-here";
+import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import type { ModelSession } from "../../session/model-session";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
 import { texts } from "../../texts";
-import { name_of } from "./together";
+import { nameOf } from "./together";
 
 @customElement("strata-together-bar")
 export class StrataTogetherBar extends LitElement {
@@ -20,11 +20,11 @@ export class StrataTogetherBar extends LitElement {
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         position: absolute;
@@ -76,13 +76,13 @@ export class StrataTogetherBar extends LitElement {
     const words = texts.together;
     if (together.followed) {
       const { color } = together.followed;
-      const name = name_of(together.followed);
+      const name = nameOf(together.followed);
       return html`<div class="frame" ${styled({ "border-color": color })}></div>
         <div role="status">
           <button
             title=${words.stop_following}
-            ${styled({ background: color, color: ink_on(color) })}
-            @click=${() => together.stop_following()}
+            ${styled({ background: color, color: inkOn(color) })}
+            @click=${() => together.stopFollowing()}
           >
             <span class="ellipsis">${words.following(name)}</span><span class="key"> · ${words.escape_stops}</span>${icon("close")}
           </button>
@@ -90,7 +90,7 @@ export class StrataTogetherBar extends LitElement {
     }
     if (!together.leading) return html``;
     const { followers } = together;
-    const names = format_list(followers.map((person) => called(person)));
+    const names = formatList(followers.map((person) => called(person)));
     return html`<div role="status">
       <button title=${names === "" ? words.stop_leading : `${names}\n${words.stop_leading}`} @click=${() => together.lead(false)}>
         <span class="ellipsis">${words.leading(followers.length)}</span>${icon("close")}

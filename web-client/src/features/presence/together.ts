@@ -2,7 +2,7 @@
 // them, and what the others are told of all that.
 
 import { called } from "../../domain/people";
-import { followers_of, leads_back, people_here, type PersonHere } from "../../domain/people-here";
+import { followersOf, leadsBack, peopleHere, type PersonHere } from "../../domain/people-here";
 import type { Picked, PresenceUpdate, PresenceUser, ProblemMessage } from "../../core/protocol.gen";
 import { notices } from "../../ui/notices";
 import { PickProbe } from "../../session/pick-probe";
@@ -16,10 +16,7 @@ export interface TogetherHost {
   session(): string; // this connection
   ready(): boolean;
   send(shown: Omit<PresenceUpdate, "op">): void;
-  readonly view: Pick<
-    ViewControl,
-    "camera" | "gliding" | "look_along" | "look_alone" | "turn_around"
-  >;
+  readonly view: Pick<ViewControl, "camera" | "gliding" | "lookAlong" | "lookAlone" | "turnAround">;
   /** What is seen at a pixel of the window? */
   ask(id: string, x: number, y: number): void;
   changed(): void;
@@ -32,17 +29,17 @@ export class Together {
   /** The viewer that this person looks with, as last seen. */
   followed: PresenceUser | null = null;
 
-  private told_ = ""; // `viewers` as text, without what only moves
-  private shown_: Shown = { pointer: null };
-  private seen_ = ""; // the camera that `look_along` was called with, as text
-  private readonly invitations_ = new Map<string, number>(); // notices by session of who leads
-  private readonly middle_: PickProbe;
+  private _told = ""; // `viewers` as text, without what only moves
+  private _shown: Shown = { pointer: null };
+  private _seen = ""; // the camera that `look_along` was called with, as text
+  private readonly _invitations = new Map<string, number>(); // notices by session of who leads
+  private readonly _middle: PickProbe;
 
-  constructor(private readonly host_: TogetherHost) {
-    this.middle_ = new PickProbe({
-      ready: () => host_.ready(),
-      ask: (id, { x, y }) => host_.ask(id, x, y),
-      answered: (message) => this.on_middle(message),
+  constructor(private readonly _host: TogetherHost) {
+    this._middle = new PickProbe({
+      ready: () => _host.ready(),
+      ask: (id, { x, y }) => _host.ask(id, x, y),
+      answered: (message) => this.onMiddle(message),
     });
   }
 
@@ -50,92 +47,92 @@ export class Together {
    * What somebody is called who is here, or was: by their account's name where nothing else is
    * known.
    */
-  name_of(user: string): string {
+  nameOf(user: string): string {
     const here = this.people.find((person) => person.user === user);
     return called(here ?? { user });
   }
 
   get followers(): PersonHere[] {
-    return followers_of(this.people, this.host_.session());
+    return followersOf(this.people, this._host.session());
   }
 
   /**
    * Whether this person may look with somebody: there is a window of theirs, and it does not follow
    * this one.
    */
-  can_follow({ viewer }: PersonHere): boolean {
-    return viewer !== null && !leads_back(this.viewers, viewer.session, this.host_.session());
+  canFollow({ viewer }: PersonHere): boolean {
+    return viewer !== null && !leadsBack(this.viewers, viewer.session, this._host.session());
   }
 
   follow(viewer: PresenceUser): void {
     this.withdraw(viewer.session);
     if (this.followed?.session === viewer.session) return;
     this.followed = viewer;
-    this.seen_ = "";
+    this._seen = "";
     this.leading = false;
     this.tell();
   }
 
-  stop_following(): void {
+  stopFollowing(): void {
     if (!this.followed) return;
-    this.forget_followed();
+    this.forgetFollowed();
     this.tell();
   }
 
   lead(leading: boolean): void {
-    if (leading) this.forget_followed();
+    if (leading) this.forgetFollowed();
     this.leading = leading;
     this.tell();
   }
 
   show(shown: Shown): void {
-    this.shown_ = shown;
+    this._shown = shown;
     this.send();
   }
 
   receive(viewers: PresenceUser[]): void {
     this.viewers = viewers;
-    this.people = people_here(viewers, this.host_.session());
-    this.keep_up();
-    this.hear_invitations();
+    this.people = peopleHere(viewers, this._host.session());
+    this.keepUp();
+    this.hearInvitations();
     // Pointers and cameras move all the time: only for them the page need not be drawn again.
     const told = JSON.stringify(viewers, (name, value: unknown) =>
       name === "pointer" || name === "camera" ? undefined : value,
     );
-    if (told !== this.told_) this.host_.changed();
-    this.told_ = told;
+    if (told !== this._told) this._host.changed();
+    this._told = told;
   }
 
   /** The connection is there, again: the server knows nothing of what was told it before. */
   connected(): void {
-    this.seen_ = "";
+    this._seen = "";
     if (this.leading || this.followed) this.send();
   }
   disconnected(): void {
     this.viewers = this.people = [];
-    this.told_ = "";
-    this.middle_.reset();
+    this._told = "";
+    this._middle.reset();
   }
   /** The page is gone. */
   stop(): void {
     this.followed = null;
     this.leading = false;
-    this.shown_ = { pointer: null };
-    for (const notice of this.invitations_.values()) notices.dismiss(notice);
-    this.middle_.stop();
+    this._shown = { pointer: null };
+    for (const notice of this._invitations.values()) notices.dismiss(notice);
+    this._middle.stop();
   }
 
   /**
    * A camera says where it looks, not at what. Who goes on from here alone will turn around what
    * they see.
    */
-  came_to_rest(): void {
-    const { width, height } = this.host_.view.camera;
-    if (this.followed) this.middle_.ask({ x: width / 2, y: height / 2 });
+  cameToRest(): void {
+    const { width, height } = this._host.view.camera;
+    if (this.followed) this._middle.ask({ x: width / 2, y: height / 2 });
   }
   /** True when it was the answer to a question of this. */
   answer(message: Picked): boolean {
-    return this.middle_.answer(message);
+    return this._middle.answer(message);
   }
 
   /**
@@ -143,77 +140,77 @@ export class Together {
    * said and done.
    */
   refused({ ref, field, status, detail }: Omit<ProblemMessage, "op">): boolean {
-    if (this.middle_.refused(ref)) return true;
+    if (this._middle.refused(ref)) return true;
     if (field !== "follow") return false;
     const { followed } = this;
-    this.stop_following();
+    this.stopFollowing();
     if (!followed) return true; // they were left meanwhile
-    if (status === 404) notices.show("info", texts.together.left(name_of(followed)));
-    else notices.show("problem", texts.together.refused(name_of(followed)), detail);
+    if (status === 404) notices.show("info", texts.together.left(nameOf(followed)));
+    else notices.show("problem", texts.together.refused(nameOf(followed)), detail);
     return true;
   }
 
-  private keep_up(): void {
+  private keepUp(): void {
     const { followed } = this;
     if (!followed) return;
     const now = this.viewers.find(({ session }) => session === followed.session);
     if (!now) {
-      this.stop_following();
-      notices.show("info", texts.together.left(name_of(followed)));
+      this.stopFollowing();
+      notices.show("info", texts.together.left(nameOf(followed)));
       return;
     }
     this.followed = now;
     const seen = now.camera && JSON.stringify(now.camera);
-    if (!now.camera || !seen || seen === this.seen_) return;
-    this.seen_ = seen;
-    this.host_.view.look_along(now.camera);
+    if (!now.camera || !seen || seen === this._seen) return;
+    this._seen = seen;
+    this._host.view.lookAlong(now.camera);
   }
 
-  private on_middle({ hit, position }: Picked): void {
-    const { view } = this.host_;
+  private onMiddle({ hit, position }: Picked): void {
+    const { view } = this._host;
     if (!this.followed || view.gliding || !hit || !position) return;
-    const depth = view.camera.depth_of(position);
-    if (depth > 0) view.turn_around(depth);
+    const depth = view.camera.depthOf(position);
+    if (depth > 0) view.turnAround(depth);
   }
 
   /** Who asks to look with them is told of once. */
-  private hear_invitations(): void {
+  private hearInvitations(): void {
     const leaders = this.viewers.filter(
-      ({ leading, session }) => leading && session !== this.host_.session(),
+      ({ leading, session }) => leading && session !== this._host.session(),
     );
-    for (const session of this.invitations_.keys())
+    for (const session of this._invitations.keys())
       if (!leaders.some((leader) => leader.session === session)) this.withdraw(session, true);
     for (const leader of leaders) {
-      if (this.invitations_.has(leader.session)) continue;
+      if (this._invitations.has(leader.session)) continue;
       const words = texts.together;
       const link = { label: words.accept, act: () => this.follow(leader) };
       const known = leader.session === this.followed?.session;
-      this.invitations_.set(
+      this._invitations.set(
         leader.session,
-        known ? 0 : notices.show("info", words.invites(name_of(leader)), "", link),
+        known ? 0 : notices.show("info", words.invites(nameOf(leader)), "", link),
       );
     }
   }
 
   private withdraw(session: string, forget = false): void {
-    notices.dismiss(this.invitations_.get(session) ?? 0);
-    if (forget) this.invitations_.delete(session);
+    notices.dismiss(this._invitations.get(session) ?? 0);
+    if (forget) this._invitations.delete(session);
   }
 
-  private forget_followed(): void {
+  private forgetFollowed(): void {
     if (!this.followed) return;
     this.followed = null;
-    this.host_.view.look_alone();
+    this._host.view.lookAlone();
   }
 
   private tell(): void {
     this.send();
-    this.host_.changed();
+    this._host.changed();
   }
 
   private send(): void {
-    const { leading, followed, shown_: shown } = this;
-    this.host_.send({
+    const { leading, followed, _shown: shown } = this;
+    this._host.send({
       ...shown,
       ...(leading ? { leading } : {}),
       ...(followed ? { follow: followed.session } : {}),
@@ -221,5 +218,5 @@ export class Together {
   }
 }
 
-export const name_of = ({ name, full_name }: PresenceUser): string =>
-  called({ user: name, full_name: full_name ?? "" });
+export const nameOf = ({ name, full_name: fullName }: PresenceUser): string =>
+  called({ user: name, full_name: fullName ?? "" });

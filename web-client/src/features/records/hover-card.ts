@@ -4,30 +4,30 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
 import { beside } from "../../ui/beside";
-import { first_picture, label_of, telling_columns } from "../../domain/cells";
-import { css_color, record_color } from "../../domain/palette";
-import { follow_session } from "../../session/follow-session";
+import { firstPicture, labelOf, tellingColumns } from "../../domain/cells";
+import { cssColor, recordColor } from "../../domain/palette";
+import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
-import { shown_value } from "../../session/fields/shown-value";
-import { shared_styles } from "../../ui/styles";
+import { shownValue } from "../../session/fields/shown-value";
+import { sharedStyles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
 import { texts } from "../../texts";
 
 const kMostLines = 4;
-const kGap_px = 18; // the pointer's own size
+const kGapPx = 18; // the pointer's own size
 
 @customElement("strata-hover-card")
 export class StrataHoverCard extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  @query("section") private section_!: HTMLElement | null;
+  @query("section") private _section!: HTMLElement | null;
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: block;
@@ -97,14 +97,14 @@ export class StrataHoverCard extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     this.setAttribute("aria-hidden", "true");
-    addEventListener("keydown", this.on_key, { capture: true }); // whatever has the keyboard
+    addEventListener("keydown", this.onKey, { capture: true }); // whatever has the keyboard
   }
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    removeEventListener("keydown", this.on_key, { capture: true });
+    removeEventListener("keydown", this.onKey, { capture: true });
   }
 
-  private readonly on_key = ({ key }: KeyboardEvent): void => {
+  private readonly onKey = ({ key }: KeyboardEvent): void => {
     if (key === "Escape") this.session.hovered.end();
   };
 
@@ -114,23 +114,23 @@ export class StrataHoverCard extends LitElement {
     const table = layer?.table === undefined ? null : session.tables.find(layer.table);
     const record = table && key !== undefined ? session.tables.record(table.id, key) : null;
     if (!layer || !table || !record) return html``;
-    const color = record_color(session.layers.palette(layer), record);
-    const picture = first_picture(table, record);
-    const told = telling_columns(table, record).slice(0, kMostLines);
+    const color = recordColor(session.layers.palette(layer), record);
+    const picture = firstPicture(table, record);
+    const told = tellingColumns(table, record).slice(0, kMostLines);
     return html`<section>
       <div class="row">
-        ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}
+        ${color ? html`<span class="swatch" ${styled({ background: cssColor(color) })}></span>` : nothing}
         <b class="ellipsis">${session.tables.title(table, record) || texts.tables.record(record.key)}</b>
       </div>
-      ${picture === null ? nothing : html`<img src=${session.api.attachment_url(picture, 256)} alt="" />`}
+      ${picture === null ? nothing : html`<img src=${session.api.attachmentUrl(picture, 256)} alt="" />`}
       ${
         told.length === 0
           ? nothing
           : html`<dl>
             ${told.map(
               (column) =>
-                html`<dt class="ellipsis">${label_of(column)}</dt>
-                  <dd>${shown_value(session, column, record.values[column.slug] ?? null)}${column.unit ? ` ${column.unit}` : nothing}</dd>`,
+                html`<dt class="ellipsis">${labelOf(column)}</dt>
+                  <dd>${shownValue(session, column, record.values[column.slug] ?? null)}${column.unit ? ` ${column.unit}` : nothing}</dd>`,
             )}
           </dl>`
       }
@@ -139,7 +139,7 @@ export class StrataHoverCard extends LitElement {
 
   /** Only here is it known how large the card is. */
   override updated(): void {
-    const { section_: section } = this;
+    const { _section: section } = this;
     const { at } = this.session.pointer;
     if (!section || !at) return;
     const { scale } = this.session.view;
@@ -148,7 +148,7 @@ export class StrataHoverCard extends LitElement {
       [at.x / scale, at.y / scale],
       size,
       { width: this.clientWidth, height: this.clientHeight },
-      kGap_px,
+      kGapPx,
     );
     section.style.visibility = place ? "visible" : "hidden";
     section.style.left = `${place?.left ?? 0}px`;

@@ -5,13 +5,13 @@ import { ApiError, type Api } from "../../net/api";
 import type { CameraMessage } from "../../math/camera";
 import type { Point } from "../../net/connection";
 import type { PointerSample } from "../../ui/input";
-import { mark_columns, mark_length, marks_of, type MarkKind } from "../../domain/marks";
-import { format_length, metres_per } from "../../domain/measure";
+import { markColumns, markLength, marksOf, type MarkKind } from "../../domain/marks";
+import { formatLength, metresPer } from "../../domain/measure";
 import type { Column, MarkPlace, TableRecord } from "../../core/protocol.gen";
 import {
-  length_seen,
-  line_on_surface,
-  steps_along,
+  lengthSeen,
+  lineOnSurface,
+  stepsAlong,
   type Measures,
   type Step,
 } from "../../domain/surface-line";
@@ -43,108 +43,106 @@ interface Target {
 const kMostTries = 5; // where others change the record at the same time
 const words = texts.marks;
 
-const metres_of = (lines: readonly MarkPlace[][], { unit }: Model): number =>
-  lines.reduce((sum, coordinates) => sum + mark_length({ coordinates }), 0) * metres_per(unit);
+const metresOf = (lines: readonly MarkPlace[][], { unit }: Model): number =>
+  lines.reduce((sum, coordinates) => sum + markLength({ coordinates }), 0) * metresPer(unit);
 
 export class MarkDrawing {
-  private readonly chosen_ = new Map<string, number>(); // ids of columns, by table and kind
-  private work_: Promise<void> = Promise.resolve(); // one after the other
-  private notice_ = 0; // that offers to take the newest back
-  private readonly measure_: LineMeasure<Step>; // of the line that is being drawn
+  private readonly _chosen = new Map<string, number>(); // ids of columns, by table and kind
+  private _work: Promise<void> = Promise.resolve(); // one after the other
+  private _notice = 0; // that offers to take the newest back
+  private readonly _measure: LineMeasure<Step>; // of the line that is being drawn
 
   constructor(
-    private readonly api_: Api,
-    private readonly host_: MarkDrawingHost,
+    private readonly _api: Api,
+    private readonly _host: MarkDrawingHost,
   ) {
-    this.measure_ = new LineMeasure({
-      look_along: async (path) =>
-        this.look_along(host_.model()!, host_.view.camera.message(), path),
-      metres_along: (steps) =>
-        length_seen(steps, this.measures()) * metres_per(host_.model()!.unit),
-      changed: () => host_.changed(),
+    this._measure = new LineMeasure({
+      lookAlong: async (path) => this.lookAlong(_host.model()!, _host.view.camera.message(), path),
+      metresAlong: (steps) => lengthSeen(steps, this.measures()) * metresPer(_host.model()!.unit),
+      changed: () => _host.changed(),
     });
   }
 
   /** Of what is being drawn, to the pointer; null where that is not known. */
-  get metres_so_far(): number | null {
-    return this.measure_.metres;
+  get metresSoFar(): number | null {
+    return this._measure.metres;
   }
 
   /** Of the layer that is painted on: where such marks can go. */
   columns(kind: MarkKind): Column[] {
-    const { table: id } = this.host_.layers.selected ?? {};
-    const table = id === undefined ? null : this.host_.tables.find(id);
-    return table ? mark_columns(table, kind) : [];
+    const { table: id } = this._host.layers.selected ?? {};
+    const table = id === undefined ? null : this._host.tables.find(id);
+    return table ? markColumns(table, kind) : [];
   }
   /** Where they go. */
   column(kind: MarkKind): Column | null {
     const columns = this.columns(kind);
-    const chosen = this.chosen_.get(`${this.host_.layers.selected?.table} ${kind}`);
+    const chosen = this._chosen.get(`${this._host.layers.selected?.table} ${kind}`);
     return columns.find(({ id }) => id === chosen) ?? columns[0] ?? null;
   }
-  choose_column(table: number, { id, kind }: Column): void {
-    this.chosen_.set(`${table} ${kind}`, id);
-    this.host_.changed();
+  chooseColumn(table: number, { id, kind }: Column): void {
+    this._chosen.set(`${table} ${kind}`, id);
+    this._host.changed();
   }
 
   /** False: there is no record to draw for, and the person was told. */
-  begin_line(): boolean {
+  beginLine(): boolean {
     if (!this.target("line")) return false;
-    this.host_.painting.stroking = true;
+    this._host.painting.stroking = true;
     return true;
   }
 
   /** More of it is drawn, or taken back; null: no longer. */
-  line_changed(outline: Outline | null): void {
-    this.measure_.follow(outline);
+  lineChanged(outline: Outline | null): void {
+    this._measure.follow(outline);
   }
 
-  finish_line(path: Point[]): void {
+  finishLine(path: Point[]): void {
     const target = this.target("line");
     if (!target) return;
-    const seen_by = this.host_.view.camera.message();
+    const seenBy = this._host.view.camera.message();
     const measures = this.measures();
     this.queue(async () => {
-      const steps = await this.look_along(target.model, seen_by, path);
-      const lines = await line_on_surface(steps, measures, (from, to, step) =>
-        this.nearest_along(target.model, from, to, step),
+      const steps = await this.lookAlong(target.model, seenBy, path);
+      const lines = await lineOnSurface(steps, measures, (from, to, step) =>
+        this.nearestAlong(target.model, from, to, step),
       );
       const cut = lines.length > 1 ? words.line_cut(lines.length) : "";
       await this.add(
         target,
         lines,
-        (name) => words.line_drawn(format_length(metres_of(lines, target.model)), name),
+        (name) => words.line_drawn(formatLength(metresOf(lines, target.model)), name),
         cut,
       );
     });
   }
 
-  set_point({ x, y }: PointerSample): void {
+  setPoint({ x, y }: PointerSample): void {
     const target = this.target("point");
     if (!target) return;
-    const seen_by = this.host_.view.camera.message();
+    const seenBy = this._host.view.camera.message();
     this.queue(async () => {
-      const { hit, position } = await this.api_.pick(`${target.model.id}`, seen_by, [x, y]);
+      const { hit, position } = await this._api.pick(`${target.model.id}`, seenBy, [x, y]);
       await this.add(target, hit && position ? [[position]] : [], words.point_set);
     });
   }
 
   undo(): void {
-    const { table } = this.host_.layers.selected ?? {};
-    if (table !== undefined) void this.host_.tables.undo(table);
+    const { table } = this._host.layers.selected ?? {};
+    if (table !== undefined) void this._host.tables.undo(table);
   }
   redo(): void {
-    const { table } = this.host_.layers.selected ?? {};
-    if (table !== undefined) void this.host_.tables.redo(table);
+    const { table } = this._host.layers.selected ?? {};
+    if (table !== undefined) void this._host.tables.redo(table);
   }
 
   private target(kind: MarkKind): Target | null {
-    const { painting, tables } = this.host_;
-    const model = this.host_.model();
-    const layer = painting.chosen_layer();
+    const { painting, tables } = this._host;
+    const model = this._host.model();
+    const layer = painting.chosenLayer();
     if (!model || !layer) return null;
     const column = this.column(kind);
-    const key = painting.brush.value_of(layer);
+    const key = painting.brush.valueFor(layer);
     const wrong =
       layer.table === undefined || !column
         ? words.no_column[kind]
@@ -157,36 +155,36 @@ export class MarkDrawing {
       : { model, table: layer.table, key, column };
   }
 
-  private async look_along(
+  private async lookAlong(
     { id }: Model,
-    seen_by: CameraMessage,
+    seenBy: CameraMessage,
     path: readonly Point[],
   ): Promise<Step[]> {
-    const { samples } = await this.api_.profile(`${id}`, seen_by, path);
-    return steps_along(path, samples);
+    const { samples } = await this._api.profile(`${id}`, seenBy, path);
+    return stepsAlong(path, samples);
   }
-  private async nearest_along(
+  private async nearestAlong(
     { id, unit }: Model,
     from: MarkPlace,
     to: MarkPlace,
     step: number,
   ): Promise<(MarkPlace | null)[]> {
-    const { samples } = await this.api_.profile_of(`${id}`, {
+    const { samples } = await this._api.profileOf(`${id}`, {
       places: [from, to],
-      step_mm: step * metres_per(unit) * 1000,
+      step_mm: step * metresPer(unit) * 1000,
       layers: [],
     });
     return samples.map(({ point }) => (point.hit && point.position ? point.position : null));
   }
   private measures(): Measures {
     return {
-      pixel_at: this.host_.view.camera.pixel_size(),
+      pixelAt: this._host.view.camera.pixelSize(),
       scale: Math.max(1, globalThis.devicePixelRatio || 1),
     };
   }
 
   private queue(work: () => Promise<void>): void {
-    this.work_ = this.work_.then(work).catch((error: unknown) => notices.error(error));
+    this._work = this._work.then(work).catch((error: unknown) => notices.error(error));
   }
 
   private async add(
@@ -201,18 +199,18 @@ export class MarkDrawing {
     }
     const marks = places.map((coordinates) => ({ model: model.id, coordinates }));
     const changed = await this.change(table, key, ({ version, values }) =>
-      this.api_.change_record(table, key, {
+      this._api.changeRecord(table, key, {
         version,
-        values: { [column.slug]: [...marks_of(values[column.slug]), ...marks] },
+        values: { [column.slug]: [...marksOf(values[column.slug]), ...marks] },
       }),
     );
-    const { tables } = this.host_;
-    if (tables.view?.table_id === table) tables.view.rows.put(changed);
-    notices.dismiss(this.notice_);
-    const act = (): void => this.queue(() => this.take_back(table, changed.version));
+    const { tables } = this._host;
+    if (tables.view?.tableId === table) tables.view.rows.put(changed);
+    notices.dismiss(this._notice);
+    const act = (): void => this.queue(() => this.takeBack(table, changed.version));
     const what = told(tables.label(table, key) ?? texts.tables.record(key));
     const link = { label: texts.model.undo, act };
-    this.notice_ = cut
+    this._notice = cut
       ? notices.show("problem", cut, what, link)
       : notices.show("success", what, "", link);
   }
@@ -225,7 +223,7 @@ export class MarkDrawing {
   ): Promise<TableRecord> {
     for (let tries = 1; ; ++tries) {
       try {
-        return await change(await this.api_.record({ table }, key));
+        return await change(await this._api.record({ table }, key));
       } catch (error) {
         if (!(error instanceof ApiError) || error.status !== 412 || tries === kMostTries)
           throw error;
@@ -234,9 +232,9 @@ export class MarkDrawing {
   }
 
   /** Only that change: what came after it is not what the notice spoke of. */
-  private async take_back(table: number, version: number): Promise<void> {
-    const [newest] = await this.api_.table_edits(table, 1);
-    if (newest?.sequence === version) await this.host_.tables.undo(table);
+  private async takeBack(table: number, version: number): Promise<void> {
+    const [newest] = await this._api.tableEdits(table, 1);
+    if (newest?.sequence === version) await this._host.tables.undo(table);
     else notices.show("info", words.changed_since);
   }
 }

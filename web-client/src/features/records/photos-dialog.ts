@@ -4,23 +4,23 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { ApiError } from "../../net/api";
-import { label_column, label_of } from "../../domain/cells";
+import { labelColumn, labelOf } from "../../domain/cells";
 import type { AttachmentMatches, Column, MatchedName } from "../../core/protocol.gen";
 import "../../ui/dialog";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { choices_styles, shared_styles } from "../../ui/styles";
+import { choicesStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.files;
-const kAsk_ms = 250; // after the last letter of the pattern
+const kAskMs = 250; // after the last letter of the pattern
 const kMostShown = 200;
 
 /**
  * What the names of these files may be made of: words between lines and points, the first of which
  * is the record's.
  */
-export function likely_pattern(names: readonly string[], column: string): string {
+export function likelyPattern(names: readonly string[], column: string): string {
   const [first = ""] = names;
   const dot = first.lastIndexOf(".");
   const [stem, ending] = dot > 0 ? [first.slice(0, dot), first.slice(dot)] : [first, ""];
@@ -36,20 +36,20 @@ export class StrataPhotosDialog extends LitElement {
   /** Id. */
   @property({ attribute: false }) table = 0;
   @property({ attribute: false }) files: File[] = [];
-  @state() private column_ = ""; // whose values stand in the names
-  @state() private target_ = ""; // where the files go
-  @state() private pattern_ = "";
-  @state() private matches_: AttachmentMatches | null = null;
-  @state() private problem_ = "";
-  @state() private sent_ = 0;
-  @state() private busy_ = false;
-  private timer_: ReturnType<typeof setTimeout> | null = null;
-  private asked_ = 0;
-  private stopped_ = false;
+  @state() private _column = ""; // whose values stand in the names
+  @state() private _target = ""; // where the files go
+  @state() private _pattern = "";
+  @state() private _matches: AttachmentMatches | null = null;
+  @state() private _problem = "";
+  @state() private _sent = 0;
+  @state() private _busy = false;
+  private _timer: ReturnType<typeof setTimeout> | null = null;
+  private _asked = 0;
+  private _stopped = false;
 
   static override styles = [
-    shared_styles,
-    choices_styles,
+    sharedStyles,
+    choicesStyles,
     css`
       .found {
         max-height: 300px;
@@ -81,18 +81,18 @@ export class StrataPhotosDialog extends LitElement {
     super.connectedCallback();
     const columns = this.columns;
     const table = this.session.tables.find(this.table);
-    const title = table ? label_column(table) : null;
+    const title = table ? labelColumn(table) : null;
     // files are not called by terms
-    this.column_ = title && title.kind !== "term" ? title.slug : "key";
-    this.target_ = (columns.find(({ kind }) => kind === "picture") ?? columns[0])?.slug ?? "";
-    this.pattern_ = likely_pattern(this.names, this.column_);
-    this.problem_ = this.target_ === "" ? words.no_column : "";
-    if (this.target_ !== "") void this.match();
+    this._column = title && title.kind !== "term" ? title.slug : "key";
+    this._target = (columns.find(({ kind }) => kind === "picture") ?? columns[0])?.slug ?? "";
+    this._pattern = likelyPattern(this.names, this._column);
+    this._problem = this._target === "" ? words.no_column : "";
+    if (this._target !== "") void this.match();
   }
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.stopped_ = true;
-    if (this.timer_) clearTimeout(this.timer_);
+    this._stopped = true;
+    if (this._timer) clearTimeout(this._timer);
   }
 
   private get names(): string[] {
@@ -107,38 +107,38 @@ export class StrataPhotosDialog extends LitElement {
   }
 
   override render(): TemplateResult {
-    const { matches_: matches, session } = this;
+    const { _matches: matches, session } = this;
     const named =
       session.tables
         .find(this.table)
         ?.columns.filter(
           ({ kind }) => kind === "text" || kind === "integer" || kind === "enumeration",
         ) ?? [];
-    const ready = matches !== null && matches.matched.length > 0 && !this.busy_;
+    const ready = matches !== null && matches.matched.length > 0 && !this._busy;
     return html`<strata-dialog wide heading=${words.folder_title(this.files.length)} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
-      <div class="choices" ?inert=${this.busy_}>
+      <div class="choices" ?inert=${this._busy}>
         <label
           ><span class="caption">${words.by_column}</span>
-          <select @change=${(event: Event) => this.choose_column((event.target as HTMLSelectElement).value)}>
-            <option value="key" ?selected=${this.column_ === "key"}>${texts.tables.key}</option>
-            ${named.map((column) => html`<option value=${column.slug} ?selected=${column.slug === this.column_}>${label_of(column)}</option>`)}
+          <select @change=${(event: Event) => this.chooseColumn((event.target as HTMLSelectElement).value)}>
+            <option value="key" ?selected=${this._column === "key"}>${texts.tables.key}</option>
+            ${named.map((column) => html`<option value=${column.slug} ?selected=${column.slug === this._column}>${labelOf(column)}</option>`)}
           </select></label
         >
         <label
           ><span class="caption">${words.into}</span>
-          <select @change=${(event: Event) => (this.target_ = (event.target as HTMLSelectElement).value)}>
-            ${this.columns.map((column) => html`<option value=${column.slug} ?selected=${column.slug === this.target_}>${label_of(column)}</option>`)}
+          <select @change=${(event: Event) => (this._target = (event.target as HTMLSelectElement).value)}>
+            ${this.columns.map((column) => html`<option value=${column.slug} ?selected=${column.slug === this._target}>${labelOf(column)}</option>`)}
           </select></label
         >
         <label class="full"
           ><span class="caption">${words.pattern}</span>
-          <input type="text" spellcheck="false" maxlength="200" .value=${this.pattern_} @input=${(event: Event) => this.set_pattern((event.target as HTMLInputElement).value)} />
+          <input type="text" spellcheck="false" maxlength="200" .value=${this._pattern} @input=${(event: Event) => this.setPattern((event.target as HTMLInputElement).value)} />
           <span class="hint">${words.pattern_hint}</span></label
         >
       </div>
-      <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
+      <p class="error" role="alert" ?hidden=${!this._problem}>${this._problem}</p>
       ${matches ? this.found(matches) : nothing}
-      ${this.busy_ ? html`<p class="hint" role="status">${words.sending(this.sent_ + 1, matches?.matched.length ?? 0)}</p>` : nothing}
+      ${this._busy ? html`<p class="hint" role="status">${words.sending(this._sent + 1, matches?.matched.length ?? 0)}</p>` : nothing}
       <button slot="actions" class="primary" ?disabled=${!ready} @click=${() => void this.send()}>${words.send(matches?.matched.length ?? 0)}</button>
     </strata-dialog>`;
   }
@@ -168,35 +168,35 @@ export class StrataPhotosDialog extends LitElement {
     </div>`;
   }
 
-  private choose_column(slug: string): void {
-    this.pattern_ = this.pattern_.replace(`{${this.column_}}`, `{${slug}}`);
-    this.column_ = slug;
+  private chooseColumn(slug: string): void {
+    this._pattern = this._pattern.replace(`{${this._column}}`, `{${slug}}`);
+    this._column = slug;
     void this.match();
   }
-  private set_pattern(pattern: string): void {
-    this.pattern_ = pattern;
-    if (this.timer_) clearTimeout(this.timer_);
-    this.timer_ = setTimeout(() => void this.match(), kAsk_ms);
+  private setPattern(pattern: string): void {
+    this._pattern = pattern;
+    if (this._timer) clearTimeout(this._timer);
+    this._timer = setTimeout(() => void this.match(), kAskMs);
   }
 
   /** The newest question wins. */
   private async match(): Promise<void> {
-    const asked = ++this.asked_;
-    const { pattern_: pattern, column_: column, names } = this;
+    const asked = ++this._asked;
+    const { _pattern: pattern, _column: column, names } = this;
     try {
-      const matches = await this.session.api.match_attachments(this.table, {
+      const matches = await this.session.api.matchAttachments(this.table, {
         pattern,
         column,
         names,
       });
-      if (asked !== this.asked_) return;
-      this.matches_ = matches;
-      this.problem_ = "";
+      if (asked !== this._asked) return;
+      this._matches = matches;
+      this._problem = "";
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (asked !== this.asked_) return;
-      this.matches_ = null;
-      this.problem_ = error.message;
+      if (asked !== this._asked) return;
+      this._matches = null;
+      this._problem = error.message;
     }
   }
 
@@ -204,28 +204,28 @@ export class StrataPhotosDialog extends LitElement {
    * One after the other: what was sent stays if one is refused, and a second try finds it there.
    */
   private async send(): Promise<void> {
-    const { matches_: matches, target_: target } = this;
-    if (!matches || this.busy_) return;
-    this.busy_ = true;
-    this.sent_ = 0;
-    this.problem_ = "";
+    const { _matches: matches, _target: target } = this;
+    if (!matches || this._busy) return;
+    this._busy = true;
+    this._sent = 0;
+    this._problem = "";
     try {
       for (const { name, key } of matches.matched) {
-        if (this.stopped_) break;
+        if (this._stopped) break;
         const file = this.files.find((each) => each.name === name);
         if (!file || key === undefined) continue;
         await this.session.api.attach(this.table, key, target, file);
-        this.sent_ += 1;
+        this._sent += 1;
       }
-      notices.show("success", words.sent(this.sent_));
+      notices.show("success", words.sent(this._sent));
       this.dispatchEvent(new CustomEvent("closed"));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       const { message } = error;
       await this.match();
-      this.problem_ = message;
+      this._problem = message;
     } finally {
-      this.busy_ = false;
+      this._busy = false;
       this.session.tables.view?.rows.refresh();
     }
   }

@@ -6,12 +6,12 @@ import type { Tool } from "../../tools/tool";
 export class PointTool implements Tool {
   readonly name = "point";
 
-  constructor(private readonly set_at_: (sample: PointerSample) => void) {}
+  constructor(private readonly _setAt: (sample: PointerSample) => void) {}
 
   activate(): void {}
   deactivate(): void {}
   down(sample: PointerSample): void {
-    this.set_at_(sample);
+    this._setAt(sample);
   }
   move(): void {}
   up(): void {}

@@ -3,15 +3,15 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
-import { first_picture, label_of, telling_columns } from "../../domain/cells";
-import { css_color, record_color } from "../../domain/palette";
+import { firstPicture, labelOf, tellingColumns } from "../../domain/cells";
+import { cssColor, recordColor } from "../../domain/palette";
 import type { Table, TableRecord } from "../../core/protocol.gen";
-import { follow_session } from "../../session/follow-session";
+import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import type { ModelSession } from "../../session/model-session";
-import { measures_of } from "../../session/fields/record-measures";
-import { shown_value } from "../../session/fields/shown-value";
-import { shared_styles } from "../../ui/styles";
+import { measuresOf } from "../../session/fields/record-measures";
+import { shownValue } from "../../session/fields/shown-value";
+import { sharedStyles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
 import type { TablePanelRequest } from "../../session/requests";
 import { texts } from "../../texts";
@@ -24,11 +24,11 @@ export class StrataRecordCard extends LitElement {
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: block;
@@ -88,29 +88,29 @@ export class StrataRecordCard extends LitElement {
     const table = id === undefined ? null : session.tables.find(id);
     if (!card || !table || !card.record) return html``;
     const { layer, key, record } = card;
-    const color = record_color(session.layers.palette(layer), record);
+    const color = recordColor(session.layers.palette(layer), record);
     const request = (detail: TablePanelRequest): boolean =>
       this.dispatchEvent(new CustomEvent("request", { detail }));
     return html`<section aria-label=${words.card}>
       <div class="row">
-        ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}
+        ${color ? html`<span class="swatch" ${styled({ background: cssColor(color) })}></span>` : nothing}
         <b class="grow ellipsis">${session.tables.label(table.id, key) ?? words.record(key)}</b>
-        <button class="icon quiet" aria-label=${words.card_close} title=${words.card_close} @click=${() => session.tables.close_card()}>${icon("close")}</button>
+        <button class="icon quiet" aria-label=${words.card_close} title=${words.card_close} @click=${() => session.tables.closeCard()}>${icon("close")}</button>
       </div>
       ${this.picture(table, record)} ${this.lines(table, record)}
       <div class="row">
-        ${session.can_paint ? html`<button @click=${() => request({ dialog: "record", layer, key })}>${words.edit}</button>` : nothing}
-        <button @click=${() => session.tables.show_row(layer, key)}>${words.show_row}</button>
+        ${session.canPaint ? html`<button @click=${() => request({ dialog: "record", layer, key })}>${words.edit}</button>` : nothing}
+        <button @click=${() => session.tables.showRow(layer, key)}>${words.show_row}</button>
       </div>
     </section>`;
   }
 
   private picture(table: Table, record: TableRecord): TemplateResult | typeof nothing {
     const { api } = this.session;
-    const id = first_picture(table, record);
+    const id = firstPicture(table, record);
     if (id === null) return nothing;
-    return html`<a class="picture" href=${api.attachment_url(id)} target="_blank" rel="noopener">
-      <img src=${api.attachment_url(id, 512)} alt=${texts.files.file(id)} />
+    return html`<a class="picture" href=${api.attachmentUrl(id)} target="_blank" rel="noopener">
+      <img src=${api.attachmentUrl(id, 512)} alt=${texts.files.file(id)} />
     </a>`;
   }
 
@@ -120,14 +120,14 @@ export class StrataRecordCard extends LitElement {
     return html`<dl>
       <dt>${words.key}</dt>
       <dd class="numeric">${record.key}</dd>
-      ${telling_columns(table, record)
+      ${tellingColumns(table, record)
         .slice(0, kMostLines)
         .map(
           (column) =>
-            html`<dt>${label_of(column)}</dt>
-            <dd>${shown_value(this.session, column, record.values[column.slug] ?? null)}${column.unit ? ` ${column.unit}` : nothing}</dd>`,
+            html`<dt>${labelOf(column)}</dt>
+            <dd>${shownValue(this.session, column, record.values[column.slug] ?? null)}${column.unit ? ` ${column.unit}` : nothing}</dd>`,
         )}
-      ${measures_of(table).map(
+      ${measuresOf(table).map(
         ({ label, text }) =>
           html`<dt>${label}</dt>
             <dd class="numeric">${text(record) || "–"}</dd>`,

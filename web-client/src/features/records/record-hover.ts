@@ -4,7 +4,7 @@
 import type { PointerSample } from "../../ui/input";
 import type { Layer } from "../../core/types";
 
-const kRest_ms = 350;
+const kRestMs = 350;
 const kTremble = 4; // window pixels that a resting hand moves
 
 export interface RecordAt {
@@ -21,17 +21,17 @@ export interface RecordHoverHost {
 }
 
 export class RecordHover {
-  private shown_: RecordAt | null = null;
-  private from_: PointerSample | null = null; // where the mouse came to rest
-  // null while `from_` is set: it has rested
-  private timer_: ReturnType<typeof setTimeout> | null = null;
+  private _shown: RecordAt | null = null;
+  private _from: PointerSample | null = null; // where the mouse came to rest
+  // null while `_from` is set: it has rested
+  private _timer: ReturnType<typeof setTimeout> | null = null;
 
-  constructor(private readonly host_: RecordHoverHost) {}
+  constructor(private readonly _host: RecordHoverHost) {}
 
   /** Null once the pointer is no longer on it, however that came. */
   get shown(): RecordAt | null {
-    const here = this.shown_ && this.host_.here();
-    return here && here.layer.id === this.shown_?.layer.id && here.key === this.shown_.key
+    const here = this._shown && this._host.here();
+    return here && here.layer.id === this._shown?.layer.id && here.key === this._shown.key
       ? here
       : null;
   }
@@ -41,52 +41,52 @@ export class RecordHover {
     if (!sample) this.end();
     else if (
       !this.shown &&
-      !(this.from_ && Math.hypot(sample.x - this.from_.x, sample.y - this.from_.y) <= kTremble)
+      !(this._from && Math.hypot(sample.x - this._from.x, sample.y - this._from.y) <= kTremble)
     )
-      this.rest_from(sample);
-    else if (this.shown) this.from_ = sample;
+      this.restFrom(sample);
+    else if (this.shown) this._from = sample;
   }
 
   /** What lies under the pointer has become known anew. */
   picked(): void {
     if (this.shown) return;
     // it moved off, and another card has to wait as the first
-    if (this.shown_ && this.from_) this.rest_from(this.from_);
-    else if (this.from_ && !this.timer_) this.show();
+    if (this._shown && this._from) this.restFrom(this._from);
+    else if (this._from && !this._timer) this.show();
   }
 
   /** The view moved under the mouse, and the rest begins anew. */
-  wait_again(): void {
+  waitAgain(): void {
     const told = this.shown !== null;
-    if (this.from_) this.rest_from(this.from_);
-    if (told) this.host_.changed();
+    if (this._from) this.restFrom(this._from);
+    if (told) this._host.changed();
   }
 
   /** The person does something else: the next move of the mouse begins anew. */
   end(): void {
     const told = this.shown !== null;
-    this.stop_waiting();
-    this.shown_ = this.from_ = null;
-    if (told) this.host_.changed();
+    this.stopWaiting();
+    this._shown = this._from = null;
+    if (told) this._host.changed();
   }
 
-  private rest_from(sample: PointerSample): void {
-    this.stop_waiting();
-    this.shown_ = null;
-    this.from_ = sample;
-    this.timer_ = setTimeout(() => {
-      this.timer_ = null;
+  private restFrom(sample: PointerSample): void {
+    this.stopWaiting();
+    this._shown = null;
+    this._from = sample;
+    this._timer = setTimeout(() => {
+      this._timer = null;
       this.show();
-    }, kRest_ms);
+    }, kRestMs);
   }
 
   private show(): void {
-    this.shown_ = this.host_.settled() ? this.host_.here() : null;
-    if (this.shown_) this.host_.changed();
+    this._shown = this._host.settled() ? this._host.here() : null;
+    if (this._shown) this._host.changed();
   }
 
-  private stop_waiting(): void {
-    if (this.timer_) clearTimeout(this.timer_);
-    this.timer_ = null;
+  private stopWaiting(): void {
+    if (this._timer) clearTimeout(this._timer);
+    this._timer = null;
   }
 }

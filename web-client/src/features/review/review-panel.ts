@@ -4,19 +4,19 @@
 import { css, html, nothing, type TemplateResult } from "lit";
 import { customElement, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { label_of } from "../../domain/cells";
-import { format_count } from "../../core/locale";
-import { format_area } from "../../domain/measure";
+import { labelOf } from "../../domain/cells";
+import { formatCount } from "../../core/locale";
+import { formatArea } from "../../domain/measure";
 import { called } from "../../domain/people";
 import type { Review, WaitingStroke } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
-import { FoldingPanel, folding_styles } from "../../session/folding-panel";
+import { FoldingPanel, foldingStyles } from "../../session/folding-panel";
 import { icon } from "../../ui/icons";
-import { panel_line_styles } from "../../ui/panel-styles";
-import { person_mark, person_mark_styles } from "../../ui/person-mark";
+import { panelLineStyles } from "../../ui/panel-styles";
+import { personMark, personMarkStyles } from "../../ui/person-mark";
 import type { Waiting } from "./reviews";
 import { texts } from "../../texts";
-import { told_time } from "../../domain/times";
+import { toldTime } from "../../domain/times";
 
 const words = texts.review;
 const kMostReason = 1000;
@@ -33,18 +33,18 @@ const same = (a: Rejecting | null, layer: Layer, what: Rejecting["what"]): boole
 @customElement("strata-review-panel")
 export class StrataReviewPanel extends FoldingPanel {
   protected readonly heading = words.title;
-  @state() private rejecting_: Rejecting | null = null;
-  @state() private busy_ = false;
-  @state() private reason_ = "";
+  @state() private _rejecting: Rejecting | null = null;
+  @state() private _busy = false;
+  @state() private _reason = "";
 
   constructor() {
     super("review");
   }
 
   static override styles = [
-    folding_styles,
-    panel_line_styles,
-    person_mark_styles,
+    foldingStyles,
+    panelLineStyles,
+    personMarkStyles,
     css`
       h3 {
         flex: 1;
@@ -91,52 +91,52 @@ export class StrataReviewPanel extends FoldingPanel {
     `,
   ];
 
-  protected override beside_heading(): unknown {
+  protected override besideHeading(): unknown {
     const { count } = this.session.reviews;
     return count > 0
-      ? html`<span class="number numeric" role="img" aria-label=${words.waiting(count)}>${format_count(count)}</span>`
+      ? html`<span class="number numeric" role="img" aria-label=${words.waiting(count)}>${formatCount(count)}</span>`
       : nothing;
   }
 
   protected content(): TemplateResult {
-    const { reviews, can_curate } = this.session;
+    const { reviews, canCurate } = this.session;
     return html`${
       reviews.failed
         ? html`<p class="error" role="alert">${words.failed}</p>
-          <button @click=${() => void reviews.load_all()}>${texts.try_again}</button>`
+          <button @click=${() => void reviews.loadAll()}>${texts.try_again}</button>`
         : nothing
     }
-    ${reviews.count === 0 && !reviews.failed ? html`<p class="hint">${can_curate ? words.none : words.none_of_you}</p>` : nothing}
+    ${reviews.count === 0 && !reviews.failed ? html`<p class="hint">${canCurate ? words.none : words.none_of_you}</p>` : nothing}
     ${reviews.waiting.map((waiting) => this.layer(waiting))}`;
   }
 
   private layer({ layer, queue }: Waiting): TemplateResult {
-    const { can_curate } = this.session;
+    const { canCurate } = this.session;
     const hidden = queue.total - queue.strokes.length;
     const all: Rejecting["what"] = { all: true };
     return html`<div class="layer">
-        <h3>${label_of(layer)}</h3>
+        <h3>${labelOf(layer)}</h3>
         ${
-          can_curate
-            ? html`<button class="quiet" ?disabled=${this.busy_} @click=${() => void this.decide(layer, { decision: "accept", ...all })}>${words.accept_all}</button>
-              <button class="quiet" ?disabled=${this.busy_} @click=${() => this.ask(layer, all)}>${words.reject_all}</button>`
+          canCurate
+            ? html`<button class="quiet" ?disabled=${this._busy} @click=${() => void this.decide(layer, { decision: "accept", ...all })}>${words.accept_all}</button>
+              <button class="quiet" ?disabled=${this._busy} @click=${() => this.ask(layer, all)}>${words.reject_all}</button>`
             : nothing
         }
       </div>
-      ${same(this.rejecting_, layer, all) ? this.reason_form(layer, all) : nothing}
+      ${same(this._rejecting, layer, all) ? this.reasonForm(layer, all) : nothing}
       ${
-        can_curate && queue.people.length > 1
+        canCurate && queue.people.length > 1
           ? html`<div class="people">
             ${queue.people.map(
               (person) =>
-                html`<button class="link" ?disabled=${this.busy_} @click=${() => void this.decide(layer, { decision: "accept", user: person.user })}>
+                html`<button class="link" ?disabled=${this._busy} @click=${() => void this.decide(layer, { decision: "accept", user: person.user })}>
                   ${words.accept_person(called(person), person.strokes)}
                 </button>`,
             )}
           </div>`
           : nothing
       }
-      <ul aria-label=${label_of(layer)}>
+      <ul aria-label=${labelOf(layer)}>
         ${repeat(
           queue.strokes,
           ({ sequence }) => sequence,
@@ -147,84 +147,83 @@ export class StrataReviewPanel extends FoldingPanel {
   }
 
   private stroke(layer: Layer, stroke: WaitingStroke): TemplateResult {
-    const { reviews, can_curate } = this.session;
+    const { reviews, canCurate } = this.session;
     const what: Rejecting["what"] = { edits: [stroke.sequence] };
     const named = words.stroke(words.ops[stroke.op], called(stroke));
     return html`<li>
-      <button class="quiet line" title=${words.look} data-waiting=${stroke.sequence} @click=${() => reviews.go_to(layer, stroke)}>
-        ${person_mark(stroke)}
+      <button class="quiet line" title=${words.look} data-waiting=${stroke.sequence} @click=${() => reviews.goTo(layer, stroke)}>
+        ${personMark(stroke)}
         <span class="what"><b>${called(stroke)}</b> ${words.ops[stroke.op]}</span>
         <span></span>
-        <span class="more-of-it hint">${[told_time(stroke.time), format_area(stroke.area_m2)].join(" · ")}</span>
+        <span class="more-of-it hint">${[toldTime(stroke.time), formatArea(stroke.area_m2)].join(" · ")}</span>
       </button>
       ${
-        can_curate
+        canCurate
           ? html`<span class="decide">
             <button
               class="icon quiet"
-              ?disabled=${this.busy_}
+              ?disabled=${this._busy}
               aria-label="${words.accept}: ${named}"
               title=${words.accept}
               @click=${() => void this.decide(layer, { decision: "accept", ...what })}
             >
               ${icon("check")}
             </button>
-            <button class="icon quiet" ?disabled=${this.busy_} aria-label="${words.reject}: ${named}" title=${words.reject} @click=${() => this.ask(layer, what)}>
+            <button class="icon quiet" ?disabled=${this._busy} aria-label="${words.reject}: ${named}" title=${words.reject} @click=${() => this.ask(layer, what)}>
               ${icon("close")}
             </button>
           </span>`
           : nothing
       }
-      ${same(this.rejecting_, layer, what) ? this.reason_form(layer, what) : nothing}
+      ${same(this._rejecting, layer, what) ? this.reasonForm(layer, what) : nothing}
     </li>`;
   }
 
-  private reason_form(layer: Layer, what: Rejecting["what"]): TemplateResult {
+  private reasonForm(layer: Layer, what: Rejecting["what"]): TemplateResult {
     const send = (event: Event): void => {
       event.preventDefault();
-      const reason = this.reason_.trim();
+      const reason = this._reason.trim();
       void this.decide(layer, { decision: "reject", ...what, ...(reason ? { reason } : {}) });
     };
-    return html`<form @submit=${send} @keydown=${this.on_key}>
+    return html`<form @submit=${send} @keydown=${this.onKey}>
       <label
         >${words.reason}
         <textarea
           rows="2"
           maxlength=${kMostReason}
-          .value=${this.reason_}
-          @input=${(event: Event) => (this.reason_ = (event.target as HTMLTextAreaElement).value)}
+          .value=${this._reason}
+          @input=${(event: Event) => (this._reason = (event.target as HTMLTextAreaElement).value)}
         ></textarea>
       </label>
       <div class="row">
-        <button type="button" class="quiet" @click=${this.give_up}>${texts.cancel}</button>
-        <button type="submit" ?disabled=${this.busy_}>${words.reject}</button>
+        <button type="button" class="quiet" @click=${this.giveUp}>${texts.cancel}</button>
+        <button type="submit" ?disabled=${this._busy}>${words.reject}</button>
       </div>
     </form>`;
   }
 
   private async ask(layer: Layer, what: Rejecting["what"]): Promise<void> {
-    this.rejecting_ = { layer: layer.id, what };
-    this.reason_ = "";
+    this._rejecting = { layer: layer.id, what };
+    this._reason = "";
     await this.updateComplete;
     this.renderRoot.querySelector("textarea")?.focus();
   }
 
-  private readonly give_up = (): void => {
-    this.rejecting_ = null;
+  private readonly giveUp = (): void => {
+    this._rejecting = null;
   };
 
-  private readonly on_key = (event: KeyboardEvent): void => {
+  private readonly onKey = (event: KeyboardEvent): void => {
     if (event.key !== "Escape") return;
     event.stopPropagation();
-    this.give_up();
+    this.giveUp();
   };
 
   private async decide(layer: Layer, decision: Review): Promise<void> {
-    this.busy_ = true;
+    this._busy = true;
     const done = await this.session.reviews.decide(layer, decision);
     const { decision: _, reason: __, ...what } = decision;
-    if (done && decision.decision === "reject" && same(this.rejecting_, layer, what))
-      this.give_up();
-    this.busy_ = false;
+    if (done && decision.decision === "reject" && same(this._rejecting, layer, what)) this.giveUp();
+    this._busy = false;
   }
 }

@@ -1,9 +1,9 @@
 // What of the open model's layers waits for review, and what curators decide about it. It is read
 // anew soon after something changed on a layer.
 
-import { label_of } from "../../domain/cells";
+import { labelOf } from "../../domain/cells";
 import { ApiError, type Api } from "../../net/api";
-import { place_like } from "../../math/fit-to-window";
+import { placeLike } from "../../math/fit-to-window";
 import type { LayerEvent, Review, ReviewQueue, WaitingStroke } from "../../core/protocol.gen";
 import { ReadAgain } from "../../net/read-again";
 import type { Layer } from "../../core/types";
@@ -20,9 +20,9 @@ export interface ReviewsHost {
   readonly layers: LayersPart;
   me(): string;
   /** What somebody is called. */
-  name_of(user: string): string;
-  can_paint(): boolean;
-  can_curate(): boolean;
+  nameOf(user: string): string;
+  canPaint(): boolean;
+  canCurate(): boolean;
   changed(): void;
 }
 
@@ -33,32 +33,32 @@ export interface Waiting {
 }
 
 export class Reviews {
-  private readonly failed_ = new Set<number>(); // layers of which it could not be read
+  private readonly _failed = new Set<number>(); // layers of which it could not be read
   // layers on which something waited, or was decided, since the page is open
-  private readonly told_ = new Set<number>();
-  private readonly queues_ = new Map<number, ReviewQueue>(); // by layer
-  private readonly outdated_ = new Set<number>();
+  private readonly _told = new Set<number>();
+  private readonly _queues = new Map<number, ReviewQueue>(); // by layer
+  private readonly _outdated = new Set<number>();
   // the newest question by layer; answers of older ones come too late
-  private readonly asked_ = new Map<number, number>();
-  private readonly again_ = new ReadAgain((last) => void this.load(last));
+  private readonly _asked = new Map<number, number>();
+  private readonly _again = new ReadAgain((last) => void this.load(last));
 
   constructor(
-    private readonly api_: Api,
-    private readonly model_id_: string,
-    private readonly host_: ReviewsHost,
+    private readonly _api: Api,
+    private readonly _modelId: string,
+    private readonly _host: ReviewsHost,
   ) {}
 
   get failed(): boolean {
-    return this.failed_.size > 0;
+    return this._failed.size > 0;
   }
   /** Some layer asks for review, or something still waits. */
-  get is_used(): boolean {
-    return this.host_.layers.all.some((layer) => layer.review) || this.count > 0;
+  get isUsed(): boolean {
+    return this._host.layers.all.some((layer) => layer.review) || this.count > 0;
   }
   /** Layers of which something waits: for curators of anybody, for others of their own. */
   get waiting(): Waiting[] {
-    return this.host_.layers.all.flatMap((layer) => {
-      const queue = this.queues_.get(layer.id);
+    return this._host.layers.all.flatMap((layer) => {
+      const queue = this._queues.get(layer.id);
       return queue && queue.total > 0 ? [{ layer, queue }] : [];
     });
   }
@@ -66,109 +66,109 @@ export class Reviews {
   get count(): number {
     return this.waiting.reduce((sum, { queue }) => sum + queue.total, 0);
   }
-  waiting_on(layer: Layer): number {
-    return this.queues_.get(layer.id)?.total ?? 0;
+  waitingOn(layer: Layer): number {
+    return this._queues.get(layer.id)?.total ?? 0;
   }
 
   welcome(): void {
-    this.queues_.clear();
-    void this.load_all();
+    this._queues.clear();
+    void this.loadAll();
   }
 
-  on_event({ layer_id, event, user, review, provisional }: LayerEvent): void {
-    if (event === "deleted") this.queues_.delete(layer_id);
-    else this.outdated(layer_id);
-    if (review || provisional) this.told_.add(layer_id);
-    const me = this.host_.me();
-    const layer = this.host_.layers.find(layer_id);
+  onEvent({ layer_id: layerId, event, user, review, provisional }: LayerEvent): void {
+    if (event === "deleted") this._queues.delete(layerId);
+    else this.outdated(layerId);
+    if (review || provisional) this._told.add(layerId);
+    const me = this._host.me();
+    const layer = this._host.layers.find(layerId);
     if (!review || !layer || user === undefined || user === me || !review.authors.includes(me))
       return;
     notices.show(
       review.decision === "reject" ? "problem" : "info",
-      words.told[review.decision](this.host_.name_of(user), label_of(layer)),
+      words.told[review.decision](this._host.nameOf(user), labelOf(layer)),
       review.reason ?? "",
     );
   }
 
   /** This person changed something, somewhere. */
   saved(): void {
-    for (const { id } of this.host_.layers.all) this.outdated(id);
+    for (const { id } of this._host.layers.all) this.outdated(id);
   }
 
   /** Something changed there. */
   outdated(layer: number): void {
-    this.outdated_.add(layer);
-    this.again_.news();
+    this._outdated.add(layer);
+    this._again.news();
   }
 
   close(): void {
-    this.again_.stop();
+    this._again.stop();
   }
 
   /**
    * What curators see holds layers, too, that ask for no review any more, of which something still
    * waits.
    */
-  async load_all(): Promise<void> {
-    if (!this.host_.can_paint()) return;
-    const layers = this.host_.layers.all.filter((layer) => layer.review || this.host_.can_curate());
+  async loadAll(): Promise<void> {
+    if (!this._host.canPaint()) return;
+    const layers = this._host.layers.all.filter((layer) => layer.review || this._host.canCurate());
     await Promise.all(layers.map((layer) => this.read(layer.id)));
   }
 
   private async load(last: boolean): Promise<void> {
-    const layers = this.host_.can_paint()
-      ? [...this.outdated_].filter(
-          (id) => this.host_.layers.find(id)?.review || this.told_.has(id) || this.waits_on(id),
+    const layers = this._host.canPaint()
+      ? [...this._outdated].filter(
+          (id) => this._host.layers.find(id)?.review || this._told.has(id) || this.waitsOn(id),
         )
       : [];
-    if (last) this.outdated_.clear();
+    if (last) this._outdated.clear();
     await Promise.all(layers.map((id) => this.read(id)));
   }
-  private waits_on(layer: number): boolean {
-    return (this.queues_.get(layer)?.total ?? 0) > 0;
+  private waitsOn(layer: number): boolean {
+    return (this._queues.get(layer)?.total ?? 0) > 0;
   }
 
   private async read(layer: number): Promise<void> {
-    const question = (this.asked_.get(layer) ?? 0) + 1;
-    this.asked_.set(layer, question);
+    const question = (this._asked.get(layer) ?? 0) + 1;
+    this._asked.set(layer, question);
     try {
-      const whose = this.host_.can_curate() ? null : this.host_.me();
-      const queue = await this.api_.review_queue(this.model_id_, layer, kAtOnce, whose);
-      if (this.asked_.get(layer) !== question) return;
-      this.queues_.set(layer, queue);
-      this.failed_.delete(layer);
+      const whose = this._host.canCurate() ? null : this._host.me();
+      const queue = await this._api.reviewQueue(this._modelId, layer, kAtOnce, whose);
+      if (this._asked.get(layer) !== question) return;
+      this._queues.set(layer, queue);
+      this._failed.delete(layer);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (this.asked_.get(layer) !== question) return;
-      this.failed_.delete(layer);
-      if (error.status === 404) this.queues_.delete(layer);
-      else this.failed_.add(layer);
+      if (this._asked.get(layer) !== question) return;
+      this._failed.delete(layer);
+      if (error.status === 404) this._queues.delete(layer);
+      else this._failed.add(layer);
     }
-    this.host_.changed();
+    this._host.changed();
   }
 
   /** The layer, as its author saw it. */
-  go_to(layer: Layer, { camera }: WaitingStroke): void {
-    const { layers, view } = this.host_;
+  goTo(layer: Layer, { camera }: WaitingStroke): void {
+    const { layers, view } = this._host;
     layers.select(layer);
-    if (!layers.visible(layer)) layers.set_visible(layer, true);
-    if (camera) view.fly(place_like(camera, view.camera));
+    if (!layers.visible(layer)) layers.setVisible(layer, true);
+    if (camera) view.fly(placeLike(camera, view.camera));
   }
 
   /**
    * True: it is decided, which the person can take back for a moment. Otherwise why not was told.
    */
   async decide(layer: Layer, decision: Review): Promise<boolean> {
-    const { strokes, total, people } = this.queues_.get(layer.id) ?? {
+    const { strokes, total, people } = this._queues.get(layer.id) ?? {
       strokes: [],
       total: 0,
       people: [],
     };
-    const is_about = ({ sequence, user }: WaitingStroke): boolean =>
+    const isAbout = ({ sequence, user }: WaitingStroke): boolean =>
       decision.edits
         ? decision.edits.includes(sequence)
         : decision.user === undefined || decision.user === user;
-    const edits = strokes.filter(is_about).map(({ sequence }) => sequence);
+    const edits = strokes.filter(isAbout).map(({ sequence }) => sequence);
     const count = decision.edits
       ? edits.length
       : decision.user === undefined
@@ -178,12 +178,12 @@ export class Reviews {
     if (!done) return false;
     // What is not listed cannot be named.
     const act = (): void => void this.send(layer, { decision: "reopen", edits });
-    const take_back = edits.length === count && count > 0 ? { label: words.take_back, act } : null;
+    const takeBack = edits.length === count && count > 0 ? { label: words.take_back, act } : null;
     notices.show(
       "success",
       words.done[decision.decision as "accept" | "reject"](count),
-      label_of(layer),
-      take_back,
+      labelOf(layer),
+      takeBack,
     );
     return true;
   }
@@ -191,7 +191,7 @@ export class Reviews {
   private async send(layer: Layer, decision: Review): Promise<boolean> {
     let done = true;
     try {
-      await this.api_.review(this.model_id_, layer.id, decision);
+      await this._api.review(this._modelId, layer.id, decision);
     } catch (error) {
       notices.error(error);
       done = false;

@@ -2,7 +2,7 @@
 // by somebody else meanwhile.
 
 import { ApiError, type Api } from "../../net/api";
-import { same_value } from "../../domain/cells";
+import { sameValue } from "../../domain/cells";
 import type { CellValue, TableRecord } from "../../core/protocol.gen";
 import { texts } from "../../texts";
 
@@ -29,43 +29,43 @@ export interface CellEditsHost {
 }
 
 const kMostTries = 3; // where others write other cells of the record at the same time
-const id_of = (key: number, slug: string): string => `${key} ${slug}`;
+const idOf = (key: number, slug: string): string => `${key} ${slug}`;
 
 export class CellEdits {
-  private readonly edits_ = new Map<string, CellEdit>();
+  private readonly _edits = new Map<string, CellEdit>();
   // by record: one change after the other
-  private readonly chains_ = new Map<number, Promise<void>>();
+  private readonly _chains = new Map<number, Promise<void>>();
 
   constructor(
-    private readonly api_: Api,
-    private readonly host_: CellEditsHost,
+    private readonly _api: Api,
+    private readonly _host: CellEditsHost,
   ) {}
 
   of(key: number, slug: string): CellEdit | null {
-    return this.edits_.get(id_of(key, slug)) ?? null;
+    return this._edits.get(idOf(key, slug)) ?? null;
   }
   /** Those that wait for the person. */
   get open(): CellEdit[] {
-    return [...this.edits_.values()].filter((edit) => edit.state !== "saving");
+    return [...this._edits.values()].filter((edit) => edit.state !== "saving");
   }
   get saving(): boolean {
-    return this.edits_.size > this.open.length;
+    return this._edits.size > this.open.length;
   }
 
   write(key: number, slug: string, value: CellValue, base: CellValue): Promise<void> {
     const before = this.of(key, slug);
-    const under_way = before?.state === "saving" ? before : null;
-    if (same_value(value, base)) {
-      if (!under_way) this.forget(key, slug);
+    const underWay = before?.state === "saving" ? before : null;
+    if (sameValue(value, base)) {
+      if (!underWay) this.forget(key, slug);
       return Promise.resolve();
     }
-    const onto = under_way ? [...under_way.onto, under_way.value, base] : [base];
+    const onto = underWay ? [...underWay.onto, underWay.value, base] : [base];
     return this.send({ key, slug, onto, value, state: "saving", problem: "", theirs: null });
   }
 
   /** Theirs stays, or what was refused is given up. */
   forget(key: number, slug: string): void {
-    if (this.edits_.delete(id_of(key, slug))) this.host_.changed();
+    if (this._edits.delete(idOf(key, slug))) this._host.changed();
   }
 
   /** Mine goes over theirs. */
@@ -79,27 +79,27 @@ export class CellEdits {
   }
 
   private send(edit: CellEdit): Promise<void> {
-    this.edits_.set(id_of(edit.key, edit.slug), edit);
-    this.host_.changed();
-    const chain = (this.chains_.get(edit.key) ?? Promise.resolve()).then(() => this.send_now(edit));
-    this.chains_.set(edit.key, chain);
+    this._edits.set(idOf(edit.key, edit.slug), edit);
+    this._host.changed();
+    const chain = (this._chains.get(edit.key) ?? Promise.resolve()).then(() => this.sendNow(edit));
+    this._chains.set(edit.key, chain);
     return chain;
   }
 
-  private async send_now(edit: CellEdit): Promise<void> {
+  private async sendNow(edit: CellEdit): Promise<void> {
     const { key, slug, value } = edit;
     if (this.of(key, slug) !== edit) return; // written again since
     try {
       for (let tries = 1; ; ++tries) {
         const row =
-          this.host_.row(key) ?? (await this.api_.record({ table: this.host_.table }, key));
-        if (!edit.onto.some((value) => same_value(row.values[slug], value))) {
-          await this.tell_conflict(edit, row);
+          this._host.row(key) ?? (await this._api.record({ table: this._host.table }, key));
+        if (!edit.onto.some((value) => sameValue(row.values[slug], value))) {
+          await this.tellConflict(edit, row);
           return;
         }
         try {
-          this.host_.put(
-            await this.api_.change_record(this.host_.table, key, {
+          this._host.put(
+            await this._api.changeRecord(this._host.table, key, {
               version: row.version,
               values: { [slug]: value },
             }),
@@ -109,25 +109,25 @@ export class CellEdits {
           if (!(error instanceof ApiError) || error.status !== 412 || tries === kMostTries)
             throw error;
           // another cell of it may be all that changed
-          this.host_.put(await this.api_.record({ table: this.host_.table }, key));
+          this._host.put(await this._api.record({ table: this._host.table }, key));
         }
       }
       if (this.of(key, slug) === edit) this.forget(key, slug);
     } catch (error) {
       edit.state = "refused";
       edit.problem = error instanceof ApiError ? error.message : texts.problems.unexpected;
-      this.host_.changed();
+      this._host.changed();
     }
   }
 
-  private async tell_conflict(edit: CellEdit, row: TableRecord): Promise<void> {
-    const [newest] = await this.api_.record_edits(this.host_.table, edit.key, 1);
+  private async tellConflict(edit: CellEdit, row: TableRecord): Promise<void> {
+    const [newest] = await this._api.recordEdits(this._host.table, edit.key, 1);
     edit.state = "conflict";
     edit.theirs = {
       value: row.values[edit.slug] ?? null,
       user: newest?.user ?? "",
       time: newest?.time ?? "",
     };
-    this.host_.changed();
+    this._host.changed();
   }
 }

@@ -3,8 +3,8 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../../net/api";
-import { cell_text, label_of, parse_cell } from "../../domain/cells";
-import { format_list } from "../../core/locale";
+import { cellText, labelOf, parseCell } from "../../domain/cells";
+import { formatList } from "../../core/locale";
 import type {
   Column,
   ColumnChanged,
@@ -14,11 +14,11 @@ import type {
   Visibility,
 } from "../../core/protocol.gen";
 import {
-  column_changes,
-  has_limits,
-  has_target,
+  columnChanges,
+  hasLimits,
+  hasTarget,
   kColumnKinds,
-  of_kind,
+  ofKind,
   type ColumnWanted,
 } from "./column-changes";
 import "../../ui/dialog";
@@ -26,9 +26,9 @@ import type { StrataDialog } from "../../ui/dialog";
 import "../../ui/labels-field";
 import type { StrataLabelsField } from "../../ui/labels-field";
 import type { ModelSession } from "../../session/model-session";
-import { form_styles, shared_styles } from "../../ui/styles";
+import { formStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
-import { visibility_choice } from "../../ui/visibility";
+import { visibilityChoice } from "../../ui/visibility";
 
 const words = texts.column_dialog;
 const kNoLabels = {};
@@ -39,19 +39,19 @@ export class StrataColumnDialog extends LitElement {
   @property({ attribute: false }) table!: Table;
   /** Null: a new one. */
   @property({ attribute: false }) column: Column | null = null;
-  @state() private kind_: ColumnKind = "text";
-  @state() private visibility_: Visibility = "public";
-  @state() private tables_: Table[] = [];
-  @state() private problem_ = "";
-  @state() private busy_ = false;
-  @state() private outcome_: ColumnChanged | null = null; // values were lost: is that well?
-  @query("strata-dialog") private dialog_!: StrataDialog;
-  @query("form") private form_!: HTMLFormElement;
-  @query("strata-labels-field") private labels_!: StrataLabelsField;
+  @state() private _kind: ColumnKind = "text";
+  @state() private _visibility: Visibility = "public";
+  @state() private _tables: Table[] = [];
+  @state() private _problem = "";
+  @state() private _busy = false;
+  @state() private _outcome: ColumnChanged | null = null; // values were lost: is that well?
+  @query("strata-dialog") private _dialog!: StrataDialog;
+  @query("form") private _form!: HTMLFormElement;
+  @query("strata-labels-field") private _labels!: StrataLabelsField;
 
   static override styles = [
-    shared_styles,
-    form_styles,
+    sharedStyles,
+    formStyles,
     css`
       .three {
         display: grid;
@@ -67,28 +67,28 @@ export class StrataColumnDialog extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    this.kind_ = this.column?.kind ?? "text";
-    this.visibility_ = this.column?.visibility ?? "public";
+    this._kind = this.column?.kind ?? "text";
+    this._visibility = this.column?.visibility ?? "public";
     void this.session.tables.all().then(
-      (tables) => (this.tables_ = tables),
+      (tables) => (this._tables = tables),
       (error: unknown) =>
-        (this.problem_ = error instanceof ApiError ? error.message : texts.problems.unexpected),
+        (this._problem = error instanceof ApiError ? error.message : texts.problems.unexpected),
     );
   }
 
   override render(): TemplateResult {
-    const { column, outcome_: outcome } = this;
+    const { column, _outcome: outcome } = this;
     const heading = column
-      ? words.edit_title(label_of(column))
-      : words.create_title(label_of(this.table));
+      ? words.edit_title(labelOf(column))
+      : words.create_title(labelOf(this.table));
     return html`<strata-dialog heading=${heading} way_out=${outcome ? "" : texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       ${outcome ? this.lost(outcome) : this.form()}
-      <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
+      <p class="error" role="alert" ?hidden=${!this._problem}>${this._problem}</p>
       ${
         outcome
-          ? html`<button slot="actions" ?disabled=${this.busy_} @click=${() => void this.take_back()}>${words.take_back}</button>
-            <button slot="actions" class="primary" @click=${() => this.dialog_.close()}>${words.keep}</button>`
-          : html`<button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => this.form_.requestSubmit()}>
+          ? html`<button slot="actions" ?disabled=${this._busy} @click=${() => void this.takeBack()}>${words.take_back}</button>
+            <button slot="actions" class="primary" @click=${() => this._dialog.close()}>${words.keep}</button>`
+          : html`<button slot="actions" class="primary" ?disabled=${this._busy} @click=${() => this._form.requestSubmit()}>
             ${column ? texts.save : words.create}
           </button>`
       }
@@ -96,7 +96,7 @@ export class StrataColumnDialog extends LitElement {
   }
 
   private form(): TemplateResult {
-    const { column, kind_: kind } = this;
+    const { column, _kind: kind } = this;
     return html`<form
       novalidate
       @submit=${(event: Event) => {
@@ -108,23 +108,23 @@ export class StrataColumnDialog extends LitElement {
         <span>${words.name}</span>
         <input type="text" name="name" maxlength="200" autofocus .value=${column?.name ?? ""} />
       </label>
-      <strata-labels-field .labels=${column?.labels ?? kNoLabels} @keydown=${this.on_key}></strata-labels-field>
+      <strata-labels-field .labels=${column?.labels ?? kNoLabels} @keydown=${this.onKey}></strata-labels-field>
       <label class="field">
         <span>${words.kind}</span>
-        <select name="kind" @change=${(event: Event) => (this.kind_ = (event.target as HTMLSelectElement).value as ColumnKind)}>
+        <select name="kind" @change=${(event: Event) => (this._kind = (event.target as HTMLSelectElement).value as ColumnKind)}>
           ${kColumnKinds.map((each) => html`<option value=${each} ?selected=${each === kind}>${words.kinds[each]}</option>`)}
         </select>
       </label>
       ${column && column.kind !== kind ? html`<p class="hint" role="status">${words.retype_hint}</p>` : nothing}
       ${
-        has_limits(kind)
+        hasLimits(kind)
           ? html`<div class="three">
             <label class="field"><span>${words.unit}</span><input type="text" name="unit" maxlength="40" .value=${column?.unit ?? ""} /></label>
             <label class="field"
-              ><span>${words.minimum}</span><input type="text" inputmode="decimal" name="minimum" .value=${cell_text(column?.minimum)}
+              ><span>${words.minimum}</span><input type="text" inputmode="decimal" name="minimum" .value=${cellText(column?.minimum)}
             /></label>
             <label class="field"
-              ><span>${words.maximum}</span><input type="text" inputmode="decimal" name="maximum" .value=${cell_text(column?.maximum)}
+              ><span>${words.maximum}</span><input type="text" inputmode="decimal" name="maximum" .value=${cellText(column?.maximum)}
             /></label>
           </div>`
           : nothing
@@ -138,13 +138,13 @@ export class StrataColumnDialog extends LitElement {
           : nothing
       }
       ${
-        has_target(kind)
+        hasTarget(kind)
           ? html`<label class="field">
             <span>${words.target}</span>
             <select name="target">
-              ${this.tables_.map(
+              ${this._tables.map(
                 (table) =>
-                  html`<option value=${table.id} ?selected=${table.id === (column?.target ?? this.table.id)}>${label_of(table)}</option>`,
+                  html`<option value=${table.id} ?selected=${table.id === (column?.target ?? this.table.id)}>${labelOf(table)}</option>`,
               )}
             </select>
           </label>`
@@ -158,40 +158,42 @@ export class StrataColumnDialog extends LitElement {
         <span>${words.comment}</span>
         <textarea name="comment" rows="2" maxlength="2000" placeholder=${words.comment_hint} .value=${column?.comment ?? ""}></textarea>
       </label>
-      ${visibility_choice(this.visibility_, (visibility) => (this.visibility_ = visibility))}
+      ${visibilityChoice(this._visibility, (visibility) => (this._visibility = visibility))}
     </form>`;
   }
 
-  private lost({ converted = 0, lost = 0, lost_keys = [] }: ColumnChanged): TemplateResult {
+  private lost({
+    converted = 0,
+    lost = 0,
+    lost_keys: lostKeys = [],
+  }: ColumnChanged): TemplateResult {
     return html`<p>${words.lost(lost, converted)}</p>
-      <p class="hint numeric">${words.lost_of(format_list(lost_keys.map(String)))}</p>`;
+      <p class="hint numeric">${words.lost_of(formatList(lostKeys.map(String)))}</p>`;
   }
 
   /** Enter saves, also from a field in an element of its own. */
-  private on_key(event: KeyboardEvent): void {
+  private onKey(event: KeyboardEvent): void {
     if (event.key !== "Enter" || event.composedPath()[0] instanceof HTMLButtonElement) return;
     event.preventDefault();
-    this.form_.requestSubmit();
+    this._form.requestSubmit();
   }
 
   /** Otherwise what is wrong; empty where that is said at its field. */
   private wanted(): ColumnWanted | string {
-    const data = new FormData(this.form_);
+    const data = new FormData(this._form);
     const text = (name: string): string => String(data.get(name) ?? "").trim();
-    const limits = ["minimum", "maximum"].map((name) =>
-      parse_cell({ kind: "numeric" }, text(name)),
-    );
+    const limits = ["minimum", "maximum"].map((name) => parseCell({ kind: "numeric" }, text(name)));
     const [minimum, maximum] = limits.map((parsed) =>
       "value" in parsed ? (parsed.value as number | null) : undefined,
     );
     if (text("name") === "") return words.name_missing;
     if (minimum === undefined || maximum === undefined) return texts.tables.bad_number;
-    const labels = this.labels_.read();
+    const labels = this._labels.read();
     if (!labels) return "";
     return {
       name: text("name"),
       labels,
-      kind: this.kind_,
+      kind: this._kind,
       unit: text("unit"),
       required: data.has("required"),
       unique: data.has("unique"),
@@ -208,51 +210,51 @@ export class StrataColumnDialog extends LitElement {
 
   private async save(): Promise<void> {
     const wanted = this.wanted();
-    this.problem_ = typeof wanted === "string" ? wanted : "";
-    if (typeof wanted === "string" || this.busy_) return;
+    this._problem = typeof wanted === "string" ? wanted : "";
+    if (typeof wanted === "string" || this._busy) return;
     const { column, table, session } = this;
     await this.work(async () => {
       if (!column) {
-        await session.api.create_column(table.id, {
-          ...of_kind(wanted),
-          visibility: this.visibility_,
+        await session.api.createColumn(table.id, {
+          ...ofKind(wanted),
+          visibility: this._visibility,
         } as ColumnCreate);
       } else {
         // In a call of its own, which is no entry of the journal; the first, so that what follows
         // is seen by none who should not.
-        if (this.visibility_ !== column.visibility)
-          await session.api.change_column(table.id, column.id, { visibility: this.visibility_ });
-        const change = column_changes(column, wanted);
+        if (this._visibility !== column.visibility)
+          await session.api.changeColumn(table.id, column.id, { visibility: this._visibility });
+        const change = columnChanges(column, wanted);
         const outcome =
           Object.keys(change).length > 0
-            ? await session.api.change_column(table.id, column.id, change)
+            ? await session.api.changeColumn(table.id, column.id, change)
             : null;
-        if (outcome?.lost) this.outcome_ = outcome;
+        if (outcome?.lost) this._outcome = outcome;
       }
       await session.tables.reload(table.id);
-      if (!this.outcome_) this.dispatchEvent(new CustomEvent("closed"));
+      if (!this._outcome) this.dispatchEvent(new CustomEvent("closed"));
     });
   }
 
   /** The column is as it was, with all its values. */
-  private async take_back(): Promise<void> {
+  private async takeBack(): Promise<void> {
     await this.work(async () => {
-      await this.session.api.undo_table(this.table.id);
+      await this.session.api.undoTable(this.table.id);
       await this.session.tables.reload(this.table.id);
       this.dispatchEvent(new CustomEvent("closed"));
     });
   }
 
   private async work(task: () => Promise<void>): Promise<void> {
-    this.busy_ = true;
+    this._busy = true;
     try {
       await task();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (/^labels\b/.test(error.problem.field ?? "")) this.labels_.refuse(error.message);
-      else this.problem_ = error.message;
+      if (/^labels\b/.test(error.problem.field ?? "")) this._labels.refuse(error.message);
+      else this._problem = error.message;
     } finally {
-      this.busy_ = false;
+      this._busy = false;
     }
   }
 }

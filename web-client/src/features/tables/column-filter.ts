@@ -5,22 +5,22 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../../net/api";
-import { is_number, label_of, names_records } from "../../domain/cells";
+import { isNumber, labelOf, namesRecords } from "../../domain/cells";
 import {
-  chosen_in,
-  filter_kinds,
-  with_choice,
+  chosenIn,
+  filterKinds,
+  withChoice,
   type ColumnFilter,
   type FilterKind,
   type FilterValue,
 } from "../../domain/column-filter";
-import { count_values, type ValueCounts } from "../../domain/value-counts";
-import { compare_words, format_count, read_number, typed_number } from "../../core/locale";
+import { countValues, type ValueCounts } from "../../domain/value-counts";
+import { compareWords, formatCount, readNumber, typedNumber } from "../../core/locale";
 import type { Column } from "../../core/protocol.gen";
-import { follow_session } from "../../session/follow-session";
+import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
-import { number_input } from "../../ui/number-input";
-import { form_styles, shared_styles } from "../../ui/styles";
+import { numberInput } from "../../ui/number-input";
+import { formStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.column_filter;
@@ -41,25 +41,25 @@ export class StrataColumnFilter extends LitElement {
   /** Of the table, as it is now. */
   @property({ attribute: false }) filter = "";
   @property({ attribute: false }) anchor!: HTMLElement;
-  @state() private kind_: FilterKind = "one_of";
-  @state() private values_ = new Set<FilterValue>();
-  @state() private empty_ = false;
-  @state() private from_ = "";
-  @state() private to_ = "";
-  @state() private text_ = "";
-  @state() private search_ = "";
-  @state() private counts_: ValueCounts | null = null;
-  @state() private problem_ = "";
-  @query(".sheet") private sheet_!: HTMLElement;
+  @state() private _kind: FilterKind = "one_of";
+  @state() private _values = new Set<FilterValue>();
+  @state() private _empty = false;
+  @state() private _from = "";
+  @state() private _to = "";
+  @state() private _text = "";
+  @state() private _search = "";
+  @state() private _counts: ValueCounts | null = null;
+  @state() private _problem = "";
+  @query(".sheet") private _sheet!: HTMLElement;
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
-    form_styles,
+    sharedStyles,
+    formStyles,
     css`
       .sheet {
         position: fixed;
@@ -136,8 +136,8 @@ export class StrataColumnFilter extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     this.take(
-      chosen_in(this.filter, this.column) ?? {
-        is: filter_kinds(this.column)[0]!,
+      chosenIn(this.filter, this.column) ?? {
+        is: filterKinds(this.column)[0]!,
         values: [],
         empty: false,
         from: "",
@@ -149,69 +149,69 @@ export class StrataColumnFilter extends LitElement {
   }
 
   override firstUpdated(): void {
-    this.sheet_.showPopover();
+    this._sheet.showPopover();
     this.place();
     this.renderRoot.querySelector<HTMLElement>("select")?.focus();
   }
 
   override updated(): void {
-    if (this.sheet_.matches(":popover-open")) this.place();
+    if (this._sheet.matches(":popover-open")) this.place();
   }
 
   private take(choice: ColumnFilter): void {
-    this.kind_ = choice.is;
+    this._kind = choice.is;
     if (choice.is === "one_of") {
-      this.values_ = new Set(choice.values);
-      this.empty_ = choice.empty;
+      this._values = new Set(choice.values);
+      this._empty = choice.empty;
     } else if (choice.is === "range") {
       const shown = (end: string): string =>
-        end !== "" && is_number(this.column) ? typed_number(Number(end)) : end;
-      [this.from_, this.to_] = [shown(choice.from), shown(choice.to)];
-    } else if (choice.is === "contains") this.text_ = choice.text;
+        end !== "" && isNumber(this.column) ? typedNumber(Number(end)) : end;
+      [this._from, this._to] = [shown(choice.from), shown(choice.to)];
+    } else if (choice.is === "contains") this._text = choice.text;
   }
 
   /** Of the records that the rest of the filter finds. */
   private async count(): Promise<void> {
     try {
-      const filter = with_choice(this.filter, this.column, null);
-      this.counts_ = await count_values(
+      const filter = withChoice(this.filter, this.column, null);
+      this._counts = await countValues(
         (query) => this.session.api.records({ table: this.table }, { ...query, filter }),
         this.column.slug,
       );
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.problem_ = error.message;
+      this._problem = error.message;
     }
   }
 
   private place(): void {
     const margin = 8;
     const at = this.anchor.getBoundingClientRect();
-    const box = this.sheet_.getBoundingClientRect();
+    const box = this._sheet.getBoundingClientRect();
     const below = at.bottom + 4 + box.height <= innerHeight - margin;
     const top = below
       ? at.bottom + 4
       : Math.max(margin, Math.min(at.top - box.height - 4, innerHeight - box.height - margin));
-    this.sheet_.style.top = `${Math.max(margin, top)}px`;
-    this.sheet_.style.left = `${Math.max(margin, Math.min(at.right - box.width, innerWidth - box.width - margin))}px`;
+    this._sheet.style.top = `${Math.max(margin, top)}px`;
+    this._sheet.style.left = `${Math.max(margin, Math.min(at.right - box.width, innerWidth - box.width - margin))}px`;
   }
 
   override render(): TemplateResult {
-    const kinds = filter_kinds(this.column);
-    const name = label_of(this.column);
-    return html`<div class="sheet" popover="auto" role="dialog" aria-labelledby="title" @toggle=${this.on_toggle} @keydown=${this.on_key}>
-      <form @submit=${this.on_submit}>
+    const kinds = filterKinds(this.column);
+    const name = labelOf(this.column);
+    return html`<div class="sheet" popover="auto" role="dialog" aria-labelledby="title" @toggle=${this.onToggle} @keydown=${this.onKey}>
+      <form @submit=${this.onSubmit}>
         <h3 id="title">${words.title(name)}</h3>
         <label class="field">
           <span>${words.show}</span>
-          <select @change=${(event: Event) => (this.kind_ = (event.target as HTMLSelectElement).value as FilterKind)}>
-            ${kinds.map((kind) => html`<option value=${kind} ?selected=${kind === this.kind_}>${words.kinds[kind]}</option>`)}
+          <select @change=${(event: Event) => (this._kind = (event.target as HTMLSelectElement).value as FilterKind)}>
+            ${kinds.map((kind) => html`<option value=${kind} ?selected=${kind === this._kind}>${words.kinds[kind]}</option>`)}
           </select>
         </label>
-        ${this.kind_ === "one_of" ? this.values() : this.kind_ === "range" ? this.range() : this.kind_ === "contains" ? this.part_of_text() : nothing}
-        ${this.problem_ ? html`<p class="error" role="alert">${this.problem_}</p>` : nothing}
+        ${this._kind === "one_of" ? this.values() : this._kind === "range" ? this.range() : this._kind === "contains" ? this.partOfText() : nothing}
+        ${this._problem ? html`<p class="error" role="alert">${this._problem}</p>` : nothing}
         <div class="row">
-          <button type="button" ?disabled=${chosen_in(this.filter, this.column) === null} @click=${() => this.apply(null)}>${words.remove}</button>
+          <button type="button" ?disabled=${chosenIn(this.filter, this.column) === null} @click=${() => this.apply(null)}>${words.remove}</button>
           <button class="primary">${words.apply}</button>
         </div>
       </form>
@@ -222,16 +222,16 @@ export class StrataColumnFilter extends LitElement {
   // ────────────────────────────────────────────────────────────────────────────────────────────────────────
 
   private lines(): Line[] {
-    const { column, counts_: counts } = this;
-    const lines = [...(counts?.of_value ?? [])].map(([value, count]) => ({
+    const { column, _counts: counts } = this;
+    const lines = [...(counts?.ofValue ?? [])].map(([value, count]) => ({
       value,
       count,
-      text: this.text_of(value),
+      text: this.textOf(value),
     }));
     const known = new Set(lines.map(({ value }) => value));
     // What is chosen and what could be stand there, too.
     const also = [
-      ...this.values_,
+      ...this._values,
       ...(column.kind === "enumeration"
         ? (column.choices ?? [])
         : column.kind === "boolean"
@@ -239,53 +239,53 @@ export class StrataColumnFilter extends LitElement {
           : []),
     ];
     for (const value of new Set(also))
-      if (!known.has(value)) lines.push({ value, count: 0, text: this.text_of(value) });
-    const by_number = is_number(column);
+      if (!known.has(value)) lines.push({ value, count: 0, text: this.textOf(value) });
+    const byNumber = isNumber(column);
     return lines.sort((a, b) =>
-      by_number ? Number(a.value) - Number(b.value) : compare_words(a.text, b.text),
+      byNumber ? Number(a.value) - Number(b.value) : compareWords(a.text, b.text),
     );
   }
 
-  private text_of(value: FilterValue): string {
-    if (names_records(this.column))
+  private textOf(value: FilterValue): string {
+    if (namesRecords(this.column))
       return (
         this.session.tables.label(this.column.target ?? 0, Number(value)) ??
         texts.tables.record(Number(value))
       );
     if (typeof value === "boolean") return value ? texts.tables.yes : texts.tables.no;
-    return typeof value === "number" ? typed_number(value) : value;
+    return typeof value === "number" ? typedNumber(value) : value;
   }
 
   private values(): TemplateResult {
-    const { counts_: counts } = this;
+    const { _counts: counts } = this;
     if (!counts) return html`<p class="hint" role="status">${texts.loading}</p>`;
     const all = this.lines();
-    const wanted = this.search_.trim().toLocaleLowerCase();
+    const wanted = this._search.trim().toLocaleLowerCase();
     const found = all.filter(({ text }) => text.toLocaleLowerCase().includes(wanted));
     const choose = (value: FilterValue) => (event: Event) => {
-      const chosen = new Set(this.values_);
+      const chosen = new Set(this._values);
       if ((event.target as HTMLInputElement).checked) chosen.add(value);
       else chosen.delete(value);
-      this.values_ = chosen;
+      this._values = chosen;
     };
     return html`${
       all.length > kSearched
-        ? html`<input type="text" aria-label=${words.search} placeholder=${words.search} .value=${this.search_} @input=${(event: Event) => (this.search_ = (event.target as HTMLInputElement).value)} />`
+        ? html`<input type="text" aria-label=${words.search} placeholder=${words.search} .value=${this._search} @input=${(event: Event) => (this._search = (event.target as HTMLInputElement).value)} />`
         : nothing
     }
       <ul class="values" aria-label=${words.kinds.one_of}>
         ${found.slice(0, kMostShown).map(
           ({ value, text, count }) =>
             html`<li>
-              <label><input type="checkbox" .checked=${this.values_.has(value)} @change=${choose(value)} /><span class="ellipsis" title=${text}>${text}</span><span class="count numeric">${format_count(count)}</span></label>
+              <label><input type="checkbox" .checked=${this._values.has(value)} @change=${choose(value)} /><span class="ellipsis" title=${text}>${text}</span><span class="count numeric">${formatCount(count)}</span></label>
             </li>`,
         )}
         ${
-          counts.empty > 0 || this.empty_
+          counts.empty > 0 || this._empty
             ? html`<li>
               <label
-                ><input type="checkbox" .checked=${this.empty_} @change=${(event: Event) => (this.empty_ = (event.target as HTMLInputElement).checked)} /><span><i>${words.no_value}</i></span
-                ><span class="count numeric">${format_count(counts.empty)}</span></label
+                ><input type="checkbox" .checked=${this._empty} @change=${(event: Event) => (this._empty = (event.target as HTMLInputElement).checked)} /><span><i>${words.no_value}</i></span
+                ><span class="count numeric">${formatCount(counts.empty)}</span></label
               >
             </li>`
             : nothing
@@ -302,9 +302,8 @@ export class StrataColumnFilter extends LitElement {
 
   private range(): TemplateResult {
     const { column } = this;
-    const { least, greatest } = this.counts_ ?? { least: null, greatest: null };
-    const shown = (value: FilterValue | null): string =>
-      value === null ? "" : this.text_of(value);
+    const { least, greatest } = this._counts ?? { least: null, greatest: null };
+    const shown = (value: FilterValue | null): string => (value === null ? "" : this.textOf(value));
     const field = (
       label: string,
       value: string,
@@ -314,8 +313,8 @@ export class StrataColumnFilter extends LitElement {
       html`<label class="field">
         <span>${label}${column.unit ? ` (${column.unit})` : ""}</span>
         ${
-          is_number(column)
-            ? number_input({ value, placeholder: hint, typed })
+          isNumber(column)
+            ? numberInput({ value, placeholder: hint, typed })
             : html`<input
               type=${column.kind === "date" ? "date" : "text"}
               .value=${value}
@@ -325,14 +324,14 @@ export class StrataColumnFilter extends LitElement {
         }
       </label>`;
     return html`<div class="ends">
-      ${field(words.from, this.from_, shown(least), (text) => (this.from_ = text))} ${field(words.to, this.to_, shown(greatest), (text) => (this.to_ = text))}
+      ${field(words.from, this._from, shown(least), (text) => (this._from = text))} ${field(words.to, this._to, shown(greatest), (text) => (this._to = text))}
     </div>`;
   }
 
-  private part_of_text(): TemplateResult {
+  private partOfText(): TemplateResult {
     return html`<label class="field">
       <span>${words.contains}</span>
-      <input type="text" .value=${this.text_} maxlength="1000" @input=${(event: Event) => (this.text_ = (event.target as HTMLInputElement).value)} />
+      <input type="text" .value=${this._text} maxlength="1000" @input=${(event: Event) => (this._text = (event.target as HTMLInputElement).value)} />
     </label>`;
   }
 
@@ -341,44 +340,42 @@ export class StrataColumnFilter extends LitElement {
 
   /** Null: an end is no number. */
   private chosen(): ColumnFilter | null {
-    switch (this.kind_) {
+    switch (this._kind) {
       case "one_of":
-        return { is: "one_of", values: [...this.values_], empty: this.empty_ };
+        return { is: "one_of", values: [...this._values], empty: this._empty };
       case "contains":
-        return { is: "contains", text: this.text_.trim() };
+        return { is: "contains", text: this._text.trim() };
       case "range": {
-        const ends = [this.from_, this.to_].map((typed) =>
-          typed.trim() === "" || !is_number(this.column)
-            ? typed.trim()
-            : String(read_number(typed)),
+        const ends = [this._from, this._to].map((typed) =>
+          typed.trim() === "" || !isNumber(this.column) ? typed.trim() : String(readNumber(typed)),
         );
         return ends.includes("NaN") ? null : { is: "range", from: ends[0]!, to: ends[1]! };
       }
       default:
-        return { is: this.kind_ };
+        return { is: this._kind };
     }
   }
 
-  private readonly on_submit = (event: Event): void => {
+  private readonly onSubmit = (event: Event): void => {
     event.preventDefault();
     const chosen = this.chosen();
     if (chosen) this.apply(chosen);
-    else this.problem_ = texts.tables.bad_number;
+    else this._problem = texts.tables.bad_number;
   };
 
   private apply(choice: ColumnFilter | null): void {
     this.dispatchEvent(
-      new CustomEvent("filter", { detail: with_choice(this.filter, this.column, choice) }),
+      new CustomEvent("filter", { detail: withChoice(this.filter, this.column, choice) }),
     );
-    this.sheet_.hidePopover();
+    this._sheet.hidePopover();
   }
 
   /** Enter in a field chooses, Escape leaves: neither is for the page. */
-  private on_key(event: KeyboardEvent): void {
+  private onKey(event: KeyboardEvent): void {
     if (event.key !== "Tab") event.stopPropagation();
   }
 
-  private on_toggle(event: ToggleEvent): void {
+  private onToggle(event: ToggleEvent): void {
     if (event.newState !== "closed") return;
     const had = this.renderRoot instanceof ShadowRoot && this.renderRoot.activeElement !== null;
     if (had || document.activeElement === document.body) this.anchor.focus();

@@ -8,8 +8,8 @@ import type { RecordsReport } from "../../core/protocol.gen";
 import "../../ui/dialog";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { is_useful, records_report, report_styles } from "./records-report";
-import { shared_styles } from "../../ui/styles";
+import { isUseful, recordsReport, reportStyles } from "./records-report";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.tables;
@@ -20,11 +20,11 @@ export class StrataCsvDialog extends LitElement {
   /** Id. */
   @property({ attribute: false }) table = 0;
   @property({ attribute: false }) file!: File;
-  @state() private report_: RecordsReport | null = null;
-  @state() private problem_ = "";
-  @state() private busy_ = false;
+  @state() private _report: RecordsReport | null = null;
+  @state() private _problem = "";
+  @state() private _busy = false;
 
-  static override styles = [shared_styles, report_styles];
+  static override styles = [sharedStyles, reportStyles];
 
   override connectedCallback(): void {
     super.connectedCallback();
@@ -32,31 +32,31 @@ export class StrataCsvDialog extends LitElement {
   }
 
   override render(): TemplateResult {
-    const report = this.report_;
+    const report = this._report;
     return html`<strata-dialog wide heading=${words.csv_title(this.file.name)} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
-      ${report ? records_report(report, words.csv_rows) : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${words.csv_looking}</p>`}
-      <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
-      <button slot="actions" class="primary" ?disabled=${this.busy_ || !report || !is_useful(report)} @click=${() => void this.send(false)}>${words.csv_import}</button>
+      ${report ? recordsReport(report, words.csv_rows) : html`<p class="hint" role="status" ?hidden=${this._problem !== ""}>${words.csv_looking}</p>`}
+      <p class="error" role="alert" ?hidden=${!this._problem}>${this._problem}</p>
+      <button slot="actions" class="primary" ?disabled=${this._busy || !report || !isUseful(report)} @click=${() => void this.send(false)}>${words.csv_import}</button>
     </strata-dialog>`;
   }
 
-  private async send(dry_run: boolean): Promise<void> {
-    this.busy_ = true;
-    this.problem_ = "";
+  private async send(dryRun: boolean): Promise<void> {
+    this._busy = true;
+    this._problem = "";
     try {
-      const report = await this.session.api.import_records(this.table, this.file, dry_run);
-      this.report_ = report;
-      if (dry_run) return;
+      const report = await this.session.api.importRecords(this.table, this.file, dryRun);
+      this._report = report;
+      if (dryRun) return;
       this.session.tables.view?.rows.refresh();
       notices.show("success", words.csv_done(report.created, report.changed));
       this.dispatchEvent(new CustomEvent("closed"));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       // the table has changed since it was tried
-      if (error.problem.rows) this.report_ = error.problem.rows;
-      else this.problem_ = error.message;
+      if (error.problem.rows) this._report = error.problem.rows;
+      else this._problem = error.message;
     } finally {
-      this.busy_ = false;
+      this._busy = false;
     }
   }
 }

@@ -8,47 +8,47 @@ const kMostKept = 300;
 
 export class RecordShelf {
   /** A symbol: it was asked for; null: there is none. */
-  private readonly kept_ = new Map<string, TableRecord | symbol | null>();
+  private readonly _kept = new Map<string, TableRecord | symbol | null>();
 
   constructor(
-    private readonly api_: Api,
-    private readonly changed_: () => void,
+    private readonly _api: Api,
+    private readonly _changed: () => void,
   ) {}
 
   /** Null until it is here, and where there is none; it is asked for once. */
   find(table: number, key: number): TableRecord | null {
-    const known = this.kept_.get(name_of(table, key));
+    const known = this._kept.get(nameOf(table, key));
     if (known === undefined) void this.load(table, key);
     return typeof known === "object" ? known : null;
   }
 
   /** What was known of it is so no longer. */
   forget(table: number, key: number): void {
-    if (this.kept_.delete(name_of(table, key))) this.changed_();
+    if (this._kept.delete(nameOf(table, key))) this._changed();
   }
-  forget_table(table: number): void {
-    for (const name of [...this.kept_.keys()])
-      if (name.startsWith(name_of(table, ""))) this.kept_.delete(name);
+  forgetTable(table: number): void {
+    for (const name of [...this._kept.keys()])
+      if (name.startsWith(nameOf(table, ""))) this._kept.delete(name);
   }
-  forget_all(): void {
-    this.kept_.clear();
+  forgetAll(): void {
+    this._kept.clear();
   }
 
   private async load(table: number, key: number): Promise<void> {
-    const name = name_of(table, key);
+    const name = nameOf(table, key);
     const asked = Symbol();
-    this.kept_.set(name, asked);
-    const [oldest] = this.kept_.keys();
-    if (this.kept_.size > kMostKept && oldest !== undefined) this.kept_.delete(oldest);
+    this._kept.set(name, asked);
+    const [oldest] = this._kept.keys();
+    if (this._kept.size > kMostKept && oldest !== undefined) this._kept.delete(oldest);
     let found: TableRecord | null = null;
     try {
-      found = await this.api_.record({ table }, key);
+      found = await this._api.record({ table }, key);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error; // paint without a record
     }
-    if (this.kept_.get(name) === asked) this.kept_.set(name, found);
-    this.changed_();
+    if (this._kept.get(name) === asked) this._kept.set(name, found);
+    this._changed();
   }
 }
 
-const name_of = (table: number, key: number | ""): string => `${table} ${key}`;
+const nameOf = (table: number, key: number | ""): string => `${table} ${key}`;

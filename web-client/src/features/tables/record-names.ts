@@ -3,8 +3,8 @@
 // the first ones.
 
 import { ApiError, type Api } from "../../net/api";
-import { label_column, label_of_record, type NameOfKey } from "../../domain/cells";
-import { person_languages } from "../../core/locale";
+import { labelColumn, labelOfRecord, type NameOfKey } from "../../domain/cells";
+import { personLanguages } from "../../core/locale";
 import type { Table, TableRecord } from "../../core/protocol.gen";
 
 export interface NamedRecord {
@@ -21,39 +21,39 @@ const kMostFound = 60;
  * called.
  */
 export interface OtherNames {
-  name_of: NameOfKey;
+  nameOf: NameOfKey;
   /** By key; null: the table is no list of terms, as far as is known. */
   places(table: number): ReadonlyMap<number, number> | null;
 }
-const kNoOthers: OtherNames = { name_of: () => null, places: () => null };
+const kNoOthers: OtherNames = { nameOf: () => null, places: () => null };
 
-const collator = new Intl.Collator([...person_languages()], { numeric: true });
+const collator = new Intl.Collator([...personLanguages()], { numeric: true });
 
 export class RecordNames {
-  private records_ = new Map<number, Pick<TableRecord, "values">>(); // of what names them
-  private sorted_: NamedRecord[] | null = null;
-  private state_: "unasked" | "loading" | "loaded" = "unasked";
-  private again_ = false;
-  private complete_ = false; // every record is in names_
+  private _records = new Map<number, Pick<TableRecord, "values">>(); // of what names them
+  private _sorted: NamedRecord[] | null = null;
+  private _state: "unasked" | "loading" | "loaded" = "unasked";
+  private _again = false;
+  private _complete = false; // every record is in _names
 
   constructor(
-    private readonly api_: Api,
-    private readonly table_: () => Table,
-    private readonly changed_: () => void,
-    private readonly others_: OtherNames = kNoOthers,
+    private readonly _api: Api,
+    private readonly _table: () => Table,
+    private readonly _changed: () => void,
+    private readonly _others: OtherNames = kNoOthers,
   ) {}
 
   /** Null: there is no such record, or its name is not known yet. */
   label(key: number): string | null {
     this.want();
-    const record = this.records_.get(key);
+    const record = this._records.get(key);
     return (record && this.name(record)) || null;
   }
 
   /** Whether it is known that there is no such record. */
   lacks(key: number): boolean {
     this.want();
-    return this.complete_ && !this.records_.has(key);
+    return this._complete && !this._records.has(key);
   }
 
   /**
@@ -65,7 +65,7 @@ export class RecordNames {
     const wanted = text.trim().toLowerCase();
     const begins: NamedRecord[] = [];
     const holds: NamedRecord[] = [];
-    for (const { key, label } of this.in_order()) {
+    for (const { key, label } of this.inOrder()) {
       const name = label.toLowerCase();
       if (name.startsWith(wanted) || String(key) === wanted) begins.push({ key, label });
       else if (
@@ -79,47 +79,47 @@ export class RecordNames {
   }
 
   get loading(): boolean {
-    return this.state_ === "loading";
+    return this._state === "loading";
   }
 
   put(record: TableRecord): void {
-    if (this.state_ === "unasked") return;
-    this.records_.set(record.key, record);
+    if (this._state === "unasked") return;
+    this._records.set(record.key, record);
     this.reorder();
-    this.changed_();
+    this._changed();
   }
   remove(key: number): void {
-    if (!this.records_.delete(key)) return;
+    if (!this._records.delete(key)) return;
     this.reorder();
-    this.changed_();
+    this._changed();
   }
   /** What they are called by, or sorted by, may be another. */
   reorder(): void {
-    this.sorted_ = null;
+    this._sorted = null;
   }
   /** Many changed, or the column that names them. */
   refresh(): void {
-    if (this.state_ === "loading") this.again_ = true;
-    else if (this.state_ === "loaded") void this.load();
+    if (this._state === "loading") this._again = true;
+    else if (this._state === "loaded") void this.load();
   }
 
   private name(record: Pick<TableRecord, "values">): string {
-    return label_of_record(this.table_(), record, undefined, this.others_.name_of);
+    return labelOfRecord(this._table(), record, undefined, this._others.nameOf);
   }
 
-  private in_order(): NamedRecord[] {
-    if (this.sorted_) return this.sorted_;
-    const table = this.table_();
-    const title = label_column(table);
-    const own = table.kind === "terms" ? this.others_.places(table.id) : null;
-    const of_title = !own && title?.kind === "term" ? this.others_.places(title.target ?? 0) : null;
+  private inOrder(): NamedRecord[] {
+    if (this._sorted) return this._sorted;
+    const table = this._table();
+    const title = labelColumn(table);
+    const own = table.kind === "terms" ? this._others.places(table.id) : null;
+    const ofTitle = !own && title?.kind === "term" ? this._others.places(title.target ?? 0) : null;
     const place = (key: number): number => {
-      const named = of_title ? this.records_.get(key)?.values[title!.slug] : undefined;
+      const named = ofTitle ? this._records.get(key)?.values[title!.slug] : undefined;
       return (
-        own?.get(key) ?? (typeof named === "number" ? of_title!.get(named) : undefined) ?? Infinity
+        own?.get(key) ?? (typeof named === "number" ? ofTitle!.get(named) : undefined) ?? Infinity
       );
     };
-    const named = [...this.records_].map(([key, record]) => ({
+    const named = [...this._records].map(([key, record]) => ({
       key,
       label: this.name(record),
       place: place(key),
@@ -130,24 +130,24 @@ export class RecordNames {
         ? nameless(a) - nameless(b) || collator.compare(a.label, b.label) || a.key - b.key
         : a.place - b.place,
     );
-    return (this.sorted_ = named.map(({ key, label }) => ({ key, label })));
+    return (this._sorted = named.map(({ key, label }) => ({ key, label })));
   }
 
   private want(): void {
-    if (this.state_ === "unasked") void this.load();
+    if (this._state === "unasked") void this.load();
   }
 
   private async load(): Promise<void> {
-    this.state_ = "loading";
+    this._state = "loading";
     try {
       do {
-        this.again_ = false;
-        const table = this.table_();
+        this._again = false;
+        const table = this._table();
         const names = new Map<number, Pick<TableRecord, "values">>();
         let complete = false;
         for (let offset = 0; offset < kMostNames; offset += kAtOnce) {
-          const sortby = label_column(table)?.slug ?? "key";
-          const { records, total } = await this.api_.records(
+          const sortby = labelColumn(table)?.slug ?? "key";
+          const { records, total } = await this._api.records(
             { table: table.id },
             { sortby, limit: kAtOnce, offset },
           );
@@ -155,15 +155,15 @@ export class RecordNames {
           complete = offset + kAtOnce >= total;
           if (complete) break;
         }
-        this.records_ = names;
+        this._records = names;
         this.reorder();
-        this.complete_ = complete;
-      } while (this.again_);
-      this.state_ = "loaded";
+        this._complete = complete;
+      } while (this._again);
+      this._state = "loaded";
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.state_ = "loaded"; // the numbers stand for them; the next event asks again
+      this._state = "loaded"; // the numbers stand for them; the next event asks again
     }
-    this.changed_();
+    this._changed();
   }
 }

@@ -3,8 +3,8 @@
 // flickers.
 
 import { ApiError, type RecordQuery } from "../../net/api";
-import { same_value } from "../../domain/cells";
-import { marks_of } from "../../domain/marks";
+import { sameValue } from "../../domain/cells";
+import { marksOf } from "../../domain/marks";
 import type { RecordList, TableRecord } from "../../core/protocol.gen";
 import type { ProblemBody } from "../../core/types";
 
@@ -22,7 +22,7 @@ export interface RecordRowsHost {
   ask(query: RecordQuery): Promise<RecordList>;
   changed(): void;
   /** A record has other lines or points than before: what it measures on the model is not known. */
-  measures_outdated(): void;
+  measuresOutdated(): void;
 }
 
 export class RecordRows {
@@ -31,67 +31,67 @@ export class RecordRows {
   /** Why there is no answer: of the filter, or of the server. */
   problem: ProblemBody | null = null;
 
-  private sortby_ = "";
-  private filter_ = "";
-  private readonly pages_ = new Map<number, Page>();
-  private generation_ = 0;
-  private asked_ = new Set<number>(); // pages of this generation that are on their way
-  private wanted_: [number, number] = [0, 0];
-  private replaces_ = false; // the next answer is of another order: what is shown goes with it
+  private _sortby = "";
+  private _filter = "";
+  private readonly _pages = new Map<number, Page>();
+  private _generation = 0;
+  private _asked = new Set<number>(); // pages of this generation that are on their way
+  private _wanted: [number, number] = [0, 0];
+  private _replaces = false; // the next answer is of another order: what is shown goes with it
 
-  constructor(private readonly host_: RecordRowsHost) {}
+  constructor(private readonly _host: RecordRowsHost) {}
 
   get sortby(): string {
-    return this.sortby_;
+    return this._sortby;
   }
   get filter(): string {
-    return this.filter_;
+    return this._filter;
   }
 
   /** What is here answers the filter. */
   get settled(): boolean {
-    return this.loaded && !this.replaces_ && !this.problem;
+    return this.loaded && !this._replaces && !this.problem;
   }
 
   row(index: number): TableRecord | null {
-    return this.pages_.get(Math.floor(index / kPageRows))?.rows[index % kPageRows] ?? null;
+    return this._pages.get(Math.floor(index / kPageRows))?.rows[index % kPageRows] ?? null;
   }
 
   /** Rows that are to be shown, from first to last. */
   want(first: number, last: number): void {
-    this.wanted_ = [
+    this._wanted = [
       Math.floor(Math.max(0, first) / kPageRows),
       Math.floor(Math.max(0, last) / kPageRows),
     ];
     this.pump();
   }
 
-  set_query(query: { sortby?: string; filter?: string }): void {
-    const { sortby = this.sortby_, filter = this.filter_ } = query;
-    if (sortby === this.sortby_ && filter === this.filter_) return;
-    this.sortby_ = sortby;
-    this.filter_ = filter;
-    this.replaces_ = true;
+  setQuery(query: { sortby?: string; filter?: string }): void {
+    const { sortby = this._sortby, filter = this._filter } = query;
+    if (sortby === this._sortby && filter === this._filter) return;
+    this._sortby = sortby;
+    this._filter = filter;
+    this._replaces = true;
     this.refresh();
   }
 
   /** Records came, went or changed: all is asked for again as it is looked at. */
   refresh(): void {
-    this.generation_ += 1;
-    this.asked_ = new Set();
+    this._generation += 1;
+    this._asked = new Set();
     this.problem = null;
     this.pump();
-    this.host_.changed();
+    this._host.changed();
   }
 
   find(key: number): TableRecord | null {
-    const index = this.index_of(key);
+    const index = this.indexOf(key);
     return index === null ? null : this.row(index);
   }
 
   /** Where the record is among the rows that are here. */
-  index_of(key: number): number | null {
-    for (const [page, { rows }] of this.pages_) {
+  indexOf(key: number): number | null {
+    for (const [page, { rows }] of this._pages) {
       const at = rows.findIndex((row) => row.key === key);
       if (at >= 0) return page * kPageRows + at;
     }
@@ -100,106 +100,105 @@ export class RecordRows {
 
   /** Where the record is among all rows; null where it is not one of them. */
   async locate(key: number): Promise<number | null> {
-    const { generation_ } = this;
+    const { _generation } = this;
     for (let offset = 0; ; offset += kSearchedRows) {
-      const here = this.index_of(key);
+      const here = this.indexOf(key);
       if (here !== null) return here;
       if (offset > 0 && offset >= this.total) return null;
-      const { records, total } = await this.host_.ask({
-        sortby: this.sortby_,
-        filter: this.filter_,
+      const { records, total } = await this._host.ask({
+        sortby: this._sortby,
+        filter: this._filter,
         limit: kSearchedRows,
         offset,
       });
-      if (generation_ !== this.generation_) return this.locate(key);
-      this.take_total(total);
+      if (_generation !== this._generation) return this.locate(key);
+      this.takeTotal(total);
       for (let at = 0; at < records.length; at += kPageRows) {
-        this.pages_.set((offset + at) / kPageRows, {
+        this._pages.set((offset + at) / kPageRows, {
           rows: records.slice(at, at + kPageRows),
-          generation: generation_,
+          generation: _generation,
         });
       }
-      this.host_.changed();
+      this._host.changed();
     }
   }
 
   /** The newest state of a record, in the place where its row is. */
   put(record: TableRecord): void {
-    for (const page of this.pages_.values()) {
+    for (const page of this._pages.values()) {
       const at = page.rows.findIndex((row) => row.key === record.key);
       if (at < 0) continue;
       const before = page.rows[at]!;
       if (record.version < before.version) return; // told before, and late
       // the table's own answers do not know the layer, or its model
-      const { area_m2, length_m, point_count } = before;
+      const { area_m2: areaM2, length_m: lengthM, point_count: pointCount } = before;
       const measures = Object.fromEntries(
-        Object.entries({ area_m2, length_m, point_count }).filter(
+        Object.entries({ area_m2: areaM2, length_m: lengthM, point_count: pointCount }).filter(
           ([, value]) => value !== undefined,
         ),
       );
       page.rows = page.rows.map((row) =>
         row === before ? { ...record, ...(record.area_m2 === undefined ? measures : {}) } : row,
       );
-      this.host_.changed();
-      if (record.area_m2 === undefined && !same_marks(before, record))
-        this.host_.measures_outdated();
+      this._host.changed();
+      if (record.area_m2 === undefined && !sameMarks(before, record)) this._host.measuresOutdated();
       return;
     }
   }
 
   private pump(): void {
-    const [first, last] = this.wanted_;
+    const [first, last] = this._wanted;
     for (let page = first; page <= last; ++page) {
-      if (this.asked_.size >= kMostAtOnce || this.problem) return;
+      if (this._asked.size >= kMostAtOnce || this.problem) return;
       // past the end
-      const known = this.loaded && !this.replaces_ && page > 0 && page * kPageRows >= this.total;
-      if (known || this.asked_.has(page) || this.pages_.get(page)?.generation === this.generation_)
+      const known = this.loaded && !this._replaces && page > 0 && page * kPageRows >= this.total;
+      if (known || this._asked.has(page) || this._pages.get(page)?.generation === this._generation)
         continue;
       void this.load(page);
     }
   }
 
   private async load(page: number): Promise<void> {
-    const { generation_ } = this;
-    this.asked_.add(page);
+    const { _generation } = this;
+    this._asked.add(page);
     try {
       const query = {
-        sortby: this.sortby_,
-        filter: this.filter_,
+        sortby: this._sortby,
+        filter: this._filter,
         limit: kPageRows,
         offset: page * kPageRows,
       };
-      const { records, total } = await this.host_.ask(query);
-      if (generation_ !== this.generation_) return;
-      if (this.replaces_) this.pages_.clear();
-      this.replaces_ = false;
-      this.take_total(total);
-      this.pages_.delete(page); // the newest is the last
-      this.pages_.set(page, { rows: records, generation: generation_ });
-      for (const old of this.pages_.keys()) {
-        if (this.pages_.size <= kMostKeptPages) break;
-        this.pages_.delete(old);
+      const { records, total } = await this._host.ask(query);
+      if (_generation !== this._generation) return;
+      if (this._replaces) this._pages.clear();
+      this._replaces = false;
+      this.takeTotal(total);
+      this._pages.delete(page); // the newest is the last
+      this._pages.set(page, { rows: records, generation: _generation });
+      for (const old of this._pages.keys()) {
+        if (this._pages.size <= kMostKeptPages) break;
+        this._pages.delete(old);
       }
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (generation_ === this.generation_) this.problem = error.problem;
+      if (_generation === this._generation) this.problem = error.problem;
     } finally {
-      if (generation_ === this.generation_) this.asked_.delete(page);
+      if (_generation === this._generation) this._asked.delete(page);
     }
-    this.host_.changed();
+    this._host.changed();
     this.pump();
   }
 
-  private take_total(total: number): void {
+  private takeTotal(total: number): void {
     this.total = total;
     this.loaded = true;
-    for (const page of this.pages_.keys()) if (page * kPageRows >= total) this.pages_.delete(page);
+    for (const page of this._pages.keys()) if (page * kPageRows >= total) this._pages.delete(page);
   }
 }
 
-function same_marks(before: TableRecord, now: TableRecord): boolean {
+function sameMarks(before: TableRecord, now: TableRecord): boolean {
   const slugs = new Set([...Object.keys(before.values), ...Object.keys(now.values)]);
   return [...slugs].every((slug) =>
-    same_value(marks_of(before.values[slug]), marks_of(now.values[slug])),
+    sameValue(marksOf(before.values[slug]), marksOf(now.values[slug])),
   );
 }

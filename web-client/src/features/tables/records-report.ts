@@ -1,13 +1,13 @@
 // What an import would do, or has done: how many rows are new, and line by line what is wrong.
 
 import { css, html, nothing, type TemplateResult } from "lit";
-import { format_count } from "../../core/locale";
+import { formatCount } from "../../core/locale";
 import type { RecordsReport } from "../../core/protocol.gen";
 import { texts } from "../../texts";
 
 const words = texts.reports;
 
-export const report_styles = css`
+export const reportStyles = css`
   .counts {
     display: flex;
     flex-wrap: wrap;
@@ -48,29 +48,29 @@ export const report_styles = css`
 `;
 
 /** It would be written, and change something. */
-export const is_useful = (report: RecordsReport): boolean =>
+export const isUseful = (report: RecordsReport): boolean =>
   report.problems.length === 0 && report.created + report.changed > 0;
 
 /** `rows`: what the file's rows are called. */
-export function records_report(report: RecordsReport, rows: string): TemplateResult {
+export function recordsReport(report: RecordsReport, rows: string): TemplateResult {
   const counts: [string, number][] = [
     [rows, report.rows],
     [words.created, report.created],
     [words.changed, report.changed],
     [words.unchanged, report.unchanged],
   ];
-  const left_out = report.left_out ?? 0;
-  return html`<dl class="counts numeric">${counts.map(([what, count]) => html`<div><dt>${what}</dt><dd>${format_count(count)}</dd></div>`)}</dl>
-    ${left_out > 0 ? html`<p class="hint">${words.left_out(left_out)}</p>` : nothing}
-    ${report.problems.length === 0 ? html`<p>${report.created + report.changed > 0 ? words.good : words.same}</p>` : what_is_wrong(report)}`;
+  const leftOut = report.left_out ?? 0;
+  return html`<dl class="counts numeric">${counts.map(([what, count]) => html`<div><dt>${what}</dt><dd>${formatCount(count)}</dd></div>`)}</dl>
+    ${leftOut > 0 ? html`<p class="hint">${words.left_out(leftOut)}</p>` : nothing}
+    ${report.problems.length === 0 ? html`<p>${report.created + report.changed > 0 ? words.good : words.same}</p>` : whatIsWrong(report)}`;
 }
 
 /** A file without lines says which term it is, and one with lines need not. */
-function what_is_wrong({ problems }: RecordsReport): TemplateResult {
+function whatIsWrong({ problems }: RecordsReport): TemplateResult {
   const sorted = [...problems].sort((a, b) => a.line - b.line);
-  const has_lines = sorted.some(({ line }) => line > 0);
-  const has_codes = sorted.some(({ code }) => code);
-  const has_columns = sorted.some(({ column }) => column);
+  const hasLines = sorted.some(({ line }) => line > 0);
+  const hasCodes = sorted.some(({ code }) => code);
+  const hasColumns = sorted.some(({ column }) => column);
   const cell = (shown: boolean, content: unknown, style = ""): TemplateResult | typeof nothing =>
     shown ? html`<td class=${style}>${content}</td>` : nothing;
   const head = (shown: boolean, content: string): TemplateResult | typeof nothing =>
@@ -80,14 +80,14 @@ function what_is_wrong({ problems }: RecordsReport): TemplateResult {
       <table>
         <thead>
           <tr>
-            ${head(has_lines, words.line)} ${head(has_codes, words.term)} ${head(has_columns, words.column)} ${head(true, words.what)}
+            ${head(hasLines, words.line)} ${head(hasCodes, words.term)} ${head(hasColumns, words.column)} ${head(true, words.what)}
           </tr>
         </thead>
         <tbody>
           ${sorted.map(
             ({ line, code, column, detail }) =>
               html`<tr>
-                ${cell(has_lines, line || nothing, "numeric")} ${cell(has_codes, code)} ${cell(has_columns, column)} ${cell(true, detail)}
+                ${cell(hasLines, line || nothing, "numeric")} ${cell(hasCodes, code)} ${cell(hasColumns, column)} ${cell(true, detail)}
               </tr>`,
           )}
         </tbody>

@@ -4,43 +4,43 @@
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { can_be_title, holds_files, is_number, label_column, label_of } from "../../domain/cells";
-import { chosen_in } from "../../domain/column-filter";
-import { holds_marks } from "../../domain/marks";
-import { format_area } from "../../domain/measure";
-import { css_color, record_color } from "../../domain/palette";
+import { canBeTitle, holdsFiles, isNumber, labelColumn, labelOf } from "../../domain/cells";
+import { chosenIn } from "../../domain/column-filter";
+import { holdsMarks } from "../../domain/marks";
+import { formatArea } from "../../domain/measure";
+import { cssColor, recordColor } from "../../domain/palette";
 import type { CellValue, Column, Table, TableRecord } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
-import { open_bin_of } from "../../ui/trash-dialog";
+import { openBinOf } from "../../ui/trash-dialog";
 import type { CellEdit } from "./cell-edits";
 import "../../session/fields/cell-input";
-import { may_be_text, takes_typing, type StrataCellInput } from "../../session/fields/cell-input";
+import { mayBeText, takesTyping, type StrataCellInput } from "../../session/fields/cell-input";
 import "./column-filter";
 import { ask } from "../../ui/dialog";
 import { FileDrop } from "../../ui/drop";
-import { follow_session } from "../../session/follow-session";
+import { followSession } from "../../session/follow-session";
 import { growth } from "../../ui/growth";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { measures_of, type RecordMeasure } from "../../session/fields/record-measures";
+import { measuresOf, type RecordMeasure } from "../../session/fields/record-measures";
 import type { RecordClaim } from "../../session/record-editors";
-import { save_from } from "../../ui/save-from";
-import { shown_value } from "../../session/fields/shown-value";
-import { shared_styles } from "../../ui/styles";
+import { saveFrom } from "../../ui/save-from";
+import { shownValue } from "../../session/fields/shown-value";
+import { sharedStyles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
-import { table_styles } from "./table-styles";
+import { tableStyles } from "./table-styles";
 import type { TableView } from "./table-view";
-import { terms_type } from "./terms-files";
+import { termsType } from "./terms-files";
 import { texts } from "../../texts";
-import { visibility_badge } from "../../ui/visibility";
-import { told_clock } from "../../domain/times";
+import { visibilityBadge } from "../../ui/visibility";
+import { toldClock } from "../../domain/times";
 import type { TablePanelRequest } from "../../session/requests";
 
-const kRow_px = 32;
-const kHead_px = 34;
-const kNarrow_px = 820; // of the panel, where one row of tools has no room for all
+const kRowPx = 32;
+const kHeadPx = 34;
+const kNarrowPx = 820; // of the panel, where one row of tools has no room for all
 const kAbove = 6; // rows drawn beyond those in sight
 const kKeyWidth = 92;
 const kMeasureWidth = 110;
@@ -79,107 +79,107 @@ interface Editing {
 export class StrataTablePanel extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) view!: TableView;
-  @state() private active_ = { row: 0, column: 0 };
-  @state() private editing_: Editing | null = null;
-  @state() private editor_problem_ = "";
+  @state() private _active = { row: 0, column: 0 };
+  @state() private _editing: Editing | null = null;
+  @state() private _editorProblem = "";
   // whose filter is open
-  @state() private filtered_: { column: Column; anchor: HTMLElement } | null = null;
-  private claim_: RecordClaim | null = null; // of the record that is written into
-  @query(".scroller") private scroller_!: HTMLElement | null;
-  @query(".editor strata-cell-input") private input_!: StrataCellInput | null;
-  @query(".filter input") private filter_!: HTMLInputElement;
-  private readonly drop_ = new FileDrop(
+  @state() private _filtered: { column: Column; anchor: HTMLElement } | null = null;
+  private _claim: RecordClaim | null = null; // of the record that is written into
+  @query(".scroller") private _scroller!: HTMLElement | null;
+  @query(".editor strata-cell-input") private _input!: StrataCellInput | null;
+  @query(".filter input") private _filter!: HTMLInputElement;
+  private readonly _drop = new FileDrop(
     this,
-    (files) => this.take_files(files),
-    () => this.can_write,
+    (files) => this.takeFiles(files),
+    () => this.canWrite,
   );
-  private readonly widths_ = new Map<string, number>();
-  private observer_: ResizeObserver | null = null;
-  private growth_ = 1;
-  private from_ = 0; // the row that the next one with Shift goes on from
+  private readonly _widths = new Map<string, number>();
+  private _observer: ResizeObserver | null = null;
+  private _growth = 1;
+  private _from = 0; // the row that the next one with Shift goes on from
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
-  static override styles = [shared_styles, table_styles];
+  static override styles = [sharedStyles, tableStyles];
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.observer_?.disconnect();
-    this.observer_ = null;
-    this.claim_?.release();
-    this.claim_ = null;
+    this._observer?.disconnect();
+    this._observer = null;
+    this._claim?.release();
+    this._claim = null;
   }
 
   override willUpdate(): void {
-    this.growth_ = growth();
-    this.claim_edited();
-    this.classList.toggle("over", this.drop_.over);
-    this.classList.toggle("narrow", this.is_narrow);
-    const { first, last } = this.in_sight();
+    this._growth = growth();
+    this.claimEdited();
+    this.classList.toggle("over", this._drop.over);
+    this.classList.toggle("narrow", this.isNarrow);
+    const { first, last } = this.inSight();
     this.view.rows.want(first, last);
   }
 
   override updated(): void {
-    if (this.scroller_ && !this.observer_) {
-      this.observer_ = new ResizeObserver(() => this.requestUpdate());
-      this.observer_.observe(this.scroller_);
+    if (this._scroller && !this._observer) {
+      this._observer = new ResizeObserver(() => this.requestUpdate());
+      this._observer.observe(this._scroller);
     }
     if (this.view.sought !== null) void this.seek();
   }
 
   /** Others see which record is written into. */
-  private claim_edited(): void {
-    const { editing_: editing, view } = this;
+  private claimEdited(): void {
+    const { _editing: editing, view } = this;
     if (
-      this.claim_?.key === editing?.key &&
-      (editing === null || this.claim_?.table === view.table_id)
+      this._claim?.key === editing?.key &&
+      (editing === null || this._claim?.table === view.tableId)
     )
       return;
-    this.claim_?.release();
-    this.claim_ = editing ? this.session.editors.claim(view.table_id, editing.key) : null;
+    this._claim?.release();
+    this._claim = editing ? this.session.editors.claim(view.tableId, editing.key) : null;
   }
 
   // ── what is in sight
   // ──────────────────────────────────────────────────────────────────────────────────────────────
 
-  private get row_px(): number {
-    return kRow_px * this.growth_;
+  private get rowPx(): number {
+    return kRowPx * this._growth;
   }
-  private get head_px(): number {
-    return kHead_px * this.growth_;
-  }
-
-  private in_sight(): { first: number; last: number } {
-    const { scrollTop: top = 0, clientHeight: height = 300 } = this.scroller_ ?? {};
-    const first = Math.max(0, Math.floor(top / this.row_px) - kAbove);
-    return { first, last: Math.ceil((top + height) / this.row_px) + kAbove };
+  private get headPx(): number {
+    return kHeadPx * this._growth;
   }
 
-  private get is_narrow(): boolean {
-    return this.clientWidth <= kNarrow_px * this.growth_;
+  private inSight(): { first: number; last: number } {
+    const { scrollTop: top = 0, clientHeight: height = 300 } = this._scroller ?? {};
+    const first = Math.max(0, Math.floor(top / this.rowPx) - kAbove);
+    return { first, last: Math.ceil((top + height) / this.rowPx) + kAbove };
+  }
+
+  private get isNarrow(): boolean {
+    return this.clientWidth <= kNarrowPx * this._growth;
   }
   private get layer(): Layer | null {
-    return this.session.layers.find(this.view.layer_id);
+    return this.session.layers.find(this.view.layerId);
   }
-  private get can_write(): boolean {
-    return this.session.can_paint;
+  private get canWrite(): boolean {
+    return this.session.canPaint;
   }
 
-  private width_of(column: Column): number {
-    return this.widths_.get(column.slug) ?? (kWidths[column.kind] ?? kUsualWidth) * this.growth_;
+  private widthOf(column: Column): number {
+    return this._widths.get(column.slug) ?? (kWidths[column.kind] ?? kUsualWidth) * this._growth;
   }
-  private width_of_measure({ name }: RecordMeasure): number {
-    return this.widths_.get(name) ?? kMeasureWidth * this.growth_;
+  private widthOfMeasure({ name }: RecordMeasure): number {
+    return this._widths.get(name) ?? kMeasureWidth * this._growth;
   }
   /** Left edges of the columns, then of what is measured; at last the right one. */
   private edges(table: Table): number[] {
-    const edges = [this.widths_.get("key") ?? kKeyWidth * this.growth_];
+    const edges = [this._widths.get("key") ?? kKeyWidth * this._growth];
     const widths = [
-      ...table.columns.map((column) => this.width_of(column)),
-      ...measures_of(table).map((measure) => this.width_of_measure(measure)),
+      ...table.columns.map((column) => this.widthOf(column)),
+      ...measuresOf(table).map((measure) => this.widthOfMeasure(measure)),
     ];
     for (const width of widths) edges.push(edges[edges.length - 1]! + width);
     return edges;
@@ -192,7 +192,7 @@ export class StrataTablePanel extends LitElement {
     const { view, layer } = this;
     const { table } = view;
     if (!table || !layer) return html`<p class="empty" role="status">${texts.loading}</p>`;
-    return html`${this.bar(table, layer)} ${this.filter_problem()} ${this.grid(table, layer)} ${this.chosen(layer)} ${this.column_filter(table)}`;
+    return html`${this.bar(table, layer)} ${this.filterProblem()} ${this.grid(table, layer)} ${this.chosen(layer)} ${this.columnFilter(table)}`;
   }
 
   private bar(table: Table, layer: Layer): TemplateResult {
@@ -202,7 +202,7 @@ export class StrataTablePanel extends LitElement {
     const shown =
       rows.filter === "" ? words.records(rows.total) : words.records_of(rows.total, table.records);
     return html`<div class="bar">
-      <h2 class="ellipsis" title=${table.description}>${label_of(table)}</h2>
+      <h2 class="ellipsis" title=${table.description}>${labelOf(table)}</h2>
       <span class="hint numeric count" role="status">${view.told || (rows.loaded ? shown : "")}</span>
       ${view.outdated ? html`<button class="link" title=${words.outdated_hint} @click=${() => rows.refresh()}>${words.outdated}</button>` : nothing}
       <div class="filter">
@@ -215,59 +215,59 @@ export class StrataTablePanel extends LitElement {
           placeholder=${words.filter_example}
           aria-invalid=${rows.problem?.field === "filter" ? "true" : "false"}
           .value=${rows.filter}
-          @change=${this.on_filter}
-          @keydown=${this.on_filter_key}
+          @change=${this.onFilter}
+          @keydown=${this.onFilterKey}
         />
         ${
           rows.filter === ""
             ? nothing
-            : html`<button class="icon quiet" aria-label=${words.filter_clear} title=${words.filter_clear} @click=${() => rows.set_query({ filter: "" })}>
+            : html`<button class="icon quiet" aria-label=${words.filter_clear} title=${words.filter_clear} @click=${() => rows.setQuery({ filter: "" })}>
               ${icon("close")}
             </button>`
         }
       </div>
       <span class="grow"></span>
-      ${this.on_model()}
+      ${this.onModel()}
       ${
-        this.can_write
+        this.canWrite
           ? html`<button aria-label=${words.new_record} title=${words.new_record} @click=${() => this.request({ dialog: "record", layer, key: null })}>
               ${icon("plus")}<span class="words">${words.new_record}</span>
             </button>
-            ${this.is_narrow ? nothing : this.turns("tool")}`
+            ${this.isNarrow ? nothing : this.turns("tool")}`
           : nothing
       }
       ${
-        this.is_narrow
+        this.isNarrow
           ? nothing
           : html`<span class="files">
-            <button title=${words.save_xlsx} aria-label=${words.save_xlsx} @click=${() => this.save_sheet(table, "xlsx")}>XLSX</button>
-            <button title=${words.save_csv} aria-label=${words.save_csv} @click=${() => this.save_sheet(table, "csv")}>CSV</button>
+            <button title=${words.save_xlsx} aria-label=${words.save_xlsx} @click=${() => this.saveSheet(table, "xlsx")}>XLSX</button>
+            <button title=${words.save_csv} aria-label=${words.save_csv} @click=${() => this.saveSheet(table, "csv")}>CSV</button>
           </span>`
       }
       <strata-menu label=${words.more}>
-        ${this.can_write && this.is_narrow ? html`${this.turns("menuitem")}<hr />` : nothing}
+        ${this.canWrite && this.isNarrow ? html`${this.turns("menuitem")}<hr />` : nothing}
         ${
-          session.can_curate
+          session.canCurate
             ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "column", table: table.id, column: null })}>
                 ${icon("plus")}${words.new_column}
               </button>
               <hr />`
             : nothing
         }
-        <button class="quiet" role="menuitem" @click=${() => this.save_sheet(table, "xlsx")}>${icon("import")}${words.save_xlsx}</button>
-        <button class="quiet" role="menuitem" @click=${() => this.save_sheet(table, "csv")}>${icon("import")}${words.save_csv}</button>
-        <button class="quiet" role="menuitem" @click=${() => this.save_sheet(table, "csv", { separator: "semicolon" })}>${icon("import")}${words.save_csv_semicolon}</button>
-        ${table.kind === "terms" ? this.terms_menu(table) : nothing}
+        <button class="quiet" role="menuitem" @click=${() => this.saveSheet(table, "xlsx")}>${icon("import")}${words.save_xlsx}</button>
+        <button class="quiet" role="menuitem" @click=${() => this.saveSheet(table, "csv")}>${icon("import")}${words.save_csv}</button>
+        <button class="quiet" role="menuitem" @click=${() => this.saveSheet(table, "csv", { separator: "semicolon" })}>${icon("import")}${words.save_csv_semicolon}</button>
+        ${table.kind === "terms" ? this.termsMenu(table) : nothing}
         ${
-          this.can_write
-            ? html`<button class="quiet" role="menuitem" @click=${() => this.choose_csv(table)}>${icon("upload")}${words.import_csv}</button>
+          this.canWrite
+            ? html`<button class="quiet" role="menuitem" @click=${() => this.chooseCsv(table)}>${icon("upload")}${words.import_csv}</button>
               ${
-                table.columns.some(holds_files)
-                  ? html`<button class="quiet" role="menuitem" @click=${() => this.choose_photos(table)}>${icon("picture")}${texts.files.add_menu}</button>`
+                table.columns.some(holdsFiles)
+                  ? html`<button class="quiet" role="menuitem" @click=${() => this.choosePhotos(table)}>${icon("picture")}${texts.files.add_menu}</button>`
                   : nothing
               }
               <hr />
-              <button class="quiet" role="menuitem" @click=${() => void open_bin_of(session)}>${icon("trash")}${texts.bin.open}</button>`
+              <button class="quiet" role="menuitem" @click=${() => void openBinOf(session)}>${icon("trash")}${texts.bin.open}</button>`
             : nothing
         }
       </strata-menu>
@@ -286,16 +286,16 @@ export class StrataTablePanel extends LitElement {
     return [turn("undo", () => view.undo()), turn("redo", () => view.redo())];
   }
 
-  private terms_menu(table: Table): TemplateResult {
+  private termsMenu(table: Table): TemplateResult {
     const words = texts.terms_dialog;
-    const { api, can_curate } = this.session;
+    const { api, canCurate } = this.session;
     const save = (format: "csv" | "turtle", ending: string) => () =>
-      save_from(api.terms_url(table.id, format), `${table.slug}.${ending}`);
+      saveFrom(api.termsUrl(table.id, format), `${table.slug}.${ending}`);
     return html`<hr />
       <button class="quiet" role="menuitem" @click=${save("csv", "csv")}>${icon("import")}${words.save_csv}</button>
       <button class="quiet" role="menuitem" @click=${save("turtle", "ttl")}>${icon("import")}${words.save_turtle}</button>
       ${
-        can_curate
+        canCurate
           ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "terms", table: table.id, file: null })}>
             ${icon("upload")}${words.open_more}
           </button>`
@@ -314,13 +314,13 @@ export class StrataTablePanel extends LitElement {
     const [key] = keys;
     const one = keys.length === 1 && key !== undefined;
     const name = one
-      ? (this.session.tables.label(this.view.table_id, key) ?? words.record(key))
+      ? (this.session.tables.label(this.view.tableId, key) ?? words.record(key))
       : words.chosen(keys.length);
     return html`<div class="chosen" role="group" aria-label=${words.chosen(keys.length)}>
-      <span class="numeric ellipsis">${name} · ${format_area(area)}</span>
+      <span class="numeric ellipsis">${name} · ${formatArea(area)}</span>
       ${
-        one && this.can_write
-          ? html`<button class="icon quiet" aria-label=${words.paint_with} title=${words.paint_with} @click=${() => this.paint_with(layer, key)}>
+        one && this.canWrite
+          ? html`<button class="icon quiet" aria-label=${words.paint_with} title=${words.paint_with} @click=${() => this.paintWith(layer, key)}>
               ${icon("brush")}
             </button>
             <button class="icon quiet" aria-label=${words.edit} title=${words.edit} @click=${() => this.request({ dialog: "record", layer, key })}>
@@ -331,36 +331,36 @@ export class StrataTablePanel extends LitElement {
             </button>`
           : nothing
       }
-      <button class="icon quiet" aria-label=${words.choose_none} title=${words.choose_none} @click=${() => this.view.select_none()}>${icon("close")}</button>
+      <button class="icon quiet" aria-label=${words.choose_none} title=${words.choose_none} @click=${() => this.view.selectNone()}>${icon("close")}</button>
     </div>`;
   }
 
   /** Whether the rows that are chosen, or that the filter finds, stand out on the model. */
-  private on_model(): TemplateResult {
+  private onModel(): TemplateResult {
     const words = texts.tables;
     const { view } = this;
     const { extent, highlight } = view;
-    const by_filter = extent !== null && view.selected.size === 0;
-    const is_nowhere = extent !== null && !extent.bounds;
+    const byFilter = extent !== null && view.selected.size === 0;
+    const isNowhere = extent !== null && !extent.bounds;
     return html`<div class="on-model" role="group" aria-label=${words.on_model}>
-      ${by_filter ? html`<span class="hint numeric" title=${words.painted_of(extent.painted, extent.records)}>${format_area(extent.area_m2)}</span>` : nothing}
+      ${byFilter ? html`<span class="hint numeric" title=${words.painted_of(extent.painted, extent.records)}>${formatArea(extent.area_m2)}</span>` : nothing}
       <button
         class="icon quiet"
-        aria-pressed=${view.lights_up}
+        aria-pressed=${view.lightsUp}
         aria-label=${words.light_up}
         title="${words.light_up}. ${words.light_up_hint}"
-        @click=${() => view.set_lights_up(!view.lights_up)}
+        @click=${() => view.setLightsUp(!view.lightsUp)}
       >
         ${icon("bulb")}
       </button>
-      <button class="icon quiet" aria-pressed=${view.isolates} aria-label=${words.isolate} title=${words.isolate} @click=${() => view.set_isolates(!view.isolates)}>
+      <button class="icon quiet" aria-pressed=${view.isolates} aria-label=${words.isolate} title=${words.isolate} @click=${() => view.setIsolates(!view.isolates)}>
         ${icon("isolate")}
       </button>
       <button
         class="icon quiet"
-        ?disabled=${highlight === null || is_nowhere}
+        ?disabled=${highlight === null || isNowhere}
         aria-label=${words.fly}
-        title=${is_nowhere ? words.nothing_here : words.fly}
+        title=${isNowhere ? words.nothing_here : words.fly}
         @click=${() => view.fly()}
       >
         ${icon("fit")}
@@ -369,7 +369,7 @@ export class StrataTablePanel extends LitElement {
   }
 
   /** The filter with the character that is wrong. */
-  private filter_problem(): TemplateResult | typeof nothing {
+  private filterProblem(): TemplateResult | typeof nothing {
     const { problem, filter } = this.view.rows;
     if (!problem) return nothing;
     const { offset } = problem;
@@ -386,26 +386,26 @@ export class StrataTablePanel extends LitElement {
 
   private grid(table: Table, layer: Layer): TemplateResult {
     const { rows } = this.view;
-    const { first, last } = this.in_sight();
+    const { first, last } = this.inSight();
     const edges = this.edges(table);
     const widths = edges.map((edge, at) => edge - (edges[at - 1] ?? 0));
     const indices: number[] = [];
     for (let index = first; index < Math.min(last, rows.total); ++index) indices.push(index);
-    const { row, column } = this.active_;
+    const { row, column } = this._active;
     return html`<div
       class="scroller"
       role="grid"
       tabindex="0"
-      aria-label=${texts.tables.grid(label_of(table))}
+      aria-label=${texts.tables.grid(labelOf(table))}
       aria-rowcount=${rows.total + 1}
       aria-colcount=${widths.length}
       aria-activedescendant=${indices.includes(row) ? `cell-${row}-${column}` : nothing}
-      ${styled({ "--columns": widths.map((width) => `${width}px`).join(" "), "--row": `${this.row_px}px` })}
+      ${styled({ "--columns": widths.map((width) => `${width}px`).join(" "), "--row": `${this.rowPx}px` })}
       @scroll=${() => this.requestUpdate()}
-      @keydown=${this.on_key}
+      @keydown=${this.onKey}
     >
       ${this.head(table)}
-      <div class="body" role="rowgroup" ${styled({ height: `${rows.total * this.row_px}px` })}>
+      <div class="body" role="rowgroup" ${styled({ height: `${rows.total * this.rowPx}px` })}>
         ${repeat(
           indices,
           (index) => index,
@@ -413,16 +413,16 @@ export class StrataTablePanel extends LitElement {
         )}
         ${this.editor(edges)} ${this.bubbles(table, edges)}
       </div>
-      ${rows.loaded && rows.total === 0 && !rows.problem ? this.nothing_there(table, layer) : nothing}
+      ${rows.loaded && rows.total === 0 && !rows.problem ? this.nothingThere(table, layer) : nothing}
     </div>`;
   }
 
-  private nothing_there(table: Table, layer: Layer): TemplateResult {
+  private nothingThere(table: Table, layer: Layer): TemplateResult {
     const words = texts.tables;
     return html`<div class="empty">
       <span>${table.records === 0 ? words.empty : words.nothing_matches}</span>
       ${
-        table.records === 0 && this.can_write
+        table.records === 0 && this.canWrite
           ? html`<button @click=${() => this.request({ dialog: "record", layer, key: null })}>${icon("plus")}${words.new_record}</button>`
           : nothing
       }
@@ -432,13 +432,13 @@ export class StrataTablePanel extends LitElement {
   private head(table: Table): TemplateResult {
     const words = texts.tables;
     return html`<div class="head" role="row" aria-rowindex="1">
-      ${this.head_cell("key", words.key, "key")}
-      ${table.columns.map((column) => this.head_cell(column.slug, label_of(column), is_number(column) ? "number" : "", column))}
-      ${measures_of(table).map(({ name, label }) => this.head_cell(name, label, "number"))}
+      ${this.headCell("key", words.key, "key")}
+      ${table.columns.map((column) => this.headCell(column.slug, labelOf(column), isNumber(column) ? "number" : "", column))}
+      ${measuresOf(table).map(({ name, label }) => this.headCell(name, label, "number"))}
     </div>`;
   }
 
-  private head_cell(name: string, label: string, kind: string, column?: Column): TemplateResult {
+  private headCell(name: string, label: string, kind: string, column?: Column): TemplateResult {
     const words = texts.tables;
     const { sortby } = this.view.rows;
     const sorted = sortby === name ? "ascending" : sortby === `-${name}` ? "descending" : "none";
@@ -451,56 +451,56 @@ export class StrataTablePanel extends LitElement {
               : nothing
           }</span
         >
-        ${column ? visibility_badge(column.visibility) : nothing} ${sorted === "none" ? nothing : icon(sorted === "ascending" ? "up" : "down")}
+        ${column ? visibilityBadge(column.visibility) : nothing} ${sorted === "none" ? nothing : icon(sorted === "ascending" ? "up" : "down")}
       </button>
-      ${column ? this.filter_button(column, label) : nothing}
+      ${column ? this.filterButton(column, label) : nothing}
       ${
-        column && this.session.can_curate
+        column && this.session.canCurate
           ? html`<strata-menu label=${words.column_menu(label)} small>
-            <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "column", table: this.view.table_id, column })}>
+            <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "column", table: this.view.tableId, column })}>
               ${icon("edit")}${words.change_column}
             </button>
-            ${this.title_button(column)}
+            ${this.titleButton(column)}
             <button class="quiet" role="menuitem" @click=${() => this.dispatchEvent(new CustomEvent("drop-column", { detail: column }))}>
               ${icon("trash")}${words.drop_column}
             </button>
           </strata-menu>`
           : nothing
       }
-      <span class="edge" @pointerdown=${(event: PointerEvent) => this.on_edge(event, name)}></span>
+      <span class="edge" @pointerdown=${(event: PointerEvent) => this.onEdge(event, name)}></span>
     </div>`;
   }
 
-  private filter_button(column: Column, label: string): TemplateResult {
+  private filterButton(column: Column, label: string): TemplateResult {
     const words = texts.column_filter;
-    const is_on = chosen_in(this.view.rows.filter, column) !== null;
-    const told = is_on ? words.open_on(label) : words.open(label);
-    return html`<button class="icon quiet by-column ${is_on ? "on" : ""}" aria-haspopup="dialog" aria-label=${told} title=${told} @click=${(event: Event) => this.open_filter(column, event)}>
+    const isOn = chosenIn(this.view.rows.filter, column) !== null;
+    const told = isOn ? words.open_on(label) : words.open(label);
+    return html`<button class="icon quiet by-column ${isOn ? "on" : ""}" aria-haspopup="dialog" aria-label=${told} title=${told} @click=${(event: Event) => this.openFilter(column, event)}>
       ${icon("filter")}
     </button>`;
   }
 
   /** Records are called by what they have in the column. */
-  private title_button(column: Column): TemplateResult | typeof nothing {
+  private titleButton(column: Column): TemplateResult | typeof nothing {
     const words = texts.tables;
     const { table } = this.view;
-    if (!table || table.kind === "terms" || !can_be_title(column)) return nothing;
-    const is_title = label_column(table)?.id === column.id;
+    if (!table || table.kind === "terms" || !canBeTitle(column)) return nothing;
+    const isTitle = labelColumn(table)?.id === column.id;
     return html`<button
       class="quiet"
       role="menuitemcheckbox"
-      aria-checked=${is_title}
-      ?disabled=${is_title && table.title_column !== column.id}
+      aria-checked=${isTitle}
+      ?disabled=${isTitle && table.title_column !== column.id}
       title=${words.title_hint}
-      @click=${() => void this.set_title(table.id, is_title ? null : column.id)}
+      @click=${() => void this.setTitle(table.id, isTitle ? null : column.id)}
     >
-      ${icon(is_title ? "check" : "edit")}${words.title_column}
+      ${icon(isTitle ? "check" : "edit")}${words.title_column}
     </button>`;
   }
 
-  private async set_title(table: number, column: number | null): Promise<void> {
+  private async setTitle(table: number, column: number | null): Promise<void> {
     try {
-      await this.session.api.set_title_column(table, column);
+      await this.session.api.setTitleColumn(table, column);
       await this.session.tables.reload(table);
     } catch (error) {
       notices.error(error);
@@ -508,19 +508,19 @@ export class StrataTablePanel extends LitElement {
   }
 
   private sort(name: string): void {
-    if (this.scroller_) this.scroller_.scrollTop = 0;
+    if (this._scroller) this._scroller.scrollTop = 0;
     this.view.sort(name);
   }
 
   private line(table: Table, layer: Layer, index: number): TemplateResult {
     const record = this.view.rows.row(index);
     const chosen = record !== null && this.view.selected.has(record.key);
-    const is_active = (column: number): string =>
-      this.active_.row === index && this.active_.column === column ? "active" : "";
-    const color = record ? record_color(this.session.layers.palette(layer), record) : null;
+    const isActive = (column: number): string =>
+      this._active.row === index && this._active.column === column ? "active" : "";
+    const color = record ? recordColor(this.session.layers.palette(layer), record) : null;
     const writer = record ? this.session.editors.other(table.id, record.key) : null;
     const told = writer
-      ? writer.is_me
+      ? writer.isMe
         ? texts.tables.edited_elsewhere
         : texts.tables.edited_by(writer.user)
       : "";
@@ -529,17 +529,17 @@ export class StrataTablePanel extends LitElement {
       role="row"
       aria-rowindex=${index + 2}
       aria-selected=${chosen}
-      ${styled({ top: `${index * this.row_px}px` })}
+      ${styled({ top: `${index * this.rowPx}px` })}
     >
-      <div class="cell key numeric ${is_active(0)}" role="rowheader" id="cell-${index}-0" @click=${(event: MouseEvent) => this.on_key_cell(event, index)}>
-        ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}${record?.key ?? "…"}
+      <div class="cell key numeric ${isActive(0)}" role="rowheader" id="cell-${index}-0" @click=${(event: MouseEvent) => this.onKeyCell(event, index)}>
+        ${color ? html`<span class="swatch" ${styled({ background: cssColor(color) })}></span>` : nothing}${record?.key ?? "…"}
         ${writer ? html`<span class="writer" role="img" aria-label=${told} title=${told}>${icon("edit")}</span>` : nothing}
       </div>
-      ${table.columns.map((column, at) => this.cell(record, column, index, at + 1, is_active(at + 1)))}
-      ${measures_of(table).map(({ text }, measure) => {
+      ${table.columns.map((column, at) => this.cell(record, column, index, at + 1, isActive(at + 1)))}
+      ${measuresOf(table).map(({ text }, measure) => {
         const at = table.columns.length + 1 + measure;
         return html`<div
-          class="cell number numeric computed ${is_active(at)}"
+          class="cell number numeric computed ${isActive(at)}"
           role="gridcell"
           aria-readonly="true"
           id="cell-${index}-${at}"
@@ -561,36 +561,36 @@ export class StrataTablePanel extends LitElement {
     const edit = record ? this.view.edits.of(record.key, column.slug) : null;
     const value = edit ? edit.value : (record?.values[column.slug] ?? null);
     const state = edit ? (edit.state === "saving" ? "saving" : "refused") : "";
-    const number = is_number(column) ? "number numeric" : "";
+    const number = isNumber(column) ? "number numeric" : "";
     return html`<div
       class="cell ${number} ${state} ${active}"
       role="gridcell"
       id="cell-${row}-${at}"
-      @click=${(event: MouseEvent) => this.on_cell(event, row, at)}
+      @click=${(event: MouseEvent) => this.onCell(event, row, at)}
     >
       <span class="ellipsis">${record ? this.shown(column, value) : ""}</span>
     </div>`;
   }
 
   private shown(column: Column, value: CellValue): unknown {
-    return shown_value(this.session, column, value);
+    return shownValue(this.session, column, value);
   }
 
   // ── writing into a cell
   // ───────────────────────────────────────────────────────────────────────────────────────────
 
   private editor(edges: readonly number[]): TemplateResult | typeof nothing {
-    const editing = this.editing_;
+    const editing = this._editing;
     const { table } = this.view;
     if (!editing || !table) return nothing;
     const at = table.columns.findIndex((column) => column.id === editing.column.id);
     if (at < 0) return nothing;
-    const width = Math.max(this.width_of(editing.column), kEditorWidth[editing.column.kind] ?? 0);
+    const width = Math.max(this.widthOf(editing.column), kEditorWidth[editing.column.kind] ?? 0);
     return html`<div
         class="editor"
-        ${styled({ top: `${editing.row * this.row_px}px`, left: `${edges[at]!}px`, width: `${width}px` })}
-        @keydown=${this.on_editor_key}
-        @focusout=${this.on_editor_left}
+        ${styled({ top: `${editing.row * this.rowPx}px`, left: `${edges[at]!}px`, width: `${width}px` })}
+        @keydown=${this.onEditorKey}
+        @focusout=${this.onEditorLeft}
       >
         <strata-cell-input
           class="in-cell"
@@ -598,33 +598,33 @@ export class StrataTablePanel extends LitElement {
           .column=${editing.column}
           .value=${editing.value}
           .typed=${editing.typed}
-          .invalid=${this.editor_problem_ !== ""}
-          .fixed=${this.is_taken}
+          .invalid=${this._editorProblem !== ""}
+          .fixed=${this.isTaken}
         ></strata-cell-input>
       </div>
-      ${this.is_taken ? this.taken(editing, edges[at]!) : nothing}
+      ${this.isTaken ? this.taken(editing, edges[at]!) : nothing}
       ${
-        this.editor_problem_
+        this._editorProblem
           ? html`<div class="bubble" role="alert" ${styled(this.beside(editing.row, edges[at]!))}>
-            <span class="error">${this.editor_problem_}</span>
+            <span class="error">${this._editorProblem}</span>
           </div>`
           : nothing
       }`;
   }
 
   /** Somebody else has the record that is written into here. */
-  private get is_taken(): boolean {
-    return this.claim_ !== null && this.claim_.other !== null;
+  private get isTaken(): boolean {
+    return this._claim !== null && this._claim.other !== null;
   }
 
   private taken({ key, row }: Editing, left: number): TemplateResult {
     const words = texts.tables;
-    const { user, is_me } = this.claim_!.other!;
+    const { user, isMe } = this._claim!.other!;
     return html`<div class="bubble" role="alert" ${styled(this.beside(row, left))}>
-      <span>${is_me ? words.taken_elsewhere : words.taken_over(user)}</span>
+      <span>${isMe ? words.taken_elsewhere : words.taken_over(user)}</span>
       <div class="row">
-        <button @click=${() => void this.take_over(key)}>${words.take_over}</button>
-        <button class="quiet" @click=${() => this.leave_cell()}>${words.give_up}</button>
+        <button @click=${() => void this.takeOver(key)}>${words.take_over}</button>
+        <button class="quiet" @click=${() => this.leaveCell()}>${words.give_up}</button>
       </div>
     </div>`;
   }
@@ -633,37 +633,37 @@ export class StrataTablePanel extends LitElement {
    * Asks whoever would write into a record that somebody else has; `work` is done if it is, or was,
    * to be had.
    */
-  private async take_over(key: number, work: () => void = () => {}): Promise<void> {
+  private async takeOver(key: number, work: () => void = () => {}): Promise<void> {
     const words = texts.tables;
     const { session, view } = this;
-    const claim = session.editors.claim(view.table_id, key);
+    const claim = session.editors.claim(view.tableId, key);
     const { other } = claim;
-    const name = session.tables.label(view.table_id, key) ?? words.record(key);
-    const lead = other?.is_me ? words.take_over_own : words.take_over_lead(other?.user ?? "");
+    const name = session.tables.label(view.tableId, key) ?? words.record(key);
+    const lead = other?.isMe ? words.take_over_own : words.take_over_lead(other?.user ?? "");
     if (
       !other ||
       (await ask({ heading: words.take_over_title(name), lead, yes: words.take_over }))
     ) {
-      if (other) claim.take_over();
+      if (other) claim.takeOver();
       work();
       await this.updateComplete; // what is written into from now on has a claim of its own
     }
     claim.release();
   }
 
-  private leave_cell(): void {
-    this.editing_ = null;
-    this.editor_problem_ = "";
-    this.scroller_?.focus();
+  private leaveCell(): void {
+    this._editing = null;
+    this._editorProblem = "";
+    this._scroller?.focus();
   }
 
   /** Below the row, or above it where there is more room. */
   private beside(row: number, left: number): Record<string, string | null> {
-    const { scrollTop = 0, clientHeight = 0 } = this.scroller_ ?? {};
-    const below = row === 0 || row * this.row_px - scrollTop < (clientHeight - this.head_px) / 2;
+    const { scrollTop = 0, clientHeight = 0 } = this._scroller ?? {};
+    const below = row === 0 || row * this.rowPx - scrollTop < (clientHeight - this.headPx) / 2;
     const [top, bottom] = below
-      ? [(row + 1) * this.row_px + 3, null]
-      : [null, (this.view.rows.total - row) * this.row_px + 3];
+      ? [(row + 1) * this.rowPx + 3, null]
+      : [null, (this.view.rows.total - row) * this.rowPx + 3];
     return {
       left: `${left}px`,
       top: top === null ? null : `${top}px`,
@@ -674,11 +674,11 @@ export class StrataTablePanel extends LitElement {
   /** What the server refused, and what somebody else wrote meanwhile. */
   private bubbles(table: Table, edges: readonly number[]): unknown {
     return this.view.edits.open.map((edit) => {
-      const row = this.view.rows.index_of(edit.key);
+      const row = this.view.rows.indexOf(edit.key);
       const at = table.columns.findIndex((column) => column.slug === edit.slug);
-      const written_again =
-        this.editing_?.key === edit.key && this.editing_.column.slug === edit.slug;
-      if (row === null || at < 0 || written_again) return nothing;
+      const writtenAgain =
+        this._editing?.key === edit.key && this._editing.column.slug === edit.slug;
+      if (row === null || at < 0 || writtenAgain) return nothing;
       return html`<div class="bubble" role="alert" ${styled(this.beside(row, edges[at]!))}>
         ${edit.theirs ? this.conflict(table.columns[at]!, edit) : this.refused(edit, row, at + 1)}
       </div>`;
@@ -689,8 +689,8 @@ export class StrataTablePanel extends LitElement {
     const words = texts.tables;
     return html`<span class="error">${edit.problem}</span>
       <div class="row">
-        <button @click=${() => this.edit_at(row, at, null)}>${words.correct}</button>
-        <button class="quiet" @click=${() => this.leave_edit(edit)}>${words.give_up}</button>
+        <button @click=${() => this.editAt(row, at, null)}>${words.correct}</button>
+        <button class="quiet" @click=${() => this.leaveEdit(edit)}>${words.give_up}</button>
       </div>`;
   }
 
@@ -699,62 +699,61 @@ export class StrataTablePanel extends LitElement {
     const theirs = edit.theirs!;
     const shown = (value: CellValue): unknown =>
       value === null ? words.no_value : this.shown(column, value);
-    const time = theirs.time ? told_clock(theirs.time) : "";
+    const time = theirs.time ? toldClock(theirs.time) : "";
     return html`<span>${words.changed_by(theirs.user || words.somebody, time)} <b>${shown(theirs.value)}</b></span>
       <span>${words.yours} <b>${shown(edit.value)}</b></span>
       <div class="row">
-        <button @click=${() => this.leave_edit(edit)}>${words.keep_theirs}</button>
+        <button @click=${() => this.leaveEdit(edit)}>${words.keep_theirs}</button>
         <button class="primary" @click=${() => this.insist(edit)}>${words.take_mine}</button>
       </div>`;
   }
 
-  private leave_edit(edit: CellEdit): void {
+  private leaveEdit(edit: CellEdit): void {
     this.view.edits.forget(edit.key, edit.slug);
-    this.scroller_?.focus();
+    this._scroller?.focus();
   }
   private insist(edit: CellEdit): void {
     void this.view.edits.insist(edit);
-    this.scroller_?.focus();
+    this._scroller?.focus();
   }
 
-  private edit_at(row: number, at: number, typed: string | null): void {
+  private editAt(row: number, at: number, typed: string | null): void {
     const record = this.view.rows.row(row);
     const column = this.view.table?.columns[at - 1];
-    if (!this.can_write || !record || !column) return;
-    if (holds_files(column) || holds_marks(column)) {
+    if (!this.canWrite || !record || !column) return;
+    if (holdsFiles(column) || holdsMarks(column)) {
       this.request({ dialog: "record", layer: this.layer!, key: record.key });
       return;
     }
-    if (this.is_held(record.key))
-      void this.take_over(record.key, () => this.edit_now(row, at, typed));
-    else this.edit_now(row, at, typed);
+    if (this.isHeld(record.key)) void this.takeOver(record.key, () => this.editNow(row, at, typed));
+    else this.editNow(row, at, typed);
   }
 
-  private is_held(key: number): boolean {
-    return this.session.editors.other(this.view.table_id, key) !== null;
+  private isHeld(key: number): boolean {
+    return this.session.editors.other(this.view.tableId, key) !== null;
   }
 
-  private clear_cell(record: TableRecord, { slug }: Column): void {
+  private clearCell(record: TableRecord, { slug }: Column): void {
     const clear = (): void =>
-      void this.view.write(record.key, slug, null, this.base_of(record, slug));
-    if (this.is_held(record.key)) void this.take_over(record.key, clear);
+      void this.view.write(record.key, slug, null, this.baseOf(record, slug));
+    if (this.isHeld(record.key)) void this.takeOver(record.key, clear);
     else clear();
   }
 
   /** What a cell holds, for who writes into it: what is on its way to the server, too. */
-  private base_of({ key, values }: TableRecord, slug: string): CellValue {
+  private baseOf({ key, values }: TableRecord, slug: string): CellValue {
     const edit = this.view.edits.of(key, slug);
     return edit?.state === "saving" ? edit.value : (values[slug] ?? null);
   }
 
-  private edit_now(row: number, at: number, typed: string | null): void {
+  private editNow(row: number, at: number, typed: string | null): void {
     const record = this.view.rows.row(row);
     const column = this.view.table?.columns[at - 1];
     if (!record || !column) return;
     this.activate(row, at);
-    this.scroll_to_active(this.view.table!);
-    const base = this.base_of(record, column.slug);
-    this.editing_ = {
+    this.scrollToActive(this.view.table!);
+    const base = this.baseOf(record, column.slug);
+    this._editing = {
       key: record.key,
       row,
       column,
@@ -762,9 +761,9 @@ export class StrataTablePanel extends LitElement {
       base,
       typed,
     };
-    this.editor_problem_ = "";
+    this._editorProblem = "";
     void this.updateComplete.then(async () => {
-      const input = this.input_;
+      const input = this._input;
       await input?.updateComplete;
       input?.begin();
     });
@@ -772,28 +771,28 @@ export class StrataTablePanel extends LitElement {
 
   /** False: what was typed is no value, or somebody took the record over; it stays in the field. */
   private commit(): boolean {
-    const editing = this.editing_;
-    const read = this.input_?.read();
+    const editing = this._editing;
+    const read = this._input?.read();
     if (!editing || !read) return true;
-    if (this.is_taken) return false;
+    if (this.isTaken) return false;
     if ("problem" in read) {
-      this.editor_problem_ = read.problem;
+      this._editorProblem = read.problem;
       return false;
     }
-    this.editing_ = null;
-    this.editor_problem_ = "";
+    this._editing = null;
+    this._editorProblem = "";
     this.view.write(editing.key, editing.column.slug, read.value, editing.base);
     return true;
   }
 
-  private readonly on_editor_key = (event: KeyboardEvent): void => {
-    const { row, column } = this.active_;
+  private readonly onEditorKey = (event: KeyboardEvent): void => {
+    const { row, column } = this._active;
     if (event.key === "Escape") {
-      this.leave_cell();
+      this.leaveCell();
     } else if (event.key === "Enter" && !event.shiftKey && !event.altKey) {
-      if (this.commit()) this.move_to(row + 1, column);
+      if (this.commit()) this.moveTo(row + 1, column);
     } else if (event.key === "Tab") {
-      if (this.commit()) this.edit_beside(row, column, event.shiftKey ? -1 : 1);
+      if (this.commit()) this.editBeside(row, column, event.shiftKey ? -1 : 1);
     } else {
       event.stopPropagation();
       return;
@@ -803,24 +802,24 @@ export class StrataTablePanel extends LitElement {
   };
 
   /** The next cell that can be written into; at the end of a row the first one of the next. */
-  private edit_beside(row: number, column: number, step: 1 | -1): void {
+  private editBeside(row: number, column: number, step: 1 | -1): void {
     const count = this.view.table?.columns.length ?? 0;
     const next = column + step;
     if (next < 1) [row, column] = [row - 1, count];
     else if (next > count) [row, column] = [row + 1, 1];
     else column = next;
     if (row < 0 || row >= this.view.rows.total || count === 0) {
-      this.scroller_?.focus();
+      this._scroller?.focus();
       return;
     }
-    this.move_to(row, column);
-    this.edit_at(row, column, null);
+    this.moveTo(row, column);
+    this.editAt(row, column, null);
   }
 
-  private readonly on_editor_left = (event: FocusEvent): void => {
+  private readonly onEditorLeft = (event: FocusEvent): void => {
     const editor = event.currentTarget as HTMLElement;
     if (
-      !this.editing_ ||
+      !this._editing ||
       (event.relatedTarget instanceof Node && editor.contains(event.relatedTarget))
     )
       return;
@@ -831,27 +830,27 @@ export class StrataTablePanel extends LitElement {
   // ──────────────────────────────────────────────────────────────────────────────────────────
 
   private activate(row: number, column: number): void {
-    this.active_ = { row, column };
+    this._active = { row, column };
   }
 
-  private move_to(row: number, column: number): void {
+  private moveTo(row: number, column: number): void {
     const { table, rows } = this.view;
-    if (!table || !this.scroller_) return;
+    if (!table || !this._scroller) return;
     this.activate(
       Math.min(Math.max(0, row), Math.max(0, rows.total - 1)),
-      Math.min(Math.max(0, column), table.columns.length + measures_of(table).length),
+      Math.min(Math.max(0, column), table.columns.length + measuresOf(table).length),
     );
-    this.scroll_to_active(table);
-    this.scroller_.focus({ preventScroll: true });
+    this.scrollToActive(table);
+    this._scroller.focus({ preventScroll: true });
   }
 
-  private scroll_to_active(table: Table): void {
-    const box = this.scroller_!;
-    const { row, column } = this.active_;
-    const top = row * this.row_px;
+  private scrollToActive(table: Table): void {
+    const box = this._scroller!;
+    const { row, column } = this._active;
+    const top = row * this.rowPx;
     if (top < box.scrollTop) box.scrollTop = top;
-    else if (top + this.row_px > box.scrollTop + box.clientHeight - this.head_px)
-      box.scrollTop = top + this.row_px - box.clientHeight + this.head_px;
+    else if (top + this.rowPx > box.scrollTop + box.clientHeight - this.headPx)
+      box.scrollTop = top + this.rowPx - box.clientHeight + this.headPx;
     if (column === 0) return;
     const edges = this.edges(table);
     const left = edges[column - 1]!;
@@ -860,18 +859,18 @@ export class StrataTablePanel extends LitElement {
     else if (right > box.scrollLeft + box.clientWidth) box.scrollLeft = right - box.clientWidth;
   }
 
-  private readonly on_key = (event: KeyboardEvent): void => {
-    if (event.target !== this.scroller_) return; // a button in it
-    const { row, column } = this.active_;
+  private readonly onKey = (event: KeyboardEvent): void => {
+    if (event.target !== this._scroller) return; // a button in it
+    const { row, column } = this._active;
     const { table, rows } = this.view;
     if (!table) return;
-    if (this.on_grid_key(event, table, row, column, rows.total)) {
+    if (this.onGridKey(event, table, row, column, rows.total)) {
       event.preventDefault();
       event.stopPropagation();
     }
   };
 
-  private on_grid_key(
+  private onGridKey(
     event: KeyboardEvent,
     table: Table,
     row: number,
@@ -879,17 +878,17 @@ export class StrataTablePanel extends LitElement {
     total: number,
   ): boolean {
     const { key } = event;
-    const last = table.columns.length + measures_of(table).length;
+    const last = table.columns.length + measuresOf(table).length;
     const page = Math.max(
       1,
-      Math.floor(((this.scroller_?.clientHeight ?? 0) - this.head_px) / this.row_px) - 1,
+      Math.floor(((this._scroller?.clientHeight ?? 0) - this.headPx) / this.rowPx) - 1,
     );
     if (event.ctrlKey || event.metaKey) {
       if (event.altKey) return false;
       if (key.toLowerCase() === "z") {
-        if (this.can_write) void (event.shiftKey ? this.view.redo() : this.view.undo());
-      } else if (key === "Home") this.move_to(0, 0);
-      else if (key === "End") this.move_to(total - 1, last);
+        if (this.canWrite) void (event.shiftKey ? this.view.redo() : this.view.undo());
+      } else if (key === "Home") this.moveTo(0, 0);
+      else if (key === "End") this.moveTo(total - 1, last);
       else return false;
       return true;
     }
@@ -905,18 +904,18 @@ export class StrataTablePanel extends LitElement {
     };
     const step = steps[key];
     if (step) {
-      this.move_to(...step);
+      this.moveTo(...step);
       return true;
     }
     const record = this.view.rows.row(row);
     const cell = table.columns[column - 1];
-    if (key === "Escape") this.scroller_?.blur();
+    if (key === "Escape") this._scroller?.blur();
     else if (key === " " && record) this.view.select(record.key, "toggle");
     else if (key === "Enter" || key === "F2") this.enter(record, row, column);
-    else if ((key === "Delete" || key === "Backspace") && record && cell && this.can_write)
-      this.clear_cell(record, cell);
-    else if (key.length === 1 && !event.altKey && cell && this.can_write && may_be_text(cell, key))
-      this.edit_at(row, column, takes_typing(cell) ? key : null);
+    else if ((key === "Delete" || key === "Backspace") && record && cell && this.canWrite)
+      this.clearCell(record, cell);
+    else if (key.length === 1 && !event.altKey && cell && this.canWrite && mayBeText(cell, key))
+      this.editAt(row, column, takesTyping(cell) ? key : null);
     else return key === " ";
     return true;
   }
@@ -924,40 +923,40 @@ export class StrataTablePanel extends LitElement {
   /** A cell is written into; the key and what is measured open the whole record. */
   private enter(record: TableRecord | null, row: number, column: number): void {
     const { layer } = this;
-    if (this.view.table?.columns[column - 1]) this.edit_at(row, column, null);
-    else if (record && layer && this.can_write)
+    if (this.view.table?.columns[column - 1]) this.editAt(row, column, null);
+    else if (record && layer && this.canWrite)
       this.request({ dialog: "record", layer, key: record.key });
   }
 
-  private on_cell(event: MouseEvent, row: number, column: number): void {
+  private onCell(event: MouseEvent, row: number, column: number): void {
     if ((event.target as HTMLElement).tagName === "A") return;
-    const again = this.active_.row === row && this.active_.column === column && !this.editing_;
-    if (again && this.can_write) this.edit_at(row, column, null);
+    const again = this._active.row === row && this._active.column === column && !this._editing;
+    if (again && this.canWrite) this.editAt(row, column, null);
     else this.activate(row, column);
-    if (!this.editing_) this.scroller_?.focus({ preventScroll: true });
+    if (!this._editing) this._scroller?.focus({ preventScroll: true });
   }
 
-  private on_key_cell(event: MouseEvent, row: number): void {
+  private onKeyCell(event: MouseEvent, row: number): void {
     const record = this.view.rows.row(row);
     this.activate(row, 0);
-    this.scroller_?.focus({ preventScroll: true });
+    this._scroller?.focus({ preventScroll: true });
     if (!record) return;
-    if (event.shiftKey) this.view.select_rows(this.from_, row);
+    if (event.shiftKey) this.view.selectRows(this._from, row);
     else
       this.view.select(
         record.key,
         event.ctrlKey || event.metaKey || this.view.selected.has(record.key) ? "toggle" : "only",
       );
-    this.from_ = row;
+    this._from = row;
   }
 
-  private on_edge(event: PointerEvent, name: string): void {
+  private onEdge(event: PointerEvent, name: string): void {
     const edge = event.currentTarget as HTMLElement;
     const width = edge.parentElement!.getBoundingClientRect().width;
     edge.setPointerCapture(event.pointerId);
     event.preventDefault();
     const move = (moved: PointerEvent): void => {
-      this.widths_.set(
+      this._widths.set(
         name,
         Math.max(kLeastWidth, Math.round(width + moved.clientX - event.clientX)),
       );
@@ -974,19 +973,19 @@ export class StrataTablePanel extends LitElement {
   // ── the filter, files, and what else is asked for
   // ─────────────────────────────────────────────────────────────────
 
-  private on_filter(): void {
-    this.set_filter(this.filter_.value.trim());
+  private onFilter(): void {
+    this.setFilter(this._filter.value.trim());
   }
 
-  private set_filter(filter: string): void {
-    if (this.scroller_) this.scroller_.scrollTop = 0;
-    this.active_ = { row: 0, column: this.active_.column };
-    this.view.rows.set_query({ filter });
+  private setFilter(filter: string): void {
+    if (this._scroller) this._scroller.scrollTop = 0;
+    this._active = { row: 0, column: this._active.column };
+    this.view.rows.setQuery({ filter });
   }
 
-  private on_filter_key(event: KeyboardEvent): void {
-    if (event.key === "Enter") this.on_filter();
-    else if (event.key === "Escape") this.filter_.value = this.view.rows.filter;
+  private onFilterKey(event: KeyboardEvent): void {
+    if (event.key === "Enter") this.onFilter();
+    else if (event.key === "Escape") this._filter.value = this.view.rows.filter;
   }
 
   private async seek(): Promise<void> {
@@ -996,29 +995,25 @@ export class StrataTablePanel extends LitElement {
     try {
       let row = await view.rows.locate(key);
       if (row === null && view.rows.filter !== "") {
-        view.rows.set_query({ filter: "" });
+        view.rows.setQuery({ filter: "" });
         row = await view.rows.locate(key);
       }
       await this.updateComplete;
-      if (row !== null && view === this.view) this.move_to(row, this.active_.column);
+      if (row !== null && view === this.view) this.moveTo(row, this._active.column);
     } catch (error) {
       notices.error(error);
     }
   }
 
-  private paint_with(layer: Layer, key: number): void {
+  private paintWith(layer: Layer, key: number): void {
     const { session } = this;
     session.layers.select(layer);
-    session.painting.set_brush((brush) => brush.set_value(layer, key));
-    session.choose_tool("brush");
+    session.painting.setBrush((brush) => brush.setValue(layer, key));
+    session.chooseTool("brush");
   }
 
   /** Of the rows that the filter finds, in their order. */
-  private save_sheet(
-    table: Table,
-    format: "csv" | "xlsx",
-    more: Record<string, string> = {},
-  ): void {
+  private saveSheet(table: Table, format: "csv" | "xlsx", more: Record<string, string> = {}): void {
     const { sortby, filter } = this.view.rows;
     const query = {
       f: format,
@@ -1026,11 +1021,8 @@ export class StrataTablePanel extends LitElement {
       ...(sortby ? { sortby } : {}),
       ...(filter ? { filter } : {}),
     };
-    save_from(
-      this.session.api.records_url(
-        { model: this.session.model_id, layer: this.view.layer_id },
-        query,
-      ),
+    saveFrom(
+      this.session.api.recordsUrl({ model: this.session.modelId, layer: this.view.layerId }, query),
       `${table.slug}.${format}`,
     );
   }
@@ -1038,26 +1030,26 @@ export class StrataTablePanel extends LitElement {
   // ── the filter of a column
   // ────────────────────────────────────────────────────────────────────────────────────────
 
-  private open_filter(column: Column, event: Event): void {
-    this.filtered_ = { column, anchor: event.currentTarget as HTMLElement };
+  private openFilter(column: Column, event: Event): void {
+    this._filtered = { column, anchor: event.currentTarget as HTMLElement };
   }
 
-  private column_filter(table: Table): TemplateResult | typeof nothing {
-    const { filtered_: filtered, view } = this;
+  private columnFilter(table: Table): TemplateResult | typeof nothing {
+    const { _filtered: filtered, view } = this;
     const column = filtered && table.columns.find(({ id }) => id === filtered.column.id);
     if (!filtered || !column) return nothing;
     return html`<strata-column-filter
       .session=${this.session}
-      .table=${view.table_id}
+      .table=${view.tableId}
       .column=${column}
       .filter=${view.rows.filter}
       .anchor=${filtered.anchor}
-      @filter=${(event: CustomEvent<string>) => this.set_filter(event.detail)}
-      @closed=${() => (this.filtered_ = null)}
+      @filter=${(event: CustomEvent<string>) => this.setFilter(event.detail)}
+      @closed=${() => (this._filtered = null)}
     ></strata-column-filter>`;
   }
 
-  private choose_photos(table: Table): void {
+  private choosePhotos(table: Table): void {
     const input = document.createElement("input");
     input.type = "file";
     input.multiple = true;
@@ -1067,7 +1059,7 @@ export class StrataTablePanel extends LitElement {
     });
     input.click();
   }
-  private choose_csv(table: Table): void {
+  private chooseCsv(table: Table): void {
     const input = document.createElement("input");
     input.type = "file";
     input.accept = ".csv,.tsv,.txt,text/csv";
@@ -1082,11 +1074,11 @@ export class StrataTablePanel extends LitElement {
    * One text is records, or terms where the table is a list of them; everything else is files of
    * records.
    */
-  private take_files(files: File[]): void {
-    const table = this.view.table_id;
+  private takeFiles(files: File[]): void {
+    const table = this.view.tableId;
     const [file] = files;
-    const takes_terms = this.view.table?.kind === "terms" && this.session.can_curate;
-    if (files.length === 1 && file && takes_terms && terms_type(file.name))
+    const takesTerms = this.view.table?.kind === "terms" && this.session.canCurate;
+    if (files.length === 1 && file && takesTerms && termsType(file.name))
       this.request({ dialog: "terms", table, file });
     else if (files.length === 1 && file && /\.(csv|tsv|txt)$/i.test(file.name))
       this.request({ dialog: "csv", table, file });

@@ -1,6 +1,6 @@
 import { css } from "lit";
 
-export const table_styles = css`
+export const tableStyles = css`
   :host {
     display: flex;
     flex-direction: column;

@@ -15,19 +15,19 @@ import { notices } from "../../ui/notices";
 import { RecordRows } from "./record-rows";
 import { texts } from "../../texts";
 
-const kRefreshAfter_ms = 250; // a stroke is many edits, and records often come several at once
+const kRefreshAfterMs = 250; // a stroke is many edits, and records often come several at once
 const kMostHighlighted = 10_000; // that are named one by one
 
 export interface TableViewHost {
-  model_id: string;
+  modelId: string;
   layer_id: number;
   table_id: number;
   table(): Table | null; // as it is now
   changed(): void;
-  columns_changed(): Promise<void>;
+  columnsChanged(): Promise<void>;
   /** On the model; null: nothing. */
   highlight(what: Highlight | null): void;
-  fly_to(bounds: NonNullable<Extent["bounds"]>): void;
+  flyTo(bounds: NonNullable<Extent["bounds"]>): void;
 }
 
 export class TableView {
@@ -41,48 +41,48 @@ export class TableView {
   sought: number | null = null;
 
   /** Rows that are chosen, or the filter finds, stand out on the model. */
-  lights_up = true;
+  lightsUp = true;
   /** And the others are not drawn. */
   isolates = false;
   /** Where they lie, once it is known. */
   extent: Extent | null = null;
 
-  private timer_: ReturnType<typeof setTimeout> | null = null;
-  private refreshes_rows_ = false;
-  private highlighted_ = "null"; // as JSON
-  private flies_ = false; // once the extent is here
+  private _timer: ReturnType<typeof setTimeout> | null = null;
+  private _refreshesRows = false;
+  private _highlighted = "null"; // as JSON
+  private _flies = false; // once the extent is here
 
   constructor(
-    private readonly api_: Api,
-    private readonly host_: TableViewHost,
+    private readonly _api: Api,
+    private readonly _host: TableViewHost,
   ) {
-    const place = { model: host_.model_id, layer: host_.layer_id };
+    const place = { model: _host.modelId, layer: _host.layer_id };
     this.rows = new RecordRows({
-      ask: (query) => api_.records(place, query),
+      ask: (query) => _api.records(place, query),
       changed: () => this.changed(),
-      measures_outdated: () => this.refresh_soon(),
+      measuresOutdated: () => this.refreshSoon(),
     });
-    this.edits = new CellEdits(api_, {
-      table: host_.table_id,
+    this.edits = new CellEdits(_api, {
+      table: _host.table_id,
       row: (key) => this.rows.find(key),
       put: (record) => this.rows.put(record),
-      changed: host_.changed,
+      changed: _host.changed,
     });
   }
 
   private changed(): void {
-    this.light_up();
-    this.host_.changed();
+    this.lightUp();
+    this._host.changed();
   }
 
-  get layer_id(): number {
-    return this.host_.layer_id;
+  get layerId(): number {
+    return this._host.layer_id;
   }
-  get table_id(): number {
-    return this.host_.table_id;
+  get tableId(): number {
+    return this._host.table_id;
   }
   get table(): Table | null {
-    return this.host_.table();
+    return this._host.table();
   }
 
   // ── order and choice
@@ -94,7 +94,7 @@ export class TableView {
    */
   sort(name: string): void {
     const { sortby } = this.rows;
-    this.rows.set_query({
+    this.rows.setQuery({
       sortby: sortby === name ? `-${name}` : sortby === `-${name}` ? "" : name,
     });
   }
@@ -108,14 +108,14 @@ export class TableView {
     this.changed();
   }
   /** All rows between the two that are here. */
-  select_rows(from: number, to: number): void {
+  selectRows(from: number, to: number): void {
     for (let index = Math.min(from, to); index <= Math.max(from, to); ++index) {
       const row = this.rows.row(index);
       if (row) this.selected.add(row.key);
     }
     this.changed();
   }
-  select_none(): void {
+  selectNone(): void {
     this.selected.clear();
     this.changed();
   }
@@ -135,24 +135,24 @@ export class TableView {
   get highlight(): Highlight | null {
     const { filter, settled } = this.rows;
     const isolate = this.isolates ? { isolate: true } : {};
-    if (!this.lights_up) return null;
+    if (!this.lightsUp) return null;
     if (this.selected.size > 0)
       return { keys: [...this.selected].slice(0, kMostHighlighted), ...isolate };
     return filter !== "" && settled ? { filter, ...isolate } : null;
   }
-  set_lights_up(lights_up: boolean): void {
-    this.lights_up = lights_up;
+  setLightsUp(lightsUp: boolean): void {
+    this.lightsUp = lightsUp;
     this.changed();
   }
-  set_isolates(isolates: boolean): void {
+  setIsolates(isolates: boolean): void {
     this.isolates = isolates;
-    if (isolates) this.lights_up = true;
+    if (isolates) this.lightsUp = true;
     this.changed();
   }
   /** To where they are. */
   fly(): void {
-    this.flies_ = true;
-    void this.find_extent();
+    this._flies = true;
+    void this.findExtent();
   }
 
   /**
@@ -170,29 +170,29 @@ export class TableView {
     );
   }
 
-  private light_up(): void {
+  private lightUp(): void {
     const { highlight } = this;
     const text = JSON.stringify(highlight);
-    if (text === this.highlighted_) return;
-    this.highlighted_ = text;
+    if (text === this._highlighted) return;
+    this._highlighted = text;
     this.extent = null;
-    this.host_.highlight(highlight);
-    void this.find_extent();
+    this._host.highlight(highlight);
+    void this.findExtent();
   }
 
-  private async find_extent(): Promise<void> {
-    const { highlight, highlighted_ } = this;
+  private async findExtent(): Promise<void> {
+    const { highlight, _highlighted } = this;
     if (!highlight) return;
     try {
-      const extent = await this.api_.extent(this.host_.model_id, this.host_.layer_id, highlight);
-      if (this.highlighted_ !== highlighted_) return;
+      const extent = await this._api.extent(this._host.modelId, this._host.layer_id, highlight);
+      if (this._highlighted !== _highlighted) return;
       this.extent = extent;
-      if (this.flies_ && extent.bounds) this.host_.fly_to(extent.bounds);
+      if (this._flies && extent.bounds) this._host.flyTo(extent.bounds);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error; // what is wrong with the filter, the rows tell
     }
-    this.flies_ = false;
-    this.host_.changed();
+    this._flies = false;
+    this._host.changed();
   }
 
   // ── changes
@@ -204,10 +204,10 @@ export class TableView {
   }
 
   async undo(): Promise<void> {
-    await this.turn(() => this.api_.undo_table(this.table_id), texts.tables.undone);
+    await this.turn(() => this._api.undoTable(this.tableId), texts.tables.undone);
   }
   async redo(): Promise<void> {
-    await this.turn(() => this.api_.redo_table(this.table_id), texts.tables.redone);
+    await this.turn(() => this._api.redoTable(this.tableId), texts.tables.redone);
   }
 
   private async turn(
@@ -216,7 +216,7 @@ export class TableView {
   ): Promise<void> {
     try {
       const what = await step();
-      if (what.columns_changed) await this.host_.columns_changed();
+      if (what.columns_changed) await this._host.columnsChanged();
       this.sought = what.changed[0] ?? what.created[0] ?? null;
       this.told = told(what.created.length, what.changed.length, what.deleted.length);
       this.rows.refresh();
@@ -235,32 +235,32 @@ export class TableView {
   // ── what others do
   // ────────────────────────────────────────────────────────────────────────────────────────────────
 
-  on_record(event: RecordEvent): void {
+  onRecord(event: RecordEvent): void {
     if (event.event === "changed" && event.record) {
       // where it stands: rows that jump away while somebody reads them help nobody
       this.rows.put(event.record);
-      this.refresh_soon(false);
+      this.refreshSoon(false);
       return;
     }
     if (event.event === "deleted") this.selected.delete(event.key);
-    this.refresh_soon();
+    this.refreshSoon();
   }
 
   /** Rows came or went, or their areas changed; or only what the filter finds of them. */
-  refresh_soon(rows = true): void {
-    this.refreshes_rows_ ||= rows;
-    if (this.timer_) return;
-    this.timer_ = setTimeout(() => {
-      this.timer_ = null;
-      if (this.refreshes_rows_) this.rows.refresh();
-      this.refreshes_rows_ = false;
-      void this.find_extent();
-    }, kRefreshAfter_ms);
+  refreshSoon(rows = true): void {
+    this._refreshesRows ||= rows;
+    if (this._timer) return;
+    this._timer = setTimeout(() => {
+      this._timer = null;
+      if (this._refreshesRows) this.rows.refresh();
+      this._refreshesRows = false;
+      void this.findExtent();
+    }, kRefreshAfterMs);
   }
 
   stop(): void {
-    this.host_.highlight(null);
-    if (this.timer_) clearTimeout(this.timer_);
-    this.timer_ = null;
+    this._host.highlight(null);
+    if (this._timer) clearTimeout(this._timer);
+    this._timer = null;
   }
 }

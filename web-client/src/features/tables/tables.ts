@@ -2,7 +2,7 @@
 // are called.
 
 import { ApiError, type Api } from "../../net/api";
-import { label_of_record } from "../../domain/cells";
+import { labelOfRecord } from "../../domain/cells";
 import type {
   Bounds,
   Highlight,
@@ -21,9 +21,9 @@ import { TermTree } from "../../session/fields/term-tree";
 import { texts } from "../../texts";
 
 export interface TablesHost {
-  model_id: string;
-  highlight(layer_id: number, what: Highlight | null): void;
-  fly_to(bounds: Bounds): void;
+  modelId: string;
+  highlight(layerId: number, what: Highlight | null): void;
+  flyTo(bounds: Bounds): void;
   project(): string | null;
   changed(): void;
 }
@@ -35,26 +35,26 @@ export class Tables {
   /** The record that somebody took from the surface; `record` once it is here. */
   card: { layer: Layer; key: number; record: TableRecord | null } | null = null;
 
-  private readonly tables_ = new Map<number, Table | "asked">();
-  private readonly names_ = new Map<number, RecordNames>();
-  private readonly terms_ = new Map<number, TermTree>();
-  private readonly records_: RecordShelf;
+  private readonly _tables = new Map<number, Table | "asked">();
+  private readonly _names = new Map<number, RecordNames>();
+  private readonly _terms = new Map<number, TermTree>();
+  private readonly _records: RecordShelf;
 
-  private readonly others_: OtherNames = {
-    name_of: (table, key) => this.label(table, key),
+  private readonly _others: OtherNames = {
+    nameOf: (table, key) => this.label(table, key),
     places: (table) => this.terms(table)?.places ?? null,
   };
 
   constructor(
-    private readonly api_: Api,
-    private readonly host_: TablesHost,
+    private readonly _api: Api,
+    private readonly _host: TablesHost,
   ) {
-    this.records_ = new RecordShelf(api_, () => host_.changed());
+    this._records = new RecordShelf(_api, () => _host.changed());
   }
 
   /** Null until it is here; it is asked for. */
   find(id: number): Table | null {
-    const known = this.tables_.get(id);
+    const known = this._tables.get(id);
     if (known === undefined) void this.load(id);
     return typeof known === "object" ? known : null;
   }
@@ -63,15 +63,15 @@ export class Tables {
   names(id: number): RecordNames | null {
     const table = this.find(id);
     if (!table) return null;
-    let names = this.names_.get(id);
+    let names = this._names.get(id);
     if (!names) {
       names = new RecordNames(
-        this.api_,
+        this._api,
         () => this.find(id) ?? table,
-        this.host_.changed,
-        this.others_,
+        this._host.changed,
+        this._others,
       );
-      this.names_.set(id, names);
+      this._names.set(id, names);
     }
     return names;
   }
@@ -83,7 +83,7 @@ export class Tables {
 
   /** Null until it is here, and where there is none. */
   record(id: number, key: number): TableRecord | null {
-    return this.records_.find(id, key);
+    return this._records.find(id, key);
   }
 
   /** Whether it is known that the table has no such record. */
@@ -93,7 +93,7 @@ export class Tables {
 
   /** What a record that is here is called; empty where it has no name. */
   title(table: Table, record: Pick<TableRecord, "values">): string {
-    return label_of_record(table, record, undefined, this.others_.name_of);
+    return labelOfRecord(table, record, undefined, this._others.nameOf);
   }
 
   /** What a term is called; null where the table is no list of terms, or its name is not known. */
@@ -104,65 +104,65 @@ export class Tables {
   /** Null: the table is no list of terms, as far as is known. */
   terms(id: number): TermTree | null {
     if (this.find(id)?.kind !== "terms") return null;
-    let terms = this.terms_.get(id);
+    let terms = this._terms.get(id);
     if (!terms) {
-      terms = new TermTree(this.api_, id, () => {
-        for (const names of this.names_.values()) names.reorder();
-        this.host_.changed();
+      terms = new TermTree(this._api, id, () => {
+        for (const names of this._names.values()) names.reorder();
+        this._host.changed();
       });
-      this.terms_.set(id, terms);
+      this._terms.set(id, terms);
     }
     return terms;
   }
 
   /** All of the project, for a choice among them. */
   async all(): Promise<Table[]> {
-    const project = this.host_.project();
+    const project = this._host.project();
     if (project === null) return [];
-    const tables = await this.api_.tables(project);
-    for (const table of tables) this.tables_.set(table.id, table);
+    const tables = await this._api.tables(project);
+    for (const table of tables) this._tables.set(table.id, table);
     return tables;
   }
 
   open(layer: Layer): void {
-    if (layer.table === undefined || this.view?.layer_id === layer.id) return;
+    if (layer.table === undefined || this.view?.layerId === layer.id) return;
     this.view?.stop();
-    this.view = new TableView(this.api_, {
-      model_id: this.host_.model_id,
+    this.view = new TableView(this._api, {
+      modelId: this._host.modelId,
       layer_id: layer.id,
       table_id: layer.table,
       table: () => this.find(layer.table!),
-      changed: this.host_.changed,
-      columns_changed: () => this.load(layer.table!),
-      highlight: (what) => this.host_.highlight(layer.id, what),
-      fly_to: this.host_.fly_to,
+      changed: this._host.changed,
+      columnsChanged: () => this.load(layer.table!),
+      highlight: (what) => this._host.highlight(layer.id, what),
+      flyTo: this._host.flyTo,
     });
-    this.host_.changed();
+    this._host.changed();
   }
 
   close(): void {
     this.view?.stop();
     this.view = null;
-    this.host_.changed();
+    this._host.changed();
   }
 
   /**
    * The card of the record that was taken; none where the layer has no records, or is not painted.
    */
-  show_card(layer: Layer | null, { values }: Picked): void {
+  showCard(layer: Layer | null, { values }: Picked): void {
     const found = layer ? values?.[layer.slug] : undefined;
     const key = found?.valid ? found.value : undefined;
     this.card =
       layer?.table === undefined || key === undefined ? null : { layer, key, record: null };
-    this.host_.changed();
-    void this.load_card();
+    this._host.changed();
+    void this.loadCard();
   }
-  close_card(): void {
+  closeCard(): void {
     this.card = null;
-    this.host_.changed();
+    this._host.changed();
   }
   /** Brings the record's row into sight, in the table of its layer. */
-  show_row(layer: Layer, key: number): void {
+  showRow(layer: Layer, key: number): void {
     this.open(layer);
     this.view?.show(key);
   }
@@ -176,14 +176,12 @@ export class Tables {
   }
 
   private async turn(table: number, way: "undo" | "redo"): Promise<void> {
-    if (this.view?.table_id === table) {
+    if (this.view?.tableId === table) {
       await this.view[way]();
       return;
     }
     try {
-      const what = await (way === "undo"
-        ? this.api_.undo_table(table)
-        : this.api_.redo_table(table));
+      const what = await (way === "undo" ? this._api.undoTable(table) : this._api.redoTable(table));
       if (what.columns_changed) await this.reload(table);
       const told = way === "undo" ? texts.tables.undone : texts.tables.redone;
       notices.show("success", told(what.created.length, what.changed.length, what.deleted.length));
@@ -193,70 +191,70 @@ export class Tables {
   }
 
   /** With the areas that strokes leave. */
-  refresh_areas(): void {
-    this.view?.refresh_soon();
-    void this.load_card();
+  refreshAreas(): void {
+    this.view?.refreshSoon();
+    void this.loadCard();
   }
 
   /** The connection was away: what happened meanwhile was not told. */
   refresh(): void {
-    for (const id of this.tables_.keys()) void this.load(id);
-    for (const kept of [...this.names_.values(), ...this.terms_.values()]) kept.refresh();
-    this.records_.forget_all();
+    for (const id of this._tables.keys()) void this.load(id);
+    for (const kept of [...this._names.values(), ...this._terms.values()]) kept.refresh();
+    this._records.forgetAll();
     this.view?.rows.refresh();
   }
 
-  on_record(event: RecordEvent): void {
-    this.records_.forget(event.table, event.key);
-    const names = this.names_.get(event.table);
+  onRecord(event: RecordEvent): void {
+    this._records.forget(event.table, event.key);
+    const names = this._names.get(event.table);
     if (event.event === "deleted") names?.remove(event.key);
     else if (event.record) names?.put(event.record);
-    this.terms_.get(event.table)?.refresh();
-    if (this.view?.table_id === event.table) this.view.on_record(event);
+    this._terms.get(event.table)?.refresh();
+    if (this.view?.tableId === event.table) this.view.onRecord(event);
     if (this.card?.layer.table !== event.table || this.card.key !== event.key) return;
-    if (event.event === "deleted") this.close_card();
-    else void this.load_card();
+    if (event.event === "deleted") this.closeCard();
+    else void this.loadCard();
   }
 
-  on_table(event: TableEvent): void {
-    this.records_.forget_table(event.table_id);
+  onTable(event: TableEvent): void {
+    this._records.forgetTable(event.table_id);
     if (event.event === "deleted") {
-      this.tables_.delete(event.table_id);
-      this.names_.delete(event.table_id);
-      this.terms_.delete(event.table_id);
-    } else if (event.table && this.tables_.has(event.table_id)) {
-      this.tables_.set(event.table_id, event.table);
-      this.names_.get(event.table_id)?.refresh();
-      this.terms_.get(event.table_id)?.refresh();
+      this._tables.delete(event.table_id);
+      this._names.delete(event.table_id);
+      this._terms.delete(event.table_id);
+    } else if (event.table && this._tables.has(event.table_id)) {
+      this._tables.set(event.table_id, event.table);
+      this._names.get(event.table_id)?.refresh();
+      this._terms.get(event.table_id)?.refresh();
     }
-    if (this.view?.table_id === event.table_id) this.view.refresh_soon();
-    this.host_.changed();
+    if (this.view?.tableId === event.table_id) this.view.refreshSoon();
+    this._host.changed();
   }
 
-  on_layer_edited(layer: number): void {
-    if (this.view?.layer_id === layer) this.view.refresh_soon();
-    if (this.card?.layer.id === layer) void this.load_card();
+  onLayerEdited(layer: number): void {
+    if (this.view?.layerId === layer) this.view.refreshSoon();
+    if (this.card?.layer.id === layer) void this.loadCard();
   }
-  on_layer_deleted(layer: number): void {
-    if (this.view?.layer_id === layer) this.close();
-    if (this.card?.layer.id === layer) this.close_card();
+  onLayerDeleted(layer: number): void {
+    if (this.view?.layerId === layer) this.close();
+    if (this.card?.layer.id === layer) this.closeCard();
   }
 
   /** This person changed its columns: the rows are read anew with them. */
   async reload(id: number): Promise<void> {
     await this.load(id);
-    this.records_.forget_table(id);
-    this.names_.get(id)?.refresh();
-    this.terms_.get(id)?.refresh();
-    if (this.view?.table_id === id) this.view.rows.refresh();
+    this._records.forgetTable(id);
+    this._names.get(id)?.refresh();
+    this._terms.get(id)?.refresh();
+    if (this.view?.tableId === id) this.view.rows.refresh();
   }
 
-  private async load_card(): Promise<void> {
+  private async loadCard(): Promise<void> {
     const { card } = this;
     if (!card) return;
     try {
-      const record = await this.api_.record(
-        { model: this.host_.model_id, layer: card.layer.id },
+      const record = await this._api.record(
+        { model: this._host.modelId, layer: card.layer.id },
         card.key,
       );
       if (this.card?.key !== card.key || this.card.layer.id !== card.layer.id) return;
@@ -266,17 +264,17 @@ export class Tables {
       // paint that an undo brought back, without its record
       if (this.card === card) this.card = null;
     }
-    this.host_.changed();
+    this._host.changed();
   }
 
   private async load(id: number): Promise<void> {
-    if (!this.tables_.has(id)) this.tables_.set(id, "asked");
+    if (!this._tables.has(id)) this._tables.set(id, "asked");
     try {
-      this.tables_.set(id, await this.api_.table(id));
+      this._tables.set(id, await this._api.table(id));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.status !== 404) notices.error(error);
     }
-    this.host_.changed();
+    this._host.changed();
   }
 }

@@ -3,17 +3,17 @@
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError, name_of_file } from "../../net/api";
-import { label_of } from "../../domain/cells";
+import { ApiError, nameOfFile } from "../../net/api";
+import { labelOf } from "../../domain/cells";
 import type { RecordsReport, Table } from "../../core/protocol.gen";
 import "../../ui/dialog";
 import type { StrataDialog } from "../../ui/dialog";
 import "../../ui/file-choice";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { is_useful, records_report, report_styles } from "./records-report";
-import { shared_styles } from "../../ui/styles";
-import { kTermsEndings, terms_type } from "./terms-files";
+import { isUseful, recordsReport, reportStyles } from "./records-report";
+import { sharedStyles } from "../../ui/styles";
+import { kTermsEndings, termsType } from "./terms-files";
 import { texts } from "../../texts";
 
 const words = texts.terms_dialog;
@@ -27,17 +27,17 @@ export class StrataTermsDialog extends LitElement {
   @property({ attribute: false }) table: number | null = null;
   /** The one that is looked at first, where there is one. */
   @property({ attribute: false }) file: File | null = null;
-  @state() private file_: File | null = null;
-  @state() private name_ = "";
-  @state() private with_layer_ = true;
-  @state() private report_: RecordsReport | null = null;
-  @state() private problem_ = "";
-  @state() private busy_ = false;
-  @query("strata-dialog") private dialog_!: StrataDialog;
-  private named_ = false; // by the person, and not after the file
-  private asked_ = 0;
+  @state() private _file: File | null = null;
+  @state() private _name = "";
+  @state() private _withLayer = true;
+  @state() private _report: RecordsReport | null = null;
+  @state() private _problem = "";
+  @state() private _busy = false;
+  @query("strata-dialog") private _dialog!: StrataDialog;
+  private _named = false; // by the person, and not after the file
+  private _asked = 0;
 
-  static override styles = [shared_styles, report_styles];
+  static override styles = [sharedStyles, reportStyles];
 
   override connectedCallback(): void {
     super.connectedCallback();
@@ -45,98 +45,98 @@ export class StrataTermsDialog extends LitElement {
   }
 
   override render(): TemplateResult {
-    const { report_: report, file_: file } = this;
+    const { _report: report, _file: file } = this;
     const list = this.table === null ? null : this.session.tables.find(this.table);
-    const ready = report !== null && is_useful(report) && !this.busy_;
-    return html`<strata-dialog wide heading=${list ? words.more_title(label_of(list)) : words.title} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    const ready = report !== null && isUseful(report) && !this._busy;
+    return html`<strata-dialog wide heading=${list ? words.more_title(labelOf(list)) : words.title} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <p class="hint">${list ? words.more_lead : words.lead}</p>
       <strata-file-choice
         label=${words.file}
         accept=${kTermsEndings}
-        ?disabled=${this.busy_}
+        ?disabled=${this._busy}
         .names=${file ? [file.name] : []}
         @files=${(event: CustomEvent<File[]>) => this.take(event.detail[0]!)}
       ></strata-file-choice>
-      ${list || !file ? nothing : this.new_list()}
-      ${report ? records_report(report, words.rows) : html`<p class="hint" role="status" ?hidden=${!file || this.problem_ !== ""}>${words.looking}</p>`}
-      <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
+      ${list || !file ? nothing : this.newList()}
+      ${report ? recordsReport(report, words.rows) : html`<p class="hint" role="status" ?hidden=${!file || this._problem !== ""}>${words.looking}</p>`}
+      <p class="error" role="alert" ?hidden=${!this._problem}>${this._problem}</p>
       <button slot="actions" class="primary" ?disabled=${!ready} @click=${() => void this.send()}>${words.import}</button>
     </strata-dialog>`;
   }
 
-  private new_list(): TemplateResult {
+  private newList(): TemplateResult {
     return html`<label class="field">
         <span>${words.name}</span>
-        <input type="text" maxlength="200" autocomplete="off" ?disabled=${this.busy_} .value=${this.name_} @change=${this.on_name} />
+        <input type="text" maxlength="200" autocomplete="off" ?disabled=${this._busy} .value=${this._name} @change=${this.onName} />
       </label>
       <label class="check">
         <input
           type="checkbox"
-          .checked=${this.with_layer_}
-          ?disabled=${this.busy_}
-          @change=${(event: Event) => (this.with_layer_ = (event.target as HTMLInputElement).checked)}
+          .checked=${this._withLayer}
+          ?disabled=${this._busy}
+          @change=${(event: Event) => (this._withLayer = (event.target as HTMLInputElement).checked)}
         />
         ${words.with_layer}
       </label>`;
   }
 
-  private on_name(event: Event): void {
-    this.name_ = (event.target as HTMLInputElement).value.trim();
-    this.named_ = this.name_ !== "";
-    if (this.file_) void this.look(this.file_);
+  private onName(event: Event): void {
+    this._name = (event.target as HTMLInputElement).value.trim();
+    this._named = this._name !== "";
+    if (this._file) void this.look(this._file);
   }
 
   private take(file: File): void {
-    this.file_ = file;
-    if (!this.named_) this.name_ = name_of_file(file.name);
+    this._file = file;
+    if (!this._named) this._name = nameOfFile(file.name);
     void this.look(file);
   }
 
   private get into(): { project: number | string; name: string } | { table: number } {
     return this.table === null
-      ? { project: this.session.model?.project ?? 0, name: this.name_ }
+      ? { project: this.session.model?.project ?? 0, name: this._name }
       : { table: this.table };
   }
 
   /** What it would do. The newest question counts. */
   private async look(file: File): Promise<void> {
-    const asked = ++this.asked_;
-    const type = terms_type(file.name);
-    this.report_ = null;
-    this.problem_ =
+    const asked = ++this._asked;
+    const type = termsType(file.name);
+    this._report = null;
+    this._problem =
       type === null
         ? words.unknown(file.name)
-        : this.table === null && this.name_ === ""
+        : this.table === null && this._name === ""
           ? words.name_missing
           : "";
-    if (type === null || this.problem_ !== "") return;
+    if (type === null || this._problem !== "") return;
     try {
-      const report = await this.session.api.import_terms(this.into, file, type, true);
-      if (asked === this.asked_) this.report_ = report;
+      const report = await this.session.api.importTerms(this.into, file, type, true);
+      if (asked === this._asked) this._report = report;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (asked === this.asked_) this.refuse(error);
+      if (asked === this._asked) this.refuse(error);
     }
   }
 
   private async send(): Promise<void> {
-    const { file_: file, session } = this;
-    const type = terms_type(file?.name ?? "");
+    const { _file: file, session } = this;
+    const type = termsType(file?.name ?? "");
     if (!file || type === null) return;
-    this.busy_ = true;
-    this.problem_ = "";
+    this._busy = true;
+    this._problem = "";
     try {
-      const report = await session.api.import_terms(this.into, file, type, false);
+      const report = await session.api.importTerms(this.into, file, type, false);
       if (this.table !== null) await session.tables.reload(this.table);
       notices.show("success", words.done(report.created, report.changed));
-      if (this.table === null && this.with_layer_ && report.table)
-        await this.make_layer(report.table, report.created);
-      this.dialog_.close();
+      if (this.table === null && this._withLayer && report.table)
+        await this.makeLayer(report.table, report.created);
+      this._dialog.close();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this.refuse(error);
     } finally {
-      this.busy_ = false;
+      this._busy = false;
     }
   }
 
@@ -144,12 +144,12 @@ export class StrataTermsDialog extends LitElement {
    * Where that is refused the list is there all the same: it is told as what it is, and not as a
    * failed import.
    */
-  private async make_layer({ id, name }: Table, terms: number): Promise<void> {
+  private async makeLayer({ id, name }: Table, terms: number): Promise<void> {
     const { session } = this;
     try {
       const type = terms > kMostOfU16 ? "u32" : "u16";
-      session.add_created(
-        await session.api.create_layer(session.model_id, {
+      session.addCreated(
+        await session.api.createLayer(session.modelId, {
           name,
           kind: "database",
           type,
@@ -164,8 +164,8 @@ export class StrataTermsDialog extends LitElement {
 
   /** The list may have changed since the file was tried. */
   private refuse(error: ApiError): void {
-    if (error.problem.rows) this.report_ = error.problem.rows;
-    else this.problem_ = error.message;
+    if (error.problem.rows) this._report = error.problem.rows;
+    else this._problem = error.message;
   }
 }
 

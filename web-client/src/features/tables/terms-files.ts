@@ -14,7 +14,7 @@ export const kTermsEndings = kTypes
   .join(",");
 
 /** What a file is sent as; null: it is no list of terms. */
-export function terms_type(name: string): TermsType | null {
+export function termsType(name: string): TermsType | null {
   const ending = /\.([a-z]+)$/i.exec(name)?.[1]?.toLowerCase() ?? "";
   return kTypes.find(([, endings]) => endings.includes(ending))?.[0] ?? null;
 }

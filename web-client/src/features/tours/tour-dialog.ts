@@ -4,35 +4,35 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError, new_id } from "../../net/api";
-import { language_in_words } from "../../core/languages";
-import { page_locale } from "../../core/locale";
+import { ApiError, newId } from "../../net/api";
+import { languageInWords } from "../../core/languages";
+import { pageLocale } from "../../core/locale";
 import type { Tour, TourEntry } from "../../core/protocol.gen";
 import {
-  body_of,
+  bodyOf,
   differs,
-  draft_of,
-  empty_tour,
-  is_about,
+  draftOf,
+  emptyTour,
+  isAbout,
   kSeconds,
-  language_of_field,
-  place_of,
-  problem_of,
-  without_language,
-  writes_in,
+  languageOfField,
+  placeOf,
+  problemOf,
+  withoutLanguage,
+  writesIn,
   type DraftProblem,
   type StopDraft,
   type TourDraft,
 } from "../../domain/tours";
 import { ask } from "../../ui/dialog";
 import type { StrataDialog } from "../../ui/dialog";
-import { follow_session } from "../../session/follow-session";
+import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { number_input } from "../../ui/number-input";
-import { hold_page } from "../../ui/routes";
-import { number_field_styles, shared_styles } from "../../ui/styles";
+import { numberInput } from "../../ui/number-input";
+import { holdPage } from "../../ui/routes";
+import { numberFieldStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import "./tour-languages";
 import "./tour-stop-fields";
@@ -48,29 +48,29 @@ export class StrataTourDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   /** Null: a new one. */
   @property({ attribute: false }) tour: TourEntry | null = null;
-  @state() private draft_: TourDraft | null = null; // null: it is being read
-  @state() private chosen_: number | null = null; // id of a stop
-  @state() private language_ = ""; // written beside the first
-  @state() private trying_ = false;
-  @state() private busy_ = false;
-  @state() private problem_: { field: string; text: string } | null = null;
-  @state() private theirs_: Tour | null = null; // what somebody else saved meanwhile
-  @query("strata-dialog") private dialog_!: StrataDialog | null;
-  @query("strata-tour-stop-fields") private fields_!: StrataTourStopFields | null;
-  private base_: Tour | null = null; // as this person knows it; null: there is none yet
-  private saved_: TourDraft = empty_tour(""); // what nothing is lost of
-  private key_ = new_id();
-  private asked_: Promise<boolean> | null = null; // whether it may be lost
-  private let_go_ = (): void => {};
+  @state() private _draft: TourDraft | null = null; // null: it is being read
+  @state() private _chosen: number | null = null; // id of a stop
+  @state() private _language = ""; // written beside the first
+  @state() private _trying = false;
+  @state() private _busy = false;
+  @state() private _problem: { field: string; text: string } | null = null;
+  @state() private _theirs: Tour | null = null; // what somebody else saved meanwhile
+  @query("strata-dialog") private _dialog!: StrataDialog | null;
+  @query("strata-tour-stop-fields") private _fields!: StrataTourStopFields | null;
+  private _base: Tour | null = null; // as this person knows it; null: there is none yet
+  private _saved: TourDraft = emptyTour(""); // what nothing is lost of
+  private _key = newId();
+  private _asked: Promise<boolean> | null = null; // whether it may be lost
+  private _letGo = (): void => {};
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
-    number_field_styles,
+    sharedStyles,
+    numberFieldStyles,
     css`
       .editor {
         display: grid;
@@ -161,85 +161,85 @@ export class StrataTourDialog extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    addEventListener("beforeunload", this.on_unload);
+    addEventListener("beforeunload", this.onUnload);
     // a stop is tried on the page, whose links lead elsewhere
-    this.let_go_ = hold_page(this.may_close);
+    this._letGo = holdPage(this.mayClose);
     void this.read();
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    removeEventListener("beforeunload", this.on_unload);
-    this.let_go_();
+    removeEventListener("beforeunload", this.onUnload);
+    this._letGo();
   }
 
   private async read(): Promise<void> {
-    this.problem_ = null;
+    this._problem = null;
     if (!this.tour) {
-      this.take(empty_tour(page_locale().split("-")[0]!));
+      this.take(emptyTour(pageLocale().split("-")[0]!));
       return;
     }
     try {
-      this.base_ = await this.session.tours.read(this.tour.id);
-      this.take(draft_of(this.base_));
+      this._base = await this.session.tours.read(this.tour.id);
+      this.take(draftOf(this._base));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.problem_ = { field: "", text: error.message };
+      this._problem = { field: "", text: error.message };
     }
   }
 
   private take(draft: TourDraft): void {
-    this.draft_ = this.saved_ = draft;
-    this.chosen_ = null;
-    this.theirs_ = null;
-    this.problem_ = null;
+    this._draft = this._saved = draft;
+    this._chosen = null;
+    this._theirs = null;
+    this._problem = null;
   }
 
   private get changed(): boolean {
-    return this.draft_ !== null && differs(this.draft_, this.saved_);
+    return this._draft !== null && differs(this._draft, this._saved);
   }
 
-  private readonly on_unload = (event: Event): void => {
+  private readonly onUnload = (event: Event): void => {
     if (this.changed) event.preventDefault();
   };
 
-  private readonly may_close = async (): Promise<boolean> => {
+  private readonly mayClose = async (): Promise<boolean> => {
     if (!this.changed) return true;
-    this.asked_ ??= ask({
+    this._asked ??= ask({
       heading: words.leave_title,
       lead: words.leave_lead,
       yes: words.leave_yes,
       danger: true,
-    }).finally(() => (this.asked_ = null));
-    return this.asked_; // once, whichever way somebody wants to leave by
+    }).finally(() => (this._asked = null));
+    return this._asked; // once, whichever way somebody wants to leave by
   };
 
   // ── what is seen
   // ──────────────────────────────────────────────────────────────────────────────────────────────────
 
   override render(): TemplateResult {
-    const { draft_: draft, problem_: problem } = this;
-    if (draft && this.trying_) return this.trial(draft);
+    const { _draft: draft, _problem: problem } = this;
+    if (draft && this._trying) return this.trial(draft);
     return html`<strata-dialog
       vast
       heading=${this.tour ? words.edit_title(this.tour.name) : words.new_title}
       way_out=${draft ? texts.cancel : ""}
-      .may_close=${this.may_close}
+      .mayClose=${this.mayClose}
       @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
     >
       ${draft ? this.content(draft) : html`<p class="hint" role="status" ?hidden=${problem !== null}>${texts.loading}</p>`}
       ${
-        this.theirs_
+        this._theirs
           ? html`<div slot="told" class="told" role="alert">
             <span>${words.conflict}</span>
-            <button class="link" @click=${() => void this.take_theirs()}>${words.take_theirs}</button>
+            <button class="link" @click=${() => void this.takeTheirs()}>${words.take_theirs}</button>
           </div>`
           : nothing
       }
       ${problem && this.general(problem.field) ? html`<p slot="told" class="error told" role="alert">${problem.text}</p>` : nothing}
       ${
         draft
-          ? html`<button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => void this.save()}>${texts.save}</button>`
+          ? html`<button slot="actions" class="primary" ?disabled=${this._busy} @click=${() => void this.save()}>${texts.save}</button>`
           : nothing
       }
       ${!draft && problem ? html`<button slot="actions" @click=${() => void this.read()}>${texts.try_again}</button>` : nothing}
@@ -247,11 +247,11 @@ export class StrataTourDialog extends LitElement {
   }
 
   private content(draft: TourDraft): TemplateResult {
-    const index = this.shown_index(draft);
+    const index = this.shownIndex(draft);
     const stop = draft.stops[index];
-    const place = place_of(this.problem_?.field ?? "");
+    const place = placeOf(this._problem?.field ?? "");
     const refused = place.stop !== null && place.stop === index;
-    return html`<div class="editor ${this.chosen_ === null ? "" : "in-stop"}">
+    return html`<div class="editor ${this._chosen === null ? "" : "in-stop"}">
       ${this.about(draft)}
       <div class="stops">
         <strata-tour-stops
@@ -263,23 +263,23 @@ export class StrataTourDialog extends LitElement {
           problem=${this.refusal("stops")}
           @changed=${({ detail }: CustomEvent<StopsChange>) => {
             this.put({ stops: detail.stops });
-            this.chosen_ = detail.chosen;
+            this._chosen = detail.chosen;
           }}
         ></strata-tour-stops>
-        <div class="stop ${this.chosen_ === null ? "unchosen" : ""}">
+        <div class="stop ${this._chosen === null ? "unchosen" : ""}">
           ${
             stop
-              ? html`<button class="back" @click=${() => (this.chosen_ = null)}>${icon("back")}${words.all_stops}</button>
+              ? html`<button class="back" @click=${() => (this._chosen = null)}>${icon("back")}${words.all_stops}</button>
                 <strata-tour-stop-fields
                   .session=${this.session}
                   .stop=${stop}
                   .languages=${draft.languages}
-                  .language=${this.language_}
+                  .language=${this._language}
                   wrong=${refused ? place.within : ""}
-                  problem=${refused ? (this.problem_?.text ?? "") : ""}
-                  @language=${({ detail }: CustomEvent<string>) => (this.language_ = detail)}
+                  problem=${refused ? (this._problem?.text ?? "") : ""}
+                  @language=${({ detail }: CustomEvent<string>) => (this._language = detail)}
                   @changed=${({ detail }: CustomEvent<StopDraft>) => this.put({ stops: draft.stops.map((each) => (each.id === detail.id ? detail : each)) })}
-                  @try=${() => this.try_stop(index)}
+                  @try=${() => this.tryStop(index)}
                 ></strata-tour-stop-fields>`
               : html`<p class="hint">${words.stops_lead}</p>`
           }
@@ -307,7 +307,7 @@ export class StrataTourDialog extends LitElement {
       </label>
       <label class="field" title=${words.idle_hint}>
         <span>${words.idle}</span>
-        <span class="number">${number_input({ value: draft.idle_s, min, max, wrong: this.refusal("idle_s") !== "", typed: (idle_s) => this.put({ idle_s }) })}<span>s</span></span>
+        <span class="number">${numberInput({ value: draft.idle_s, min, max, wrong: this.refusal("idle_s") !== "", typed: (idleS) => this.put({ idle_s: idleS }) })}<span>s</span></span>
       </label>
       <label class="field full">
         <span>${words.text}</span>
@@ -315,87 +315,87 @@ export class StrataTourDialog extends LitElement {
       </label>
       <strata-tour-languages
         .languages=${draft.languages}
-        @chosen=${({ detail }: CustomEvent<string[]>) => this.choose_languages(detail)}
-        @remove=${({ detail }: CustomEvent<string>) => void this.remove_language(detail)}
+        @chosen=${({ detail }: CustomEvent<string[]>) => this.chooseLanguages(detail)}
+        @remove=${({ detail }: CustomEvent<string>) => void this.removeLanguage(detail)}
       ></strata-tour-languages>
       ${["name", "idle_s", "text", "languages"].map((field) => (this.refusal(field) ? html`<p class="error" role="alert">${this.refusal(field)}</p>` : nothing))}
     </div>`;
   }
 
   private trial(draft: TourDraft): TemplateResult {
-    const index = this.shown_index(draft);
+    const index = this.shownIndex(draft);
     return html`<strata-tour-trial
       .stops=${draft.stops}
       index=${index}
       language=${draft.languages[0] ?? ""}
-      @go=${({ detail }: CustomEvent<number>) => this.try_stop(detail)}
-      @end=${() => (this.trying_ = false)}
+      @go=${({ detail }: CustomEvent<number>) => this.tryStop(detail)}
+      @end=${() => (this._trying = false)}
     ></strata-tour-trial>`;
   }
 
   /** Of the stop that is looked at: wide windows always show one. */
-  private shown_index({ stops }: TourDraft): number {
+  private shownIndex({ stops }: TourDraft): number {
     return Math.max(
       0,
-      stops.findIndex(({ id }) => id === this.chosen_),
+      stops.findIndex(({ id }) => id === this._chosen),
     );
   }
 
   private refusal(field: string): string {
-    return this.problem_ &&
-      is_about(this.problem_.field, field) &&
-      place_of(this.problem_.field).stop === null
-      ? this.problem_.text
+    return this._problem &&
+      isAbout(this._problem.field, field) &&
+      placeOf(this._problem.field).stop === null
+      ? this._problem.text
       : "";
   }
   /** What no field of the dialog shows. */
   private general(field: string): boolean {
-    const { stop } = place_of(field);
-    if (stop !== null) return this.draft_?.stops[stop] === undefined;
-    return !["name", "idle_s", "text", "languages", "stops"].some((each) => is_about(field, each));
+    const { stop } = placeOf(field);
+    if (stop !== null) return this._draft?.stops[stop] === undefined;
+    return !["name", "idle_s", "text", "languages", "stops"].some((each) => isAbout(field, each));
   }
 
   // ── what is changed
   // ───────────────────────────────────────────────────────────────────────────────────────────────
 
   private put(change: Partial<TourDraft>): void {
-    if (!this.draft_) return;
-    this.draft_ = { ...this.draft_, ...change };
-    this.problem_ = null;
-    this.key_ = new_id();
+    if (!this._draft) return;
+    this._draft = { ...this._draft, ...change };
+    this._problem = null;
+    this._key = newId();
   }
 
-  private choose_languages(languages: readonly string[]): void {
-    const added = languages.find((each) => !this.draft_?.languages.includes(each));
-    if (added !== undefined) this.language_ = added;
+  private chooseLanguages(languages: readonly string[]): void {
+    const added = languages.find((each) => !this._draft?.languages.includes(each));
+    if (added !== undefined) this._language = added;
     this.put({ languages });
   }
 
-  private async remove_language(language: string): Promise<void> {
-    if (!this.draft_) return;
-    const name = language_in_words(language);
+  private async removeLanguage(language: string): Promise<void> {
+    if (!this._draft) return;
+    const name = languageInWords(language);
     const question = {
       heading: words.language_remove_title(name),
       lead: words.language_remove_lead,
       yes: words.language_remove_yes,
       danger: true,
     };
-    if (writes_in(this.draft_, language) && !(await ask(question))) return;
-    this.put(without_language(this.draft_, language));
+    if (writesIn(this._draft, language) && !(await ask(question))) return;
+    this.put(withoutLanguage(this._draft, language));
   }
 
-  private try_stop(index: number): void {
-    const stop = this.draft_?.stops[index];
+  private tryStop(index: number): void {
+    const stop = this._draft?.stops[index];
     const view = this.session.views.all.find(({ slug }) => slug === stop?.view);
     if (!stop) return;
-    this.chosen_ = stop.id;
-    this.trying_ = true;
+    this._chosen = stop.id;
+    this._trying = true;
     this.dispatchEvent(new CustomEvent("try"));
-    if (view) this.session.views.go_to(view);
+    if (view) this.session.views.goTo(view);
   }
 
-  private async take_theirs(): Promise<void> {
-    const theirs = this.theirs_;
+  private async takeTheirs(): Promise<void> {
+    const theirs = this._theirs;
     if (
       !theirs ||
       !(await ask({
@@ -406,46 +406,46 @@ export class StrataTourDialog extends LitElement {
       }))
     )
       return;
-    this.take(draft_of(theirs));
+    this.take(draftOf(theirs));
   }
 
   // ── saving
   // ────────────────────────────────────────────────────────────────────────────────────────────────────────
 
   private async save(): Promise<void> {
-    const { draft_: draft } = this;
-    if (!draft || this.busy_) return;
-    const problem = problem_of(draft);
+    const { _draft: draft } = this;
+    if (!draft || this._busy) return;
+    const problem = problemOf(draft);
     if (problem) return this.refuse(problem.field, told(problem));
-    this.busy_ = true;
+    this._busy = true;
     try {
-      const body = body_of(draft);
+      const body = bodyOf(draft);
       const { tours } = this.session;
-      this.base_ = await (this.base_
-        ? tours.change(this.base_, body)
-        : tours.make(body, this.key_));
-      this.saved_ = draft;
+      this._base = await (this._base
+        ? tours.change(this._base, body)
+        : tours.make(body, this._key));
+      this._saved = draft;
       notices.show("success", words.saved(body.name));
-      this.dialog_?.close();
+      this._dialog?.close();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       await this.refused(error);
     } finally {
-      this.busy_ = false;
+      this._busy = false;
     }
   }
 
   private async refused(error: ApiError): Promise<void> {
-    if (this.base_ && (error.status === 412 || error.status === 404)) {
+    if (this._base && (error.status === 412 || error.status === 404)) {
       try {
-        this.base_ = this.theirs_ = await this.session.tours.read(this.base_.id);
+        this._base = this._theirs = await this.session.tours.read(this._base.id);
         return;
       } catch (again) {
         if (!(again instanceof ApiError)) throw again;
         if (again.status !== 404) return this.refuse("", again.message);
-        this.base_ = null; // the next attempt makes it anew
-        this.theirs_ = null;
-        this.key_ = new_id();
+        this._base = null; // the next attempt makes it anew
+        this._theirs = null;
+        this._key = newId();
         return this.refuse("", words.gone);
       }
     }
@@ -454,17 +454,17 @@ export class StrataTourDialog extends LitElement {
 
   /** At the field that is meant, which is brought into sight. */
   private refuse(field: string, text: string): void {
-    this.problem_ = { field, text };
-    const place = place_of(field);
-    const stop = place.stop === null ? undefined : this.draft_?.stops[place.stop];
+    this._problem = { field, text };
+    const place = placeOf(field);
+    const stop = place.stop === null ? undefined : this._draft?.stops[place.stop];
     if (stop) {
-      this.chosen_ = stop.id;
-      this.language_ = language_of_field(place.within) ?? this.language_;
+      this._chosen = stop.id;
+      this._language = languageOfField(place.within) ?? this._language;
     } else {
-      this.chosen_ = null;
+      this._chosen = null;
     }
     void this.updateComplete.then(() => {
-      if (stop) void this.fields_?.focus_wrong();
+      if (stop) void this._fields?.focusWrong();
       else this.renderRoot.querySelector<HTMLElement>('.about [aria-invalid="true"]')?.focus();
     });
   }

@@ -2,26 +2,26 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
-import { kCommonLanguages, language_in_words } from "../../core/languages";
-import { compare_words } from "../../core/locale";
+import { kCommonLanguages, languageInWords } from "../../core/languages";
+import { compareWords } from "../../core/locale";
 import { kMostLanguages } from "../../domain/tours";
-import { add_from, add_from_styles } from "../../ui/add-from";
+import { addFrom, addFromStyles } from "../../ui/add-from";
 import { icon } from "../../ui/icons";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.tours;
 const offered = kCommonLanguages
-  .map((tag) => ({ value: tag, name: language_in_words(tag) }))
-  .sort((a, b) => compare_words(a.name, b.name));
+  .map((tag) => ({ value: tag, name: languageInWords(tag) }))
+  .sort((a, b) => compareWords(a.name, b.name));
 
 @customElement("strata-tour-languages")
 export class StrataTourLanguages extends LitElement {
   @property({ attribute: false }) languages: readonly string[] = [];
 
   static override styles = [
-    shared_styles,
-    add_from_styles,
+    sharedStyles,
+    addFromStyles,
     css`
       :host {
         display: grid;
@@ -76,13 +76,13 @@ export class StrataTourLanguages extends LitElement {
       </ul>
       ${
         languages.length < kMostLanguages
-          ? add_from(words.language_add, others, (tag) => this.put([...languages, tag]))
+          ? addFrom(words.language_add, others, (tag) => this.put([...languages, tag]))
           : nothing
       }`;
   }
 
   private chip(tag: string, index: number): TemplateResult {
-    const name = language_in_words(tag);
+    const name = languageInWords(tag);
     if (this.languages.length === 1) return html`<li>${name}</li>`;
     return html`<li>
       ${name}

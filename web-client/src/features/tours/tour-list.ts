@@ -6,13 +6,13 @@ import { customElement, property } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import type { TourEntry } from "../../core/protocol.gen";
 import { ask } from "../../ui/dialog";
-import { follow_session } from "../../session/follow-session";
+import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { list_head_styles, list_row_styles } from "../../ui/panel-styles";
-import { shared_styles } from "../../ui/styles";
+import { listHeadStyles, listRowStyles } from "../../ui/panel-styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import type { TourRequest } from "../../session/requests";
 
@@ -24,13 +24,13 @@ export class StrataTourList extends LitElement {
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
-    list_head_styles,
-    list_row_styles,
+    sharedStyles,
+    listHeadStyles,
+    listRowStyles,
     css`
       button.open {
         gap: 1px;
@@ -78,7 +78,7 @@ export class StrataTourList extends LitElement {
         <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "tour", tour })}>${icon("edit")}${words.edit}</button>
         <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "kiosks", tour })}>${icon("link")}${texts.kiosks.of_tour}</button>
         <hr />
-        <button class="quiet" role="menuitem" @click=${() => void this.delete_tour(tour)}>${icon("trash")}${texts.layers.delete}</button>
+        <button class="quiet" role="menuitem" @click=${() => void this.deleteTour(tour)}>${icon("trash")}${texts.layers.delete}</button>
       </strata-menu>
     </li>`;
   }
@@ -87,7 +87,7 @@ export class StrataTourList extends LitElement {
     this.dispatchEvent(new CustomEvent<TourRequest>("request", { detail }));
   }
 
-  private async delete_tour(tour: TourEntry): Promise<void> {
+  private async deleteTour(tour: TourEntry): Promise<void> {
     if (
       !(await ask({
         heading: words.delete_title(tour.name),

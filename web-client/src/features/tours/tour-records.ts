@@ -5,19 +5,19 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError } from "../../net/api";
-import { label_of } from "../../domain/cells";
-import { language_in_words } from "../../core/languages";
+import { labelOf } from "../../domain/cells";
+import { languageInWords } from "../../core/languages";
 import type { Table, TourRecords } from "../../core/protocol.gen";
-import { is_about, kMostKeys, kMostRecordTables } from "../../domain/tours";
-import { add_from, add_from_styles } from "../../ui/add-from";
+import { isAbout, kMostKeys, kMostRecordTables } from "../../domain/tours";
+import { addFrom, addFromStyles } from "../../ui/add-from";
 import { icon } from "../../ui/icons";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import "../../ui/ordered-choice";
 import "../../session/fields/record-chooser";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
-import { visibility_badge } from "../../ui/visibility";
+import { visibilityBadge } from "../../ui/visibility";
 
 const words = texts.tours;
 
@@ -30,11 +30,11 @@ export class StrataTourRecords extends LitElement {
   /** What was refused, as `records[0].keys[2]`. */
   @property() wrong = "";
   @property() problem = "";
-  @state() private tables_: readonly Table[] = [];
+  @state() private _tables: readonly Table[] = [];
 
   static override styles = [
-    shared_styles,
-    add_from_styles,
+    sharedStyles,
+    addFromStyles,
     css`
       :host {
         display: grid;
@@ -64,7 +64,7 @@ export class StrataTourRecords extends LitElement {
     super.connectedCallback();
     this.session.tables
       .all()
-      .then((tables) => (this.tables_ = tables))
+      .then((tables) => (this._tables = tables))
       .catch((error: unknown) => {
         if (!(error instanceof ApiError)) throw error;
         notices.error(error);
@@ -72,30 +72,30 @@ export class StrataTourRecords extends LitElement {
   }
 
   override render(): TemplateResult {
-    const { records, tables_ } = this;
-    const others = tables_.filter(({ slug }) => !records.some(({ table }) => table === slug));
+    const { records, _tables } = this;
+    const others = _tables.filter(({ slug }) => !records.some(({ table }) => table === slug));
     return html`${repeat(
       records,
       ({ table }) => table,
-      (each, index) => this.of_table(each, index),
+      (each, index) => this.ofTable(each, index),
     )}
       ${
         others.length > 0 && records.length < kMostRecordTables
-          ? add_from(
+          ? addFrom(
               words.table_add,
-              others.map((table) => ({ value: table.slug, name: label_of(table) })),
+              others.map((table) => ({ value: table.slug, name: labelOf(table) })),
               (table) => this.put([...records, { table, keys: [], columns: [] }]),
             )
           : nothing
       }
-      ${tables_.length === 0 && records.length === 0 ? html`<p class="hint">${words.no_tables}</p>` : nothing}`;
+      ${_tables.length === 0 && records.length === 0 ? html`<p class="hint">${words.no_tables}</p>` : nothing}`;
   }
 
-  private of_table(each: TourRecords, index: number): TemplateResult {
-    const table = this.tables_.find(({ slug }) => slug === each.table);
-    const name = table ? label_of(table) : each.table;
-    const wrong = this.wrong !== "" && is_about(this.wrong, `records[${index}]`);
-    const wrong_column = /\.columns\[(\d+)\]/.exec(wrong ? this.wrong : "")?.[1];
+  private ofTable(each: TourRecords, index: number): TemplateResult {
+    const table = this._tables.find(({ slug }) => slug === each.table);
+    const name = table ? labelOf(table) : each.table;
+    const wrong = this.wrong !== "" && isAbout(this.wrong, `records[${index}]`);
+    const wrongColumn = /\.columns\[(\d+)\]/.exec(wrong ? this.wrong : "")?.[1];
     return html`<section class=${wrong ? "wrong" : ""} aria-label=${name}>
       <div class="row">
         <b>${name}</b>
@@ -120,11 +120,11 @@ export class StrataTourRecords extends LitElement {
             <strata-ordered-choice
               label=${words.columns_of(name)}
               add_label=${words.column_add}
-              .things=${table.columns.map((column) => ({ value: column.slug, name: label_of(column), badge: visibility_badge(column.visibility) }))}
+              .things=${table.columns.map((column) => ({ value: column.slug, name: labelOf(column), badge: visibilityBadge(column.visibility) }))}
               .chosen=${each.columns.map(({ column }) => column)}
-              .wrong=${wrong_column === undefined ? [] : [each.columns[Number(wrong_column)]?.column ?? ""]}
+              .wrong=${wrongColumn === undefined ? [] : [each.columns[Number(wrongColumn)]?.column ?? ""]}
               .more=${(slug: string) => this.labels(index, table, slug)}
-              @chosen=${(event: CustomEvent<string[]>) => this.choose_columns(index, event.detail)}
+              @chosen=${(event: CustomEvent<string[]>) => this.chooseColumns(index, event.detail)}
             ></strata-ordered-choice>`
           : nothing
       }
@@ -135,15 +135,15 @@ export class StrataTourRecords extends LitElement {
   private labels(index: number, table: Table, slug: string): TemplateResult {
     const column = table.columns.find((each) => each.slug === slug);
     const labels = this.records[index]?.columns.find((each) => each.column === slug)?.labels ?? {};
-    const name = column ? label_of(column) : slug;
+    const name = column ? labelOf(column) : slug;
     return html`${this.languages.map(
       (language) =>
         html`<input
           type="text"
           maxlength="200"
           lang=${language}
-          aria-label=${words.column_label(name, language_in_words(language))}
-          placeholder=${words.column_label_hint(language_in_words(language), column ? label_of(column, [language]) : slug)}
+          aria-label=${words.column_label(name, languageInWords(language))}
+          placeholder=${words.column_label_hint(languageInWords(language), column ? labelOf(column, [language]) : slug)}
           .value=${labels[language] ?? ""}
           @input=${(event: Event) => this.label(index, slug, language, (event.target as HTMLInputElement).value)}
         />`,
@@ -157,7 +157,7 @@ export class StrataTourRecords extends LitElement {
     this.change(index, { columns });
   }
 
-  private choose_columns(index: number, slugs: readonly string[]): void {
+  private chooseColumns(index: number, slugs: readonly string[]): void {
     const { columns } = this.records[index]!;
     this.change(index, {
       columns: slugs.map((column) => columns.find((each) => each.column === column) ?? { column }),

@@ -4,29 +4,29 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { label_of } from "../../domain/cells";
-import { language_in_words } from "../../core/languages";
+import { labelOf } from "../../domain/cells";
+import { languageInWords } from "../../core/languages";
 import {
-  is_about,
+  isAbout,
   kMostLayers,
   kSeconds,
-  language_of_field,
+  languageOfField,
   untranslated,
   type StopDraft,
 } from "../../domain/tours";
 import type { TourTransition } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
-import { follow_session } from "../../session/follow-session";
+import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { number_input } from "../../ui/number-input";
+import { numberInput } from "../../ui/number-input";
 import "../../ui/ordered-choice";
-import { radio_group } from "../../ui/radio-group";
-import { number_field_styles, shared_styles } from "../../ui/styles";
+import { radioGroup } from "../../ui/radio-group";
+import { numberFieldStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import "./tour-records";
-import { visibility_badge } from "../../ui/visibility";
+import { visibilityBadge } from "../../ui/visibility";
 
 const words = texts.tours;
 const kTransitions: readonly TourTransition[] = ["move", "cut"];
@@ -44,12 +44,12 @@ export class StrataTourStopFields extends LitElement {
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
-    number_field_styles,
+    sharedStyles,
+    numberFieldStyles,
     css`
       :host {
         display: grid;
@@ -122,7 +122,7 @@ export class StrataTourStopFields extends LitElement {
   ];
 
   /** To what was refused. */
-  async focus_wrong(): Promise<void> {
+  async focusWrong(): Promise<void> {
     await this.updateComplete;
     const find = (selector: string): HTMLElement | null =>
       this.renderRoot.querySelector<HTMLElement>(selector);
@@ -131,16 +131,16 @@ export class StrataTourStopFields extends LitElement {
     field?.focus({ preventScroll: true });
   }
 
-  private is_wrong(field: string): boolean {
-    return this.wrong !== "" && is_about(this.wrong, field);
+  private isWrong(field: string): boolean {
+    return this.wrong !== "" && isAbout(this.wrong, field);
   }
   private refusal(...fields: string[]): TemplateResult | typeof nothing {
-    return fields.some((field) => this.is_wrong(field))
+    return fields.some((field) => this.isWrong(field))
       ? html`<p class="error" role="alert" id="refusal">${this.problem}</p>`
       : nothing;
   }
   private invalid(field: string): "true" | "false" {
-    return this.is_wrong(field) ? "true" : "false";
+    return this.isWrong(field) ? "true" : "false";
   }
 
   override render(): TemplateResult {
@@ -153,12 +153,12 @@ export class StrataTourStopFields extends LitElement {
           label=${words.swipe}
           add_label=${words.layer_add}
           most=${kMostLayers}
-          .things=${[...session.layers.all].reverse().map((layer) => ({ value: layer.slug, name: label_of(layer), badge: visibility_badge(layer.visibility) }))}
+          .things=${[...session.layers.all].reverse().map((layer) => ({ value: layer.slug, name: labelOf(layer), badge: visibilityBadge(layer.visibility) }))}
           .chosen=${stop.layers}
-          .wrong=${this.is_wrong("layers") ? stop.layers.filter((_, index) => this.wrong === `layers[${index}]`) : []}
+          .wrong=${this.isWrong("layers") ? stop.layers.filter((_, index) => this.wrong === `layers[${index}]`) : []}
           @chosen=${(event: CustomEvent<string[]>) => this.change({ layers: event.detail })}
         ></strata-ordered-choice>
-        ${this.refusal("layers")} ${this.layer_names()}
+        ${this.refusal("layers")} ${this.layerNames()}
       </div>
       <div class="part">
         <span class="caption">${words.records}</span>
@@ -179,7 +179,7 @@ export class StrataTourStopFields extends LitElement {
    * What visitors read on the buttons of the layers. It is the layers' own, and kept with them at
    * once.
    */
-  private layer_names(): TemplateResult | typeof nothing {
+  private layerNames(): TemplateResult | typeof nothing {
     const { session, stop } = this;
     const layers = stop.layers.flatMap(
       (slug) => session.layers.all.find((layer) => layer.slug === slug) ?? [],
@@ -191,14 +191,14 @@ export class StrataTourStopFields extends LitElement {
           this.written.map(
             (language) =>
               html`<label class="field">
-                <span>${words.layer_name(layer.name, language_in_words(language))}</span>
+                <span>${words.layer_name(layer.name, languageInWords(language))}</span>
                 <input
                   type="text"
                   maxlength="200"
                   lang=${language}
-                  placeholder=${label_of(layer, [language])}
+                  placeholder=${labelOf(layer, [language])}
                   .value=${layer.labels[language] ?? ""}
-                  @change=${(event: Event) => void this.name_layer(layer, language, (event.target as HTMLInputElement).value)}
+                  @change=${(event: Event) => void this.nameLayer(layer, language, (event.target as HTMLInputElement).value)}
                 />
               </label>`,
           ),
@@ -206,7 +206,7 @@ export class StrataTourStopFields extends LitElement {
       </div>`;
   }
 
-  private async name_layer(layer: Layer, language: string, typed: string): Promise<void> {
+  private async nameLayer(layer: Layer, language: string, typed: string): Promise<void> {
     const { [language]: _, ...others } = layer.labels;
     const name = typed.trim();
     try {
@@ -265,12 +265,12 @@ export class StrataTourStopFields extends LitElement {
     return html`<div class="part">
       ${
         others.length > 1
-          ? radio_group<string>({
+          ? radioGroup<string>({
               label: words.translation,
               class: "segments",
               choices: others.map((language) => ({
                 value: language,
-                content: html`${language_in_words(language)}${mark(language)}`,
+                content: html`${languageInWords(language)}${mark(language)}`,
               })),
               chosen: written[1] ?? null,
               choose: (language) =>
@@ -281,20 +281,20 @@ export class StrataTourStopFields extends LitElement {
       <div class="words">${repeat(
         written,
         (language) => language,
-        (language) => this.in_language(language, language === first),
+        (language) => this.inLanguage(language, language === first),
       )}</div>
       ${this.refusal("title", "text")}
     </div>`;
   }
 
-  private in_language(language: string, is_first: boolean): TemplateResult {
+  private inLanguage(language: string, isFirst: boolean): TemplateResult {
     const { stop } = this;
-    const name = language_in_words(language);
+    const name = languageInWords(language);
     const alone = this.languages.length === 1;
-    const lacks = !is_first && untranslated(stop, this.languages).includes(language);
+    const lacks = !isFirst && untranslated(stop, this.languages).includes(language);
     const refused =
-      language_of_field(this.wrong) === language ||
-      (is_first && (this.wrong === "title" || this.wrong === "text"));
+      languageOfField(this.wrong) === language ||
+      (isFirst && (this.wrong === "title" || this.wrong === "text"));
     return html`<div class="language" role="group" aria-label=${name}>
       <label class="field">
         <span>${alone ? words.stop_title : words.stop_title_in(name)}</span>
@@ -302,7 +302,7 @@ export class StrataTourStopFields extends LitElement {
           type="text"
           maxlength="200"
           lang=${language}
-          aria-invalid=${refused && this.is_wrong("title") ? "true" : "false"}
+          aria-invalid=${refused && this.isWrong("title") ? "true" : "false"}
           .value=${stop.title[language] ?? ""}
           @input=${(event: Event) => this.change({ title: { ...stop.title, [language]: (event.target as HTMLInputElement).value } })}
         />
@@ -312,7 +312,7 @@ export class StrataTourStopFields extends LitElement {
         <textarea
           maxlength="5000"
           lang=${language}
-          aria-invalid=${refused && this.is_wrong("text") ? "true" : "false"}
+          aria-invalid=${refused && this.isWrong("text") ? "true" : "false"}
           .value=${stop.text[language] ?? ""}
           @input=${(event: Event) => this.change({ text: { ...stop.text, [language]: (event.target as HTMLTextAreaElement).value } })}
         ></textarea>
@@ -330,7 +330,7 @@ export class StrataTourStopFields extends LitElement {
       const [min, max] = kSeconds[field === "attract_s" ? "attract" : "transition"];
       return html`<label class="field">
         <span>${caption}</span>
-        <span class="number">${number_input({ value: stop[field], min, max, wrong: this.is_wrong(field), typed: (text) => this.change({ [field]: text }) })}<span>s</span></span>
+        <span class="number">${numberInput({ value: stop[field], min, max, wrong: this.isWrong(field), typed: (text) => this.change({ [field]: text }) })}<span>s</span></span>
       </label>`;
     };
     return html`<div class="part">
@@ -338,7 +338,7 @@ export class StrataTourStopFields extends LitElement {
         ${seconds("attract_s", words.attract)}
         <div class="part">
           <span class="caption" id="transition">${words.transition}</span>
-          ${radio_group<TourTransition>({
+          ${radioGroup<TourTransition>({
             label: { id: "transition" },
             class: "segments",
             choices: kTransitions.map((value) => ({ value, content: words.transitions[value] })),

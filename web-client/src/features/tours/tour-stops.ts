@@ -4,16 +4,16 @@
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { language_in_words } from "../../core/languages";
-import { format_list } from "../../core/locale";
-import { kMostStops, moved, new_stop, untranslated, type StopDraft } from "../../domain/tours";
+import { languageInWords } from "../../core/languages";
+import { formatList } from "../../core/locale";
+import { kMostStops, moved, newStop, untranslated, type StopDraft } from "../../domain/tours";
 import type { View } from "../../core/protocol.gen";
 import { DragOrder } from "../../ui/drag-order";
-import { follow_session } from "../../session/follow-session";
+import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
 import type { ModelSession } from "../../session/model-session";
-import { drag_styles, shared_styles } from "../../ui/styles";
+import { dragStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import "../../ui/thumbnail";
 
@@ -34,9 +34,9 @@ export class StrataTourStops extends LitElement {
   /** Index of the one that was refused. */
   @property({ attribute: false }) wrong: number | null = null;
   @property() problem = "";
-  @state() private removed_: { stop: StopDraft; index: number }[] = []; // the newest last
-  @query("select") private select_!: HTMLSelectElement | null;
-  private readonly drag_ = new DragOrder<number>(
+  @state() private _removed: { stop: StopDraft; index: number }[] = []; // the newest last
+  @query("select") private _select!: HTMLSelectElement | null;
+  private readonly _drag = new DragOrder<number>(
     this,
     () => this.stops.map(({ id }) => id),
     (id, to) =>
@@ -48,12 +48,12 @@ export class StrataTourStops extends LitElement {
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
-    drag_styles,
+    sharedStyles,
+    dragStyles,
     css`
       :host {
         display: grid;
@@ -139,17 +139,17 @@ export class StrataTourStops extends LitElement {
 
   override willUpdate(changed: PropertyValues<this>): void {
     // words in a language that is gone would come back with them
-    if (changed.has("languages") && changed.get("languages") !== undefined) this.removed_ = [];
+    if (changed.has("languages") && changed.get("languages") !== undefined) this._removed = [];
   }
 
   override render(): TemplateResult {
     const { stops } = this;
-    const removed = this.removed_.at(-1);
+    const removed = this._removed.at(-1);
     return html`<span class="caption" id="caption">${words.stops}</span>
       ${
         stops.length === 0
-          ? html`<p class="hint" ?hidden=${this.lacks_views}>${words.none_stops}</p>`
-          : html`<ol aria-labelledby="caption" @dragover=${this.drag_.over_list} @drop=${this.drag_.drop}>
+          ? html`<p class="hint" ?hidden=${this.lacksViews}>${words.none_stops}</p>`
+          : html`<ol aria-labelledby="caption" @dragover=${this._drag.overList} @drop=${this._drag.drop}>
             ${repeat(
               stops,
               ({ id }) => id,
@@ -159,39 +159,39 @@ export class StrataTourStops extends LitElement {
       }
       ${
         removed
-          ? html`<p class="removed" role="status">${words.removed(this.title_of(removed.stop))} <button type="button" class="link" @click=${this.put_back}>${words.undo}</button></p>`
+          ? html`<p class="removed" role="status">${words.removed(this.titleOf(removed.stop))} <button type="button" class="link" @click=${this.putBack}>${words.undo}</button></p>`
           : nothing
       }
       ${this.problem ? html`<p class="error" role="alert">${this.problem}</p>` : nothing}
       ${stops.length < kMostStops ? this.adding() : nothing}`;
   }
 
-  private title_of({ title }: StopDraft): string {
+  private titleOf({ title }: StopDraft): string {
     return title[this.languages[0] ?? ""]?.trim() || texts.unnamed;
   }
 
-  private get lacks_views(): boolean {
+  private get lacksViews(): boolean {
     const { all, loaded } = this.session.views;
     return loaded && all.length === 0;
   }
 
-  private view_of({ view }: StopDraft): View | null {
+  private viewOf({ view }: StopDraft): View | null {
     return this.session.views.all.find(({ slug }) => slug === view) ?? null;
   }
 
   private row(stop: StopDraft, index: number): TemplateResult {
     const { stops, languages, session } = this;
-    const title = this.title_of(stop);
-    const view = this.view_of(stop);
-    const lacks = untranslated(stop, languages).map(language_in_words);
+    const title = this.titleOf(stop);
+    const view = this.viewOf(stop);
+    const lacks = untranslated(stop, languages).map(languageInWords);
     const chosen = stop.id === this.chosen;
     return html`<li
-      class="${chosen ? "chosen" : ""} ${this.wrong === index ? "wrong" : ""} ${this.drag_.classes(stop.id, index)}"
-      @dragover=${(event: DragEvent) => this.drag_.over_row(event, index)}
+      class="${chosen ? "chosen" : ""} ${this.wrong === index ? "wrong" : ""} ${this._drag.classes(stop.id, index)}"
+      @dragover=${(event: DragEvent) => this._drag.overRow(event, index)}
     >
       ${
         stops.length > 1
-          ? html`<span class="grip" draggable="true" title=${texts.layers.drag(title)} @dragstart=${(event: DragEvent) => this.drag_.start(event, stop.id, title)} @dragend=${this.drag_.end}>${icon("grip")}</span>`
+          ? html`<span class="grip" draggable="true" title=${texts.layers.drag(title)} @dragstart=${(event: DragEvent) => this._drag.start(event, stop.id, title)} @dragend=${this._drag.end}>${icon("grip")}</span>`
           : html`<span></span>`
       }
       <button type="button" class="quiet stop" aria-current=${chosen} @click=${() => this.put(stops, stop.id)}>
@@ -202,20 +202,20 @@ export class StrataTourStops extends LitElement {
         }
         <b>${index + 1}. ${title}</b>
         ${view || !session.views.loaded ? nothing : html`<span class="gone">${words.view_gone_short}</span>`}
-        ${lacks.length > 0 ? html`<span class="lacks">${words.missing(format_list(lacks))}</span>` : nothing}
+        ${lacks.length > 0 ? html`<span class="lacks">${words.missing(formatList(lacks))}</span>` : nothing}
       </button>
       <strata-menu label=${texts.layers.options(title)}>
         <button type="button" class="quiet" role="menuitem" ?disabled=${index === 0} @click=${() => this.move(index, index - 1)}>${icon("up")}${texts.layers.up}</button>
         <button type="button" class="quiet" role="menuitem" ?disabled=${index === stops.length - 1} @click=${() => this.move(index, index + 1)}>${icon("down")}${texts.layers.down}</button>
         <hr />
-        <button type="button" class="quiet" role="menuitem" @click=${() => this.remove_stop(index)}>${icon("trash")}${words.remove}</button>
+        <button type="button" class="quiet" role="menuitem" @click=${() => this.removeStop(index)}>${icon("trash")}${words.remove}</button>
       </strata-menu>
     </li>`;
   }
 
   private adding(): TemplateResult {
     const { all } = this.session.views;
-    if (this.lacks_views) return html`<p class="hint">${words.no_views}</p>`;
+    if (this.lacksViews) return html`<p class="hint">${words.no_views}</p>`;
     const used = new Set(this.stops.map(({ view }) => view));
     const next = all.find(({ slug }) => !used.has(slug)) ?? all[0];
     return html`<div class="add">
@@ -232,12 +232,12 @@ export class StrataTourStops extends LitElement {
   }
 
   private async add(): Promise<void> {
-    const view = this.session.views.all.find(({ slug }) => slug === this.select_?.value);
+    const view = this.session.views.all.find(({ slug }) => slug === this._select?.value);
     if (!view) return;
-    const stop = new_stop(view, this.languages[0] ?? "");
+    const stop = newStop(view, this.languages[0] ?? "");
     this.put([...this.stops, stop], stop.id);
     await this.updateComplete;
-    const next = [...(this.select_?.options ?? [])].find(({ defaultSelected }) => defaultSelected);
+    const next = [...(this._select?.options ?? [])].find(({ defaultSelected }) => defaultSelected);
     if (next) next.selected = true; // also where somebody chose one by hand
   }
 
@@ -245,17 +245,17 @@ export class StrataTourStops extends LitElement {
     this.put(moved(this.stops, from, to), this.chosen);
   }
 
-  private remove_stop(index: number): void {
+  private removeStop(index: number): void {
     const stop = this.stops[index]!;
     const rest = this.stops.filter((each) => each !== stop);
-    this.removed_ = [...this.removed_, { stop, index }];
+    this._removed = [...this._removed, { stop, index }];
     this.put(rest, stop.id === this.chosen ? null : this.chosen);
   }
 
-  private put_back(): void {
-    const last = this.removed_.at(-1);
+  private putBack(): void {
+    const last = this._removed.at(-1);
     if (!last) return;
-    this.removed_ = this.removed_.slice(0, -1);
+    this._removed = this._removed.slice(0, -1);
     const stops = [...this.stops];
     stops.splice(last.index, 0, last.stop);
     this.put(stops, last.stop.id);

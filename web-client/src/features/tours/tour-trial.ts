@@ -5,7 +5,7 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
 import type { StopDraft } from "../../domain/tours";
 import { icon } from "../../ui/icons";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.tours;
@@ -15,10 +15,10 @@ export class StrataTourTrial extends LitElement {
   @property({ attribute: false }) stops: readonly StopDraft[] = [];
   @property({ type: Number }) index = 0;
   @property() language = "";
-  @query("button.primary") private back_!: HTMLButtonElement;
+  @query("button.primary") private _back!: HTMLButtonElement;
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       section {
         position: fixed;
@@ -54,14 +54,14 @@ export class StrataTourTrial extends LitElement {
   ];
 
   override firstUpdated(): void {
-    this.back_.focus();
+    this._back.focus();
   }
 
   override render(): TemplateResult {
     const { stops, index, language } = this;
     const stop = stops[index];
     const text = stop?.text[language]?.trim();
-    return html`<section aria-label=${words.trial} @keydown=${this.on_key}>
+    return html`<section aria-label=${words.trial} @keydown=${this.onKey}>
       <h2 role="status">${index + 1}. ${stop?.title[language]?.trim() || texts.unnamed}</h2>
       ${text ? html`<p lang=${language} tabindex="0">${text}</p>` : nothing}
       <div class="row">
@@ -84,7 +84,7 @@ export class StrataTourTrial extends LitElement {
     this.dispatchEvent(new CustomEvent("end"));
   }
 
-  private on_key(event: KeyboardEvent): void {
+  private onKey(event: KeyboardEvent): void {
     if (event.key !== "Escape") return;
     event.preventDefault();
     this.end();

@@ -18,13 +18,13 @@ const words = texts.kept_views;
 export class StrataViewDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) view: View | null = null;
-  private base_: View | null = null; // the view as this person knows it
-  private content_: ViewContent | null = null; // of a new one: what was seen when this was opened
+  private _base: View | null = null; // the view as this person knows it
+  private _content: ViewContent | null = null; // of a new one: what was seen when this was opened
 
   override connectedCallback(): void {
     super.connectedCallback();
-    if (this.view) this.base_ = this.view;
-    else this.content_ = this.session.views.content();
+    if (this.view) this._base = this.view;
+    else this._content = this.session.views.content();
   }
 
   override render(): TemplateResult {
@@ -44,15 +44,15 @@ export class StrataViewDialog extends LitElement {
   private readonly save = async (called: Called, key: string): Promise<string> => {
     const { views } = this.session;
     try {
-      if (this.base_) await views.describe(this.base_, called);
-      else if (this.content_) await views.keep(called, this.content_, key);
+      if (this._base) await views.describe(this._base, called);
+      else if (this._content) await views.keep(called, this._content, key);
     } catch (error) {
       const newest =
-        error instanceof ApiError && error.status === 412 && this.base_
-          ? views.find(this.base_.id)
+        error instanceof ApiError && error.status === 412 && this._base
+          ? views.find(this._base.id)
           : null;
       if (!newest) throw error;
-      this.base_ = newest;
+      this._base = newest;
       return words.changed(newest.name);
     }
     if (!this.view) notices.show("success", words.kept(called.name));

@@ -5,15 +5,15 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import type { View } from "../../core/protocol.gen";
-import { copy_text } from "../../ui/copy-field";
+import { copyText } from "../../ui/copy-field";
 import { ask } from "../../ui/dialog";
-import { follow_session } from "../../session/follow-session";
+import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { list_head_styles, list_row_styles } from "../../ui/panel-styles";
-import { shared_styles } from "../../ui/styles";
+import { listHeadStyles, listRowStyles } from "../../ui/panel-styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import "../../ui/thumbnail";
 import type { ViewRequest } from "../../session/requests";
@@ -24,17 +24,17 @@ const kAtOnce = 50;
 @customElement("strata-view-list")
 export class StrataViewList extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  @state() private most_ = kAtOnce;
+  @state() private _most = kAtOnce;
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
-    list_head_styles,
-    list_row_styles,
+    sharedStyles,
+    listHeadStyles,
+    listRowStyles,
     css`
       button.go {
         grid-template-columns: 4rem minmax(0, 1fr);
@@ -87,10 +87,10 @@ export class StrataViewList extends LitElement {
     const { views } = session;
     return html`<div class="row">
         <h3>${words.title}</h3>
-        ${session.can_paint ? html`<button class="quiet" @click=${() => this.request(null)}>${icon("plus")}${words.keep}</button>` : nothing}
+        ${session.canPaint ? html`<button class="quiet" @click=${() => this.request(null)}>${icon("plus")}${words.keep}</button>` : nothing}
       </div>
       ${views.failed ? this.failure() : this.list()}
-      ${views.leads_back ? html`<div class="back"><button class="link" @click=${() => views.go_back()}>${words.back}</button></div>` : nothing}`;
+      ${views.leadsBack ? html`<div class="back"><button class="link" @click=${() => views.goBack()}>${words.back}</button></div>` : nothing}`;
   }
 
   private failure(): TemplateResult {
@@ -99,26 +99,26 @@ export class StrataViewList extends LitElement {
   }
 
   private list(): TemplateResult {
-    const { views, can_paint } = this.session;
+    const { views, canPaint } = this.session;
     const { all, current } = views;
     if (!views.loaded) return html`<p class="hint">${texts.loading}</p>`;
     if (all.length === 0)
-      return html`<p class="hint">${can_paint ? words.none : words.none_viewer}</p>`;
+      return html`<p class="hint">${canPaint ? words.none : words.none_viewer}</p>`;
     return html`<ul>
         ${repeat(
-          all.slice(0, this.most_),
+          all.slice(0, this._most),
           ({ id }) => id,
           (view) => this.row(view, view === current),
         )}
       </ul>
-      ${all.length > this.most_ ? html`<button @click=${() => (this.most_ += kAtOnce)}>${words.more(all.length - this.most_)}</button>` : nothing}`;
+      ${all.length > this._most ? html`<button @click=${() => (this._most += kAtOnce)}>${words.more(all.length - this._most)}</button>` : nothing}`;
   }
 
-  private row(view: View, is_current: boolean): TemplateResult {
-    const { api, model, views, can_paint } = this.session;
-    const may_change = can_paint && views.may_change(view);
+  private row(view: View, isCurrent: boolean): TemplateResult {
+    const { api, model, views, canPaint } = this.session;
+    const mayChange = canPaint && views.mayChange(view);
     return html`<li>
-      <button class="quiet go" data-view=${view.id} aria-current=${is_current} title=${view.text || nothing} @click=${() => views.go_to(view)}>
+      <button class="quiet go" data-view=${view.id} aria-current=${isCurrent} title=${view.text || nothing} @click=${() => views.goTo(view)}>
         ${model ? html`<strata-thumbnail .api=${api} .model=${model} .view=${view}></strata-thumbnail>` : nothing}
         <span class="words">
           <b>${view.name}</b>
@@ -126,14 +126,14 @@ export class StrataViewList extends LitElement {
         </span>
       </button>
       <strata-menu label=${texts.layers.options(view.name)}>
-        <button class="quiet" role="menuitem" @click=${() => void this.copy_link(view)}>${icon("link")}${words.copy_link}</button>
+        <button class="quiet" role="menuitem" @click=${() => void this.copyLink(view)}>${icon("link")}${words.copy_link}</button>
         <button class="quiet" role="menuitem" @click=${() => this.request(view, "figure")}>${icon("measure")}${texts.figures.of_view}</button>
         ${
-          may_change
+          mayChange
             ? html`<button class="quiet" role="menuitem" @click=${() => this.request(view)}>${icon("edit")}${words.describe}</button>
               <button class="quiet" role="menuitem" @click=${() => this.change(views.replace(view))}>${icon("eye")}${words.replace}</button>
               <hr />
-              <button class="quiet" role="menuitem" @click=${() => void this.delete_view(view)}>${icon("trash")}${texts.layers.delete}</button>`
+              <button class="quiet" role="menuitem" @click=${() => void this.deleteView(view)}>${icon("trash")}${texts.layers.delete}</button>`
             : nothing
         }
       </strata-menu>
@@ -144,14 +144,13 @@ export class StrataViewList extends LitElement {
     this.dispatchEvent(new CustomEvent<ViewRequest>("request", { detail: { dialog, view } }));
   }
 
-  private async copy_link(view: View): Promise<void> {
-    const link = this.session.views.link_to(view);
-    if (await copy_text(link, () => select_hidden(link)))
-      notices.show("success", words.copied, link);
+  private async copyLink(view: View): Promise<void> {
+    const link = this.session.views.linkTo(view);
+    if (await copyText(link, () => selectHidden(link))) notices.show("success", words.copied, link);
     else notices.show("info", words.copy_by_hand, link);
   }
 
-  private async delete_view(view: View): Promise<void> {
+  private async deleteView(view: View): Promise<void> {
     const question = {
       heading: words.delete_title(view.name),
       lead: words.delete_lead,
@@ -170,7 +169,7 @@ export class StrataViewList extends LitElement {
  * Selects a text that stands nowhere in the page, and leaves the keyboard where it is. Returns what
  * lets go of it.
  */
-function select_hidden(text: string): () => void {
+function selectHidden(text: string): () => void {
   const span = document.createElement("span");
   span.textContent = text;
   Object.assign(span.style, { position: "fixed", clipPath: "inset(50%)" });

@@ -2,12 +2,12 @@
 // them has it, and how they come back.
 
 import { ApiError, type Api } from "../../net/api";
-import { place_like } from "../../math/fit-to-window";
+import { placeLike } from "../../math/fit-to-window";
 import type { View, ViewEvent } from "../../core/protocol.gen";
 import type { ViewContent } from "../../domain/views";
 import { KnownItems } from "../../net/known-items";
 import { notices } from "../../ui/notices";
-import { hash_of_view, path_of_model } from "../../ui/routes";
+import { hashOfView, pathOfModel } from "../../ui/routes";
 import { texts } from "../../texts";
 import type { ViewControl } from "../../session/view-control";
 import type { AppearancePart, LayersPart, TablesPart } from "../../session/parts";
@@ -21,71 +21,71 @@ export interface ViewsHost {
   readonly appearance: AppearancePart;
   readonly tables: TablesPart;
   /** Runs the action now, or as soon as no stroke is under way. */
-  when_free(action: () => void): void;
-  can_curate(): boolean;
+  whenFree(action: () => void): void;
+  canCurate(): boolean;
   changed(): void;
 }
 
 export class Views {
-  private me_ = "";
-  private readonly known_ = new KnownItems<View>();
+  private _me = "";
+  private readonly _known = new KnownItems<View>();
   // the newest that was gone to, and what was seen then
-  private shown_: { id: number; place: string; settings: string } | null = null;
-  private back_: (() => void) | null = null;
-  private notice_ = 0;
+  private _shown: { id: number; place: string; settings: string } | null = null;
+  private _back: (() => void) | null = null;
+  private _notice = 0;
 
   constructor(
-    private readonly api_: Api,
-    private readonly model_id_: string,
-    private readonly host_: ViewsHost,
+    private readonly _api: Api,
+    private readonly _modelId: string,
+    private readonly _host: ViewsHost,
   ) {}
 
   // ── what there is
   // ─────────────────────────────────────────────────────────────────────────────────────────────────
 
   get loaded(): boolean {
-    return this.known_.loaded;
+    return this._known.loaded;
   }
   /** They could not be read. */
   get failed(): boolean {
-    return this.known_.failed;
+    return this._known.failed;
   }
   /** In the order in which they were made. */
   get all(): View[] {
-    return this.known_.all.sort((a, b) => a.id - b.id);
+    return this._known.all.sort((a, b) => a.id - b.id);
   }
   find(id: number): View | null {
-    return this.known_.find(id);
+    return this._known.find(id);
   }
   /** The view that is seen: nothing was moved or changed since this person came there. */
   get current(): View | null {
-    return this.shown_ && this.is_at_view ? this.find(this.shown_.id) : null;
+    return this._shown && this.isAtView ? this.find(this._shown.id) : null;
   }
-  may_change(view: View): boolean {
-    return view.user === this.me_ || this.host_.can_curate();
+  mayChange(view: View): boolean {
+    return view.user === this._me || this._host.canCurate();
   }
-  link_to({ slug }: View): string {
-    return `${location.origin}${path_of_model(this.model_id_)}${hash_of_view(slug)}`;
+  linkTo({ slug }: View): string {
+    return `${location.origin}${pathOfModel(this._modelId)}${hashOfView(slug)}`;
   }
 
   /** The server said who this is; what happened before, nobody told this page. */
   welcome(user: string): void {
-    this.me_ = user;
+    this._me = user;
     void this.load();
   }
 
   async load(): Promise<void> {
-    if (await this.known_.load(() => this.api_.views(this.model_id_))) this.host_.changed();
+    if (await this._known.load(() => this._api.views(this._modelId))) this._host.changed();
   }
 
-  on_event({ event, view }: ViewEvent): void {
+  onEvent({ event, view }: ViewEvent): void {
     if (event === "deleted") this.drop(view);
     else void this.read(view);
   }
 
   private async read(id: number): Promise<void> {
     try {
-      this.put(await this.api_.view(this.model_id_, id));
+      this.put(await this._api.view(this._modelId, id));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       // otherwise it is as it was, until they are all read again
@@ -94,12 +94,12 @@ export class Views {
   }
 
   private put(view: View): void {
-    if (this.known_.put(view)) this.host_.changed();
+    if (this._known.put(view)) this._host.changed();
   }
 
   private drop(id: number): void {
-    this.known_.drop(id);
-    this.host_.changed();
+    this._known.drop(id);
+    this._host.changed();
   }
 
   // ── there and back
@@ -109,12 +109,12 @@ export class Views {
    * This person sees the model as the view has it, fitted to their window. `tells`: by a notice,
    * for who does not have the list before them.
    */
-  go_to(view: View, tells = false): void {
-    this.host_.when_free(() => {
+  goTo(view: View, tells = false): void {
+    this._host.whenFree(() => {
       this.show(view);
-      notices.dismiss(this.notice_);
-      const back = { label: words.back, act: () => this.go_back() };
-      this.notice_ = tells
+      notices.dismiss(this._notice);
+      const back = { label: words.back, act: () => this.goBack() };
+      this._notice = tells
         ? notices.show("info", words.shown(view.name), view.text.slice(0, kMostSaid), back)
         : 0;
     });
@@ -123,42 +123,42 @@ export class Views {
   /** By slug or id, as addresses have it. */
   follow(ref: string): void {
     const view = this.all.find(({ id, slug }) => slug === ref || String(id) === ref);
-    if (view) this.go_to(view, true);
+    if (view) this.goTo(view, true);
     else notices.show("info", words.missing);
   }
 
   /** To the next view of the list, or with −1 to the one before. */
   step(by: 1 | -1): void {
     const { all } = this;
-    const at = all.findIndex(({ id }) => id === this.shown_?.id);
+    const at = all.findIndex(({ id }) => id === this._shown?.id);
     const next = all[at < 0 ? (by > 0 ? 0 : all.length - 1) : (at + by + all.length) % all.length];
-    if (next) this.go_to(next, true);
+    if (next) this.goTo(next, true);
     else notices.show("info", words.none_yet);
   }
 
   /** There is something that this person saw before they went to views. */
-  get leads_back(): boolean {
-    return this.back_ !== null;
+  get leadsBack(): boolean {
+    return this._back !== null;
   }
-  go_back(): void {
-    this.host_.when_free(() => {
-      notices.dismiss(this.notice_);
-      this.back_?.();
-      this.back_ = this.shown_ = null;
-      this.host_.changed();
+  goBack(): void {
+    this._host.whenFree(() => {
+      notices.dismiss(this._notice);
+      this._back?.();
+      this._back = this._shown = null;
+      this._host.changed();
     });
   }
 
   private show(view: View): void {
-    const { view: control, layers, appearance, tables } = this.host_;
-    const was_at_view = this.is_at_view; // whose way back is this one's, too
+    const { view: control, layers, appearance, tables } = this._host;
+    const wasAtView = this.isAtView; // whose way back is this one's, too
     const { place } = control;
-    const ways_back = [layers.show_view(view), appearance.show_view(view)];
-    control.fly(place_like(view.camera, control.camera));
-    if (!was_at_view || !this.back_) {
-      this.back_ = () => {
-        for (const back of ways_back) back();
-        if (tables.view) layers.set_highlight(tables.view.layer_id, tables.view.highlight);
+    const waysBack = [layers.showView(view), appearance.showView(view)];
+    control.fly(placeLike(view.camera, control.camera));
+    if (!wasAtView || !this._back) {
+      this._back = () => {
+        for (const back of waysBack) back();
+        if (tables.view) layers.setHighlight(tables.view.layerId, tables.view.highlight);
         control.fly(place);
       };
     }
@@ -166,23 +166,23 @@ export class Views {
   }
 
   private remember({ id }: View): void {
-    this.shown_ = { id, place: this.place_text(), settings: this.settings_text() };
-    this.host_.changed();
+    this._shown = { id, place: this.placeText(), settings: this.settingsText() };
+    this._host.changed();
   }
-  private get is_at_view(): boolean {
-    const { shown_ } = this;
+  private get isAtView(): boolean {
+    const { _shown } = this;
     return (
-      shown_ !== null &&
-      shown_.place === this.place_text() &&
-      shown_.settings === this.settings_text()
+      _shown !== null &&
+      _shown.place === this.placeText() &&
+      _shown.settings === this.settingsText()
     );
   }
-  private place_text(): string {
-    return JSON.stringify(this.host_.view.place);
+  private placeText(): string {
+    return JSON.stringify(this._host.view.place);
   }
-  private settings_text(): string {
-    const { layers, appearance } = this.host_;
-    return JSON.stringify([layers.to_keep(), appearance.to_keep(), appearance.section]);
+  private settingsText(): string {
+    const { layers, appearance } = this._host;
+    return JSON.stringify([layers.toKeep(), appearance.toKeep(), appearance.section]);
   }
 
   // ── what is kept
@@ -190,8 +190,8 @@ export class Views {
 
   /** What this person sees now. */
   content(): ViewContent {
-    const { view, layers, appearance } = this.host_;
-    return { camera: view.camera.message(), layers: layers.to_keep(), ...appearance.to_keep() };
+    const { view, layers, appearance } = this._host;
+    return { camera: view.camera.message(), layers: layers.toKeep(), ...appearance.toKeep() };
   }
 
   /** `key`: the same for each attempt at one view. */
@@ -200,9 +200,9 @@ export class Views {
     content: ViewContent,
     key: string,
   ): Promise<void> {
-    const made = await this.api_.create_view(this.model_id_, { ...called, ...content }, key);
+    const made = await this._api.createView(this._modelId, { ...called, ...content }, key);
     this.put(made);
-    this.back_ = null; // what was seen before has a name now
+    this._back = null; // what was seen before has a name now
     this.remember(made);
   }
 
@@ -211,41 +211,39 @@ export class Views {
    * then as it is now.
    */
   async describe(view: View, called: { name: string; text: string }): Promise<void> {
-    await this.newest_after(view, async () =>
-      this.put(await this.api_.change_view(this.model_id_, view.id, called, view.version)),
+    await this.newestAfter(view, async () =>
+      this.put(await this._api.changeView(this._modelId, view.id, called, view.version)),
     );
   }
   /** Under the view's name what this person sees now; the same about changes in between. */
   async replace(view: View): Promise<void> {
-    const changed = await this.put_content(view, this.content());
+    const changed = await this.putContent(view, this.content());
     this.remember(changed);
     const { camera, layers, looks, light } = view;
     const before = { camera, layers, ...(looks ? { looks } : {}), light };
     const undo = (): void =>
-      void this.put_content(changed, before).catch((error: unknown) => notices.error(error));
+      void this.putContent(changed, before).catch((error: unknown) => notices.error(error));
     notices.show("success", words.replaced(view.name), "", { label: words.undo, act: undo });
   }
   /** The same about changes in between. */
   async remove(view: View): Promise<void> {
-    await this.newest_after(view, () =>
-      this.api_.delete_view(this.model_id_, view.id, view.version),
-    );
+    await this.newestAfter(view, () => this._api.deleteView(this._modelId, view.id, view.version));
     this.drop(view.id);
   }
 
-  private async put_content(
+  private async putContent(
     view: View,
     content: Pick<View, "camera" | "layers" | "looks" | "light">,
   ): Promise<View> {
     let changed = view;
-    await this.newest_after(view, async () => {
-      changed = await this.api_.change_view(this.model_id_, view.id, content, view.version);
+    await this.newestAfter(view, async () => {
+      changed = await this._api.changeView(this._modelId, view.id, content, view.version);
     });
     this.put(changed);
     return changed;
   }
 
-  private async newest_after({ id }: View, work: () => Promise<void>): Promise<void> {
+  private async newestAfter({ id }: View, work: () => Promise<void>): Promise<void> {
     try {
       await work();
     } catch (error) {

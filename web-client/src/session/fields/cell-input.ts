@@ -4,15 +4,15 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
 import {
-  cell_text,
-  holds_files,
-  is_number,
-  label_of,
-  named_keys,
-  names_records,
-  parse_cell,
+  cellText,
+  holdsFiles,
+  isNumber,
+  labelOf,
+  namedKeys,
+  namesRecords,
+  parseCell,
 } from "../../domain/cells";
-import { holds_marks, marks_of } from "../../domain/marks";
+import { holdsMarks, marksOf } from "../../domain/marks";
 import type { CellValue, Column } from "../../core/protocol.gen";
 import type { ModelSession } from "../model-session";
 import "./files-field";
@@ -20,16 +20,16 @@ import type { StrataFilesField } from "./files-field";
 import "./marks-field";
 import type { StrataMarksField } from "./marks-field";
 import { StrataRecordChooser } from "./record-chooser";
-import { number_field_styles, shared_styles } from "../../ui/styles";
+import { numberFieldStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 export type CellRead = { value: CellValue } | { problem: string };
 
 /** Whether what is typed can begin a new value; the others are chosen. */
-export const takes_typing = (column: Column): boolean =>
-  !names_records(column) &&
-  !holds_marks(column) &&
-  !holds_files(column) &&
+export const takesTyping = (column: Column): boolean =>
+  !namesRecords(column) &&
+  !holdsMarks(column) &&
+  !holdsFiles(column) &&
   column.kind !== "boolean" &&
   column.kind !== "enumeration" &&
   column.kind !== "date";
@@ -38,10 +38,10 @@ export const takes_typing = (column: Column): boolean =>
  * Whether a character may be meant as text in a cell of the column. What may not is left to the
  * keys of the page.
  */
-export function may_be_text(column: Column, character: string): boolean {
-  if (is_number(column)) return /[-+.,\d]/.test(character);
+export function mayBeText(column: Column, character: string): boolean {
+  if (isNumber(column)) return /[-+.,\d]/.test(character);
   if (column.kind === "timestamp" || column.kind === "date") return /\d/.test(character);
-  return takes_typing(column);
+  return takesTyping(column);
 }
 
 @customElement("strata-cell-input")
@@ -56,16 +56,16 @@ export class StrataCellInput extends LitElement {
   @property({ type: Boolean, reflect: true }) fixed = false;
   /** Columns of files: the record that they are of, where it is there already. */
   @property({ attribute: false }) record: { table: number; key: number | null } | null = null;
-  @query("strata-files-field") private files_!: StrataFilesField | null;
-  @query("strata-marks-field") private marks_!: StrataMarksField | null;
-  @query("input, select, textarea, strata-record-chooser") private control_!:
+  @query("strata-files-field") private _files!: StrataFilesField | null;
+  @query("strata-marks-field") private _marks!: StrataMarksField | null;
+  @query("input, select, textarea, strata-record-chooser") private _control!:
     HTMLInputElement | HTMLSelectElement | HTMLTextAreaElement | StrataRecordChooser;
 
   static override shadowRootOptions = { ...LitElement.shadowRootOptions, delegatesFocus: true };
 
   static override styles = [
-    shared_styles,
-    number_field_styles,
+    sharedStyles,
+    numberFieldStyles,
     css`
       :host {
         display: block;
@@ -104,57 +104,57 @@ export class StrataCellInput extends LitElement {
   ];
 
   override firstUpdated(): void {
-    if (this.typed !== null && takes_typing(this.column))
-      (this.control_ as HTMLInputElement).value = this.typed;
+    if (this.typed !== null && takesTyping(this.column))
+      (this._control as HTMLInputElement).value = this.typed;
   }
 
   /** What is in the field now. */
   read(): CellRead {
     const { column } = this;
-    if (this.files_) return { value: this.files_.ids.length > 0 ? [...this.files_.ids] : null };
-    if (this.marks_) return { value: this.marks_.marks.length > 0 ? [...this.marks_.marks] : null };
-    if (names_records(column)) {
-      const keys = [...(this.control_ as StrataRecordChooser).chosen];
+    if (this._files) return { value: this._files.ids.length > 0 ? [...this._files.ids] : null };
+    if (this._marks) return { value: this._marks.marks.length > 0 ? [...this._marks.marks] : null };
+    if (namesRecords(column)) {
+      const keys = [...(this._control as StrataRecordChooser).chosen];
       return {
         value: column.kind === "relation" ? (keys.length > 0 ? keys : null) : (keys[0] ?? null),
       };
     }
-    const control = this.control_ as HTMLInputElement;
+    const control = this._control as HTMLInputElement;
     if (control.validity.badInput) return { problem: texts.tables.bad_date };
-    const parsed = parse_cell(column, control.value);
+    const parsed = parseCell(column, control.value);
     if ("value" in parsed) return parsed;
     return { problem: parsed.wrong === "whole" ? texts.tables.bad_whole : texts.tables.bad_number };
   }
 
   /** In place of what was typed. */
   put(value: CellValue): void {
-    if (this.files_) {
-      this.files_.ids = named_keys(value);
+    if (this._files) {
+      this._files.ids = namedKeys(value);
       return;
     }
-    if (this.marks_) {
-      this.marks_.marks = marks_of(value);
+    if (this._marks) {
+      this._marks.marks = marksOf(value);
       return;
     }
-    const control = this.control_;
-    if ("chosen" in control) control.chosen = named_keys(value);
-    else control.value = cell_text(value);
+    const control = this._control;
+    if ("chosen" in control) control.chosen = namedKeys(value);
+    else control.value = cellText(value);
   }
 
   /** Files that wait to be sent. */
   get files(): StrataFilesField | null {
-    return this.files_;
+    return this._files;
   }
 
   /** To write on: all of the value, or behind what was typed. */
   begin(): void {
     this.focus({ preventScroll: true });
-    const control = this.control_;
-    const is_text =
+    const control = this._control;
+    const isText =
       control instanceof HTMLTextAreaElement ||
       (control instanceof HTMLInputElement && control.type === "text");
     if (control instanceof StrataRecordChooser) control.open();
-    if (is_text)
+    if (isText)
       control.setSelectionRange(
         this.typed === null ? 0 : control.value.length,
         control.value.length,
@@ -163,7 +163,7 @@ export class StrataCellInput extends LitElement {
 
   override render(): TemplateResult {
     const { column, value } = this;
-    const label = label_of(column);
+    const label = labelOf(column);
     const invalid = this.invalid ? "true" : "false";
     switch (column.kind) {
       case "term":
@@ -173,7 +173,7 @@ export class StrataCellInput extends LitElement {
           class=${this.classList.contains("in-cell") ? "in-cell" : ""}
           .session=${this.session}
           .table=${column.target ?? 0}
-          .chosen=${named_keys(value)}
+          .chosen=${namedKeys(value)}
           .multiple=${column.kind === "relation"}
           .invalid=${this.invalid}
           label=${label}
@@ -186,11 +186,11 @@ export class StrataCellInput extends LitElement {
           .column=${column}
           .table=${this.record?.table ?? 0}
           .record=${this.record?.key ?? null}
-          .ids=${named_keys(value)}
+          .ids=${namedKeys(value)}
         ></strata-files-field>`;
       case "line":
       case "point":
-        return html`<strata-marks-field ?inert=${this.fixed} .session=${this.session} .column=${column} .marks=${marks_of(value)}></strata-marks-field>`;
+        return html`<strata-marks-field ?inert=${this.fixed} .session=${this.session} .column=${column} .marks=${marksOf(value)}></strata-marks-field>`;
       case "boolean":
         return this.choice(label, value === null ? "" : String(value), [
           ["true", texts.tables.yes],
@@ -199,25 +199,25 @@ export class StrataCellInput extends LitElement {
       case "enumeration":
         return this.choice(
           label,
-          cell_text(value),
+          cellText(value),
           (column.choices ?? []).map((choice) => [choice, choice]),
         );
       case "text":
-        return html`<textarea rows="1" maxlength="100000" ?readonly=${this.fixed} aria-label=${label} aria-invalid=${invalid} .value=${cell_text(value)}></textarea>`;
+        return html`<textarea rows="1" maxlength="100000" ?readonly=${this.fixed} aria-label=${label} aria-invalid=${invalid} .value=${cellText(value)}></textarea>`;
       case "date":
-        return html`<input type="date" min="0001-01-01" max="9999-12-31" ?readonly=${this.fixed} aria-label=${label} aria-invalid=${invalid} .value=${cell_text(value)} />`;
+        return html`<input type="date" min="0001-01-01" max="9999-12-31" ?readonly=${this.fixed} aria-label=${label} aria-invalid=${invalid} .value=${cellText(value)} />`;
       default: {
-        const unit = is_number(column) ? (column.unit ?? "") : "";
+        const unit = isNumber(column) ? (column.unit ?? "") : "";
         const input = html`<input
           type="text"
-          inputmode=${is_number(column) ? "decimal" : column.kind === "url" ? "url" : "text"}
+          inputmode=${isNumber(column) ? "decimal" : column.kind === "url" ? "url" : "text"}
           spellcheck="false"
           autocapitalize="off"
           ?readonly=${this.fixed}
           aria-label=${label}
           aria-invalid=${invalid}
           placeholder=${texts.tables.examples[column.kind] ?? ""}
-          .value=${cell_text(value)}
+          .value=${cellText(value)}
         />`;
         return unit ? html`<span class="number"><span>${unit}</span>${input}</span>` : input;
       }

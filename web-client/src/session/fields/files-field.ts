@@ -4,14 +4,14 @@
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../../net/api";
-import { label_of } from "../../domain/cells";
-import { format_bytes } from "../../domain/measure";
+import { labelOf } from "../../domain/cells";
+import { formatBytes } from "../../domain/measure";
 import type { Attachment, Column, Visibility } from "../../core/protocol.gen";
 import { FileDrop } from "../../ui/drop";
 import { icon } from "../../ui/icons";
 import type { ModelSession } from "../model-session";
 import { notices } from "../../ui/notices";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import { kVisibilities } from "../../ui/visibility";
 
@@ -26,19 +26,19 @@ export class StrataFilesField extends LitElement {
   @property({ attribute: false }) record: number | null = null;
   /** Of the files that the record has, in their order. */
   @property({ attribute: false }) ids: number[] = [];
-  @state() private pending_: File[] = [];
-  @state() private known_ = new Map<number, Attachment>();
-  @state() private is_known_ = false; // which of the files this person sees
-  @query("input") private input_!: HTMLInputElement;
-  private readonly drop_ = new FileDrop(
+  @state() private _pending: File[] = [];
+  @state() private _known = new Map<number, Attachment>();
+  @state() private _isKnown = false; // which of the files this person sees
+  @query("input") private _input!: HTMLInputElement;
+  private readonly _drop = new FileDrop(
     this,
-    (files) => (this.pending_ = [...this.pending_, ...files]),
+    (files) => (this._pending = [...this._pending, ...files]),
   );
 
   static override shadowRootOptions = { ...LitElement.shadowRootOptions, delegatesFocus: true };
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: block;
@@ -108,52 +108,52 @@ export class StrataFilesField extends LitElement {
     if (
       (changed.has("record") || changed.has("ids")) &&
       this.record !== null &&
-      this.ids.some((id) => !this.known_.has(id))
+      this.ids.some((id) => !this._known.has(id))
     )
       void this.load();
   }
 
   /** Files that are to be sent once the record is there. */
   get pending(): readonly File[] {
-    return this.pending_;
+    return this._pending;
   }
   /** It is sent. */
   sent(file: File): void {
-    this.pending_ = this.pending_.filter((each) => each !== file);
+    this._pending = this._pending.filter((each) => each !== file);
   }
 
   private async load(): Promise<void> {
     try {
       const files = await this.session.api.attachments(this.table, this.record!);
-      this.known_ = new Map(files.map((file) => [file.id, file]));
-      this.is_known_ = true;
+      this._known = new Map(files.map((file) => [file.id, file]));
+      this._isKnown = true;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       notices.error(error);
     }
   }
 
-  private get is_pictures(): boolean {
+  private get isPictures(): boolean {
     return this.column.kind === "picture";
   }
 
   override render(): TemplateResult {
-    return html`<div class="field ${this.drop_.over ? "over" : ""}" role="group" aria-label=${label_of(this.column)}>
-      ${this.ids.filter((id) => !this.is_known_ || this.known_.has(id)).map((id) => this.kept(id))} ${this.pending_.map((file) => this.waiting(file))}
-      <button type="button" class="add" @click=${() => this.input_.click()}>${icon("plus")}${this.is_pictures ? words.add_pictures : words.add_documents}</button>
-      <input type="file" multiple tabindex="-1" aria-label=${words.choose} accept=${this.is_pictures ? "image/*" : ""} @change=${this.on_chosen} />
+    return html`<div class="field ${this._drop.over ? "over" : ""}" role="group" aria-label=${labelOf(this.column)}>
+      ${this.ids.filter((id) => !this._isKnown || this._known.has(id)).map((id) => this.kept(id))} ${this._pending.map((file) => this.waiting(file))}
+      <button type="button" class="add" @click=${() => this._input.click()}>${icon("plus")}${this.isPictures ? words.add_pictures : words.add_documents}</button>
+      <input type="file" multiple tabindex="-1" aria-label=${words.choose} accept=${this.isPictures ? "image/*" : ""} @change=${this.onChosen} />
     </div>`;
   }
 
   private kept(id: number): TemplateResult {
-    const file = this.known_.get(id);
+    const file = this._known.get(id);
     const name = file?.name ?? words.file(id);
     return html`<figure>
-      <a href=${this.session.api.attachment_url(id)} target="_blank" rel="noopener" title=${file ? `${name}, ${format_bytes(file.bytes)}` : name}>
-        ${this.is_pictures ? html`<img src=${this.session.api.attachment_url(id, 256)} alt=${name} loading="lazy" />` : icon("document")}
+      <a href=${this.session.api.attachmentUrl(id)} target="_blank" rel="noopener" title=${file ? `${name}, ${formatBytes(file.bytes)}` : name}>
+        ${this.isPictures ? html`<img src=${this.session.api.attachmentUrl(id, 256)} alt=${name} loading="lazy" />` : icon("document")}
       </a>
       <figcaption class="ellipsis">${name}</figcaption>
-      ${file ? this.seen_by(file) : nothing}
+      ${file ? this.seenBy(file) : nothing}
       <button
         type="button"
         class="icon quiet"
@@ -167,23 +167,23 @@ export class StrataFilesField extends LitElement {
   }
 
   /** Counts at once, as the file is there already. */
-  private seen_by(file: Attachment): TemplateResult | typeof nothing {
+  private seenBy(file: Attachment): TemplateResult | typeof nothing {
     const { session } = this;
-    if (!session.can_curate && file.user !== session.user) return nothing;
+    if (!session.canCurate && file.user !== session.user) return nothing;
     const says = texts.visibility;
     return html`<select
       aria-label=${says.of(file.name)}
       title=${says.says[file.visibility]}
-      @change=${(event: Event) => void this.show_to(file, event.target as HTMLSelectElement)}
+      @change=${(event: Event) => void this.showTo(file, event.target as HTMLSelectElement)}
     >
       ${kVisibilities.map((each) => html`<option value=${each} ?selected=${each === file.visibility}>${says.names[each]}</option>`)}
     </select>`;
   }
 
-  private async show_to(file: Attachment, choice: HTMLSelectElement): Promise<void> {
+  private async showTo(file: Attachment, choice: HTMLSelectElement): Promise<void> {
     try {
-      const now = await this.session.api.show_attachment(file.id, choice.value as Visibility);
-      this.known_ = new Map(this.known_).set(file.id, now);
+      const now = await this.session.api.showAttachment(file.id, choice.value as Visibility);
+      this._known = new Map(this._known).set(file.id, now);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       choice.value = file.visibility;
@@ -199,9 +199,9 @@ export class StrataFilesField extends LitElement {
     </figure>`;
   }
 
-  private readonly on_chosen = (): void => {
-    this.pending_ = [...this.pending_, ...(this.input_.files ?? [])];
-    this.input_.value = "";
+  private readonly onChosen = (): void => {
+    this._pending = [...this._pending, ...(this._input.files ?? [])];
+    this._input.value = "";
   };
 }
 

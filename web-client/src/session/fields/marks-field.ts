@@ -3,12 +3,12 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
-import { label_of } from "../../domain/cells";
-import { describe_mark, type MarkKind } from "../../domain/marks";
+import { labelOf } from "../../domain/cells";
+import { describeMark, type MarkKind } from "../../domain/marks";
 import type { Column, Mark } from "../../core/protocol.gen";
 import { icon } from "../../ui/icons";
 import type { ModelSession } from "../model-session";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.marks;
@@ -23,7 +23,7 @@ export class StrataMarksField extends LitElement {
   static override shadowRootOptions = { ...LitElement.shadowRootOptions, delegatesFocus: true };
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: block;
@@ -62,10 +62,10 @@ export class StrataMarksField extends LitElement {
     const { column, marks, session } = this;
     const here = marks.filter((mark) => mark.model === session.model?.id);
     const elsewhere = marks.length - here.length;
-    return html`<div class="field" role="group" aria-label=${label_of(column)}>
+    return html`<div class="field" role="group" aria-label=${labelOf(column)}>
       ${here.map((mark) => this.mark(mark))}
       ${elsewhere > 0 ? html`<span class="hint">${words.and_elsewhere(elsewhere)}</span>` : nothing}
-      <button type="button" title=${words.draw_hint} @click=${this.on_draw}>${icon(this.kind)}${words.draw}</button>
+      <button type="button" title=${words.draw_hint} @click=${this.onDraw}>${icon(this.kind)}${words.draw}</button>
     </div>`;
   }
 
@@ -74,7 +74,7 @@ export class StrataMarksField extends LitElement {
   }
 
   private mark(mark: Mark): TemplateResult {
-    const name = this.session.model ? describe_mark(mark, this.kind, this.session.model) : "";
+    const name = this.session.model ? describeMark(mark, this.kind, this.session.model) : "";
     return html`<span class="mark numeric"
       >${icon(this.kind)}${name}<button
         type="button"
@@ -88,7 +88,7 @@ export class StrataMarksField extends LitElement {
     >`;
   }
 
-  private readonly on_draw = (): void => {
+  private readonly onDraw = (): void => {
     this.dispatchEvent(
       new CustomEvent<Column>("draw", { detail: this.column, bubbles: true, composed: true }),
     );

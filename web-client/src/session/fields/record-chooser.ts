@@ -4,13 +4,13 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { live } from "lit/directives/live.js";
-import { follow_session } from "../follow-session";
+import { followSession } from "../follow-session";
 import { icon } from "../../ui/icons";
-import { arrow_step } from "../../ui/keyboard";
+import { arrowStep } from "../../ui/keyboard";
 import type { ModelSession } from "../model-session";
-import { shared_styles } from "../../ui/styles";
+import { sharedStyles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
-import { terms_with } from "./term-rows";
+import { termsWith } from "./term-rows";
 import type { TermTree } from "./term-tree";
 import { texts } from "../../texts";
 
@@ -22,7 +22,7 @@ interface Option {
   match: boolean; // false: it is shown for what is below it
 }
 
-const kIndent_px = 16;
+const kIndentPx = 16;
 
 @customElement("strata-record-chooser")
 export class StrataRecordChooser extends LitElement {
@@ -35,21 +35,21 @@ export class StrataRecordChooser extends LitElement {
   @property({ type: Boolean }) invalid = false;
   /** Not to be chosen. */
   @property({ attribute: false }) without: number | null = null;
-  @state() private text_ = "";
-  @state() private open_ = false;
-  @state() private at_ = -1; // in the list
-  @query("input") private input_!: HTMLInputElement;
-  @query(".list") private list_!: HTMLElement;
+  @state() private _text = "";
+  @state() private _open = false;
+  @state() private _at = -1; // in the list
+  @query("input") private _input!: HTMLInputElement;
+  @query(".list") private _list!: HTMLElement;
 
   static override shadowRootOptions = { ...LitElement.shadowRootOptions, delegatesFocus: true };
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: block;
@@ -168,13 +168,13 @@ export class StrataRecordChooser extends LitElement {
   private get found(): Option[] {
     const terms = this.terms;
     const found = terms
-      ? terms_with(terms.terms, this.text_).map(({ key, name, depth, match }) => ({
+      ? termsWith(terms.terms, this._text).map(({ key, name, depth, match }) => ({
           key,
           label: name,
           depth,
           match,
         }))
-      : (this.session.tables.names(this.table)?.search(this.text_) ?? []).map((named) => ({
+      : (this.session.tables.names(this.table)?.search(this._text) ?? []).map((named) => ({
           ...named,
           depth: 0,
           match: true,
@@ -184,48 +184,48 @@ export class StrataRecordChooser extends LitElement {
 
   /** Records may come after what was typed: then Enter takes the first that fits. */
   override willUpdate(): void {
-    if (this.open_ && this.text_ !== "" && this.at_ < 0)
-      this.at_ = this.found.findIndex(({ match }) => match);
+    if (this._open && this._text !== "" && this._at < 0)
+      this._at = this.found.findIndex(({ match }) => match);
   }
 
   override render(): TemplateResult {
     const words = texts.tables;
-    const found = this.open_ ? this.found : [];
+    const found = this._open ? this.found : [];
     const names = this.session.tables.names(this.table);
     const tree = this.terms !== null;
-    return html`<div class="field ${this.invalid ? "invalid" : ""}" @click=${this.on_field}>
+    return html`<div class="field ${this.invalid ? "invalid" : ""}" @click=${this.onField}>
         ${this.chosen.map(
           (key) =>
             html`<span class="chip"
               ><span class="ellipsis">${this.session.tables.label(this.table, key) ?? words.record(key)}</span>
-              <button type="button" tabindex="-1" aria-label=${words.take_out(this.name_of(key))} @click=${() => this.toggle(key)}>${icon("close")}</button></span
+              <button type="button" tabindex="-1" aria-label=${words.take_out(this.nameOf(key))} @click=${() => this.toggle(key)}>${icon("close")}</button></span
             >`,
         )}
         <input
           type="text"
           role="combobox"
           aria-label=${this.label}
-          aria-expanded=${this.open_}
+          aria-expanded=${this._open}
           aria-controls="list"
           aria-autocomplete="list"
-          aria-activedescendant=${this.at_ >= 0 && found[this.at_] ? `option-${this.at_}` : nothing}
+          aria-activedescendant=${this._at >= 0 && found[this._at] ? `option-${this._at}` : nothing}
           autocomplete="off"
           placeholder=${this.chosen.length > 0 ? "" : this.session.tables.terms(this.table) ? texts.terms.search : words.search_records}
-          .value=${live(this.text_)}
-          @input=${this.on_input}
+          .value=${live(this._text)}
+          @input=${this.onInput}
           @blur=${this.hide}
-          @keydown=${this.on_key}
+          @keydown=${this.onKey}
         />
       </div>
-      <div class="list" id="list" popover="manual" role="listbox" aria-label=${this.label} aria-multiselectable=${this.multiple} @pointerdown=${keep_focus}>
+      <div class="list" id="list" popover="manual" role="listbox" aria-label=${this.label} aria-multiselectable=${this.multiple} @pointerdown=${keepFocus}>
         ${found.map(
           ({ key, label, depth, match }, index) =>
             html`<div
-              class="option ${index === this.at_ ? "at" : ""} ${match ? "" : "above-found"}"
+              class="option ${index === this._at ? "at" : ""} ${match ? "" : "above-found"}"
               id="option-${index}"
               role="option"
               aria-selected=${this.chosen.includes(key)}
-              ${styled({ "padding-left": depth > 0 ? `${8 + depth * kIndent_px}px` : null })}
+              ${styled({ "padding-left": depth > 0 ? `${8 + depth * kIndentPx}px` : null })}
               @click=${() => this.take(key)}
             >
               <span class="ellipsis">${label || words.record(key)}</span>
@@ -236,21 +236,21 @@ export class StrataRecordChooser extends LitElement {
       </div>`;
   }
 
-  private name_of(key: number): string {
+  private nameOf(key: number): string {
     return this.session.tables.label(this.table, key) ?? texts.tables.record(key);
   }
 
-  private on_input(): void {
-    this.text_ = this.input_.value;
-    this.at_ = this.text_ === "" ? -1 : this.found.findIndex(({ match }) => match);
+  private onInput(): void {
+    this._text = this._input.value;
+    this._at = this._text === "" ? -1 : this.found.findIndex(({ match }) => match);
     this.show();
   }
 
   /** The list opens where somebody asks for it, and not because the form begins here. */
-  private on_field(event: Event): void {
-    const on_chip = event.composedPath().some((each) => each instanceof HTMLButtonElement);
-    this.input_.focus();
-    if (!on_chip) this.show();
+  private onField(event: Event): void {
+    const onChip = event.composedPath().some((each) => each instanceof HTMLButtonElement);
+    this._input.focus();
+    if (!onChip) this.show();
   }
 
   /** Somebody begins to choose. */
@@ -259,10 +259,10 @@ export class StrataRecordChooser extends LitElement {
   }
 
   private readonly show = (): void => {
-    this.open_ = true;
-    if (!this.list_.matches(":popover-open")) this.list_.showPopover();
+    this._open = true;
+    if (!this._list.matches(":popover-open")) this._list.showPopover();
     const anchor = this.getBoundingClientRect();
-    const { style } = this.list_;
+    const { style } = this._list;
     style.width = `${Math.max(220, anchor.width)}px`;
     style.left = `${Math.max(8, Math.min(anchor.left, innerWidth - Math.max(220, anchor.width) - 8))}px`;
     const below = innerHeight - anchor.bottom > 280 || anchor.top < 280;
@@ -271,28 +271,28 @@ export class StrataRecordChooser extends LitElement {
   };
 
   private readonly hide = (): void => {
-    this.open_ = false;
-    this.at_ = -1;
-    if (this.list_.matches(":popover-open")) this.list_.hidePopover();
+    this._open = false;
+    this._at = -1;
+    if (this._list.matches(":popover-open")) this._list.hidePopover();
   };
 
   /** Keys that it has no use for go on: Enter with nothing found takes the whole field. */
-  private on_key(event: KeyboardEvent): void {
+  private onKey(event: KeyboardEvent): void {
     const { found } = this;
     if (event.key === "ArrowDown" || event.key === "ArrowUp") {
       this.show();
-      this.at_ =
-        this.at_ < 0
+      this._at =
+        this._at < 0
           ? event.key === "ArrowDown"
             ? 0
             : found.length - 1
-          : (arrow_step(event.key, this.at_, found.length) ?? -1);
+          : (arrowStep(event.key, this._at, found.length) ?? -1);
       void this.updateComplete.then(() =>
-        this.list_.querySelector(".at")?.scrollIntoView({ block: "nearest" }),
+        this._list.querySelector(".at")?.scrollIntoView({ block: "nearest" }),
       );
-    } else if (event.key === "Enter" && this.open_ && found[this.at_]) {
-      this.take(found[this.at_]!.key);
-    } else if (event.key === "Backspace" && this.text_ === "" && this.chosen.length > 0) {
+    } else if (event.key === "Enter" && this._open && found[this._at]) {
+      this.take(found[this._at]!.key);
+    } else if (event.key === "Backspace" && this._text === "" && this.chosen.length > 0) {
       this.toggle(this.chosen[this.chosen.length - 1]!);
     } else {
       return;
@@ -302,8 +302,8 @@ export class StrataRecordChooser extends LitElement {
   }
 
   private take(key: number): void {
-    this.text_ = "";
-    this.at_ = -1;
+    this._text = "";
+    this._at = -1;
     this.toggle(key);
   }
 
@@ -313,9 +313,9 @@ export class StrataRecordChooser extends LitElement {
     this.chosen = had ? others : [...others, key];
     this.dispatchEvent(new CustomEvent("chosen", { detail: this.chosen }));
     if (!this.multiple) this.hide();
-    else void this.updateComplete.then(() => this.open_ && this.show()); // the field may have grown
+    else void this.updateComplete.then(() => this._open && this.show()); // the field may have grown
   }
 }
 
 /** A press on the list leaves the focus in the field. */
-const keep_focus = (event: Event): void => event.preventDefault();
+const keepFocus = (event: Event): void => event.preventDefault();

@@ -1,10 +1,10 @@
 // A value of a record as people read it, in a cell of the table and on a card.
 
 import { html } from "lit";
-import { cell_text, named_keys, names_records } from "../../domain/cells";
-import { format_list } from "../../core/locale";
-import { holds_marks, marks_of, summary_of } from "../../domain/marks";
-import { format_length } from "../../domain/measure";
+import { cellText, namedKeys, namesRecords } from "../../domain/cells";
+import { formatList } from "../../core/locale";
+import { holdsMarks, marksOf, summaryOf } from "../../domain/marks";
+import { formatLength } from "../../domain/measure";
 import type { CellValue, Column } from "../../core/protocol.gen";
 import type { ModelSession } from "../model-session";
 import { texts } from "../../texts";
@@ -12,34 +12,34 @@ import { texts } from "../../texts";
 const kMostPictures = 4; // in a cell
 
 /** A file that this person does not see has no picture either. */
-const show_whether =
-  (is_there: boolean) =>
+const showWhether =
+  (isThere: boolean) =>
   (event: Event): void => {
-    (event.target as HTMLElement).hidden = !is_there;
+    (event.target as HTMLElement).hidden = !isThere;
   };
 
 /** For a template; records are called by their names. */
-export function shown_value(session: ModelSession, column: Column, value: CellValue): unknown {
+export function shownValue(session: ModelSession, column: Column, value: CellValue): unknown {
   if (value === null) return "";
-  if (names_records(column)) {
+  if (namesRecords(column)) {
     const target = column.target ?? 0;
-    return format_list(
-      named_keys(value).map((key) => session.tables.label(target, key) ?? texts.tables.record(key)),
+    return formatList(
+      namedKeys(value).map((key) => session.tables.label(target, key) ?? texts.tables.record(key)),
     );
   }
-  if (holds_marks(column)) return shown_marks(session, column, value);
-  if (column.kind === "document") return texts.files.count(named_keys(value).length);
+  if (holdsMarks(column)) return shownMarks(session, column, value);
+  if (column.kind === "document") return texts.files.count(namedKeys(value).length);
   if (column.kind === "picture") {
-    const ids = named_keys(value);
+    const ids = namedKeys(value);
     return html`${ids
       .slice(0, kMostPictures)
       .map(
         (id) =>
-          html`<img class="thumbnail" src=${session.api.attachment_url(id, 64)} alt=${texts.files.file(id)} loading="lazy" height="24" @load=${show_whether(true)} @error=${show_whether(false)} />`,
+          html`<img class="thumbnail" src=${session.api.attachmentUrl(id, 64)} alt=${texts.files.file(id)} loading="lazy" height="24" @load=${showWhether(true)} @error=${showWhether(false)} />`,
       )}${ids.length > kMostPictures ? ` +${ids.length - kMostPictures}` : ""}`;
   }
   if (column.kind === "boolean") return value ? texts.tables.yes : texts.tables.no;
-  const text = cell_text(value);
+  const text = cellText(value);
   if (column.kind === "url" && /^(https?|mailto):/i.test(text)) {
     return html`<a class="text" href=${text} target="_blank" rel="noopener noreferrer" tabindex="-1">${text}</a>`;
   }
@@ -47,19 +47,19 @@ export function shown_value(session: ModelSession, column: Column, value: CellVa
 }
 
 /** "2 lines · 1.24 m": on this model; others are counted. */
-export function shown_marks(
+export function shownMarks(
   { model }: ModelSession,
   { kind }: Pick<Column, "kind">,
   value: CellValue,
 ): string {
-  if (!model || marks_of(value).length === 0) return "";
+  if (!model || marksOf(value).length === 0) return "";
   const words = texts.marks;
-  const { here, elsewhere, metres } = summary_of(value, model);
+  const { here, elsewhere, metres } = summaryOf(value, model);
   const count = kind === "line" ? words.lines : words.points;
   if (here === 0) return words.elsewhere(count(elsewhere));
   return [
     count(here),
-    kind === "line" ? format_length(metres) : [],
+    kind === "line" ? formatLength(metres) : [],
     elsewhere > 0 ? words.and_elsewhere(elsewhere) : [],
   ]
     .flat()

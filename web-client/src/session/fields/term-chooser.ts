@@ -6,26 +6,26 @@ import { customElement, property, query, state } from "lit/decorators.js";
 import { live } from "lit/directives/live.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError } from "../../net/api";
-import { color_of, point_of, swatch_style } from "../../domain/palette";
+import { colorOf, pointOf, swatchStyle } from "../../domain/palette";
 import type { ListedTerm, TermTree as FoundTerms } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
-import { follow_session } from "../follow-session";
+import { followSession } from "../follow-session";
 import { growth } from "../../ui/growth";
 import { icon } from "../../ui/icons";
 import type { ModelSession } from "../model-session";
-import { has_fingers } from "../../ui/pointers";
-import { shared_styles } from "../../ui/styles";
+import { hasFingers } from "../../ui/pointers";
+import { sharedStyles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
-import { folded_at_first, path_to, rows_of, tree_step, type TermRow } from "./term-rows";
+import { foldedAtFirst, pathTo, rowsOf, treeStep, type TermRow } from "./term-rows";
 import type { TermTree } from "./term-tree";
 import { texts } from "../../texts";
 
 const words = texts.terms;
 
-const kFingers = has_fingers();
-const kRow_px = Math.round((kFingers ? 44 : 30) * growth());
-const kTree_px = Math.round(300 * growth());
-const kIndent_px = 16;
+const kFingers = hasFingers();
+const kRowPx = Math.round((kFingers ? 44 : 30) * growth());
+const kTreePx = Math.round(300 * growth());
+const kIndentPx = 16;
 const kAbove = 4; // rows drawn beyond those in sight
 
 @customElement("strata-term-chooser")
@@ -35,30 +35,30 @@ export class StrataTermChooser extends LitElement {
   @property({ attribute: false }) layer!: Layer;
   /** Key of a term. */
   @property({ attribute: false }) chosen = 0;
-  @state() private text_ = "";
-  @state() private found_: FoundTerms | null = null;
-  @state() private problem_ = "";
-  @state() private folded_: ReadonlySet<number> = new Set(); // in the whole tree
-  @state() private found_folded_: ReadonlySet<number> = new Set();
-  @state() private at_: number | null = null; // key of the term that Enter chooses
-  @query("input") private input_!: HTMLInputElement;
-  @query(".tree") private tree_!: HTMLElement | null;
-  private rows_: TermRow[] = [];
+  @state() private _text = "";
+  @state() private _found: FoundTerms | null = null;
+  @state() private _problem = "";
+  @state() private _folded: ReadonlySet<number> = new Set(); // in the whole tree
+  @state() private _foundFolded: ReadonlySet<number> = new Set();
+  @state() private _at: number | null = null; // key of the term that Enter chooses
+  @query("input") private _input!: HTMLInputElement;
+  @query(".tree") private _tree!: HTMLElement | null;
+  private _rows: TermRow[] = [];
   // height of the tree without a search: what lies below does not jump while one types
-  private whole_px_ = 0;
-  private walks_ = false; // the arrow keys go through the tree, and not through the text
-  private generation_ = 0; // of the terms that were folded
-  private searching_: Promise<void> | null = null;
+  private _wholePx = 0;
+  private _walks = false; // the arrow keys go through the tree, and not through the text
+  private _generation = 0; // of the terms that were folded
+  private _searching: Promise<void> | null = null;
 
   static override shadowRootOptions = { ...LitElement.shadowRootOptions, delegatesFocus: true };
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
+    sharedStyles,
     css`
       :host {
         display: grid;
@@ -93,7 +93,7 @@ export class StrataTermChooser extends LitElement {
         right: 1px;
       }
       .tree {
-        max-height: ${kTree_px}px;
+        max-height: ${kTreePx}px;
         overflow: auto;
         border: var(--edge) solid var(--line);
         border-radius: var(--radius-small);
@@ -109,7 +109,7 @@ export class StrataTermChooser extends LitElement {
         display: flex;
         align-items: center;
         gap: 0.5rem;
-        height: ${kRow_px}px;
+        height: ${kRowPx}px;
         padding-right: 0.5rem;
         font-size: 0.92rem;
         cursor: pointer;
@@ -163,40 +163,40 @@ export class StrataTermChooser extends LitElement {
   override willUpdate(changed: PropertyValues<this>): void {
     const { terms } = this;
     terms?.want();
-    const other_list = changed.has("layer") && changed.get("layer")?.table !== this.layer.table;
-    if (other_list) {
-      this.text_ = this.problem_ = "";
-      this.found_ = this.at_ = null;
-      this.generation_ = 0;
+    const otherList = changed.has("layer") && changed.get("layer")?.table !== this.layer.table;
+    if (otherList) {
+      this._text = this._problem = "";
+      this._found = this._at = null;
+      this._generation = 0;
     }
-    if (terms && terms.generation !== this.generation_) this.take(terms);
-    if (changed.has("chosen") || other_list) this.reveal();
-    if (!this.found_) this.whole_px_ = Math.min(kTree_px, this.tree_?.offsetHeight ?? 0);
-    this.rows_ = this.found_
-      ? rows_of(this.found_.terms, this.found_folded_)
-      : rows_of(terms?.terms ?? [], this.folded_);
+    if (terms && terms.generation !== this._generation) this.take(terms);
+    if (changed.has("chosen") || otherList) this.reveal();
+    if (!this._found) this._wholePx = Math.min(kTreePx, this._tree?.offsetHeight ?? 0);
+    this._rows = this._found
+      ? rowsOf(this._found.terms, this._foundFolded)
+      : rowsOf(terms?.terms ?? [], this._folded);
   }
 
   /** The terms are here, or have changed. */
   private take(terms: TermTree): void {
-    if (this.generation_ === 0) this.folded_ = folded_at_first(terms.terms, this.chosen);
-    this.generation_ = terms.generation;
+    if (this._generation === 0) this._folded = foldedAtFirst(terms.terms, this.chosen);
+    this._generation = terms.generation;
     this.reveal();
-    if (this.text_ !== "") this.search();
+    if (this._text !== "") this.search();
   }
 
   /** The chosen one is brought into sight, where it is. */
   private reveal(): void {
-    const above = path_to(this.terms?.terms ?? [], this.chosen);
-    if (above.some(({ key }) => this.folded_.has(key)))
-      this.folded_ = without(this.folded_, ...above.map(({ key }) => key));
-    void this.updateComplete.then(() => this.scroll_to(this.chosen));
+    const above = pathTo(this.terms?.terms ?? [], this.chosen);
+    if (above.some(({ key }) => this._folded.has(key)))
+      this._folded = without(this._folded, ...above.map(({ key }) => key));
+    void this.updateComplete.then(() => this.scrollToPlace(this.chosen));
   }
 
   override render(): TemplateResult {
-    const { terms, found_: found } = this;
+    const { terms, _found: found } = this;
     if (!terms?.loaded) return html`<p class="hint" role="status">${texts.loading}</p>`;
-    const problem = terms.problem || this.problem_;
+    const problem = terms.problem || this._problem;
     return html`${this.now(terms)}
       <div class="search">
         <input
@@ -207,27 +207,27 @@ export class StrataTermChooser extends LitElement {
           aria-haspopup="tree"
           aria-controls="tree"
           aria-autocomplete="list"
-          aria-activedescendant=${this.rows_.some(({ term }) => term.key === this.at_) ? `term-${this.at_}` : nothing}
+          aria-activedescendant=${this._rows.some(({ term }) => term.key === this._at) ? `term-${this._at}` : nothing}
           autocomplete="off"
           spellcheck="false"
           maxlength="200"
           placeholder=${words.search}
-          .value=${live(this.text_)}
-          @input=${this.on_input}
-          @focus=${() => this.input_.select()}
-          @keydown=${this.on_key}
+          .value=${live(this._text)}
+          @input=${this.onInput}
+          @focus=${() => this._input.select()}
+          @keydown=${this.onKey}
         />
         ${
-          this.text_ === ""
+          this._text === ""
             ? nothing
             : html`<button class="icon quiet" aria-label=${words.show_all} title=${words.show_all} @click=${this.clear}>${icon("close")}</button>`
         }
       </div>
       ${problem ? html`<p class="error" role="alert">${problem}</p>` : nothing}
-      <div class="tree" id="tree" role="tree" tabindex="-1" aria-label=${words.tree} ${styled({ "min-height": found ? `${this.whole_px_}px` : null })} @scroll=${() => this.requestUpdate()} @pointerdown=${this.keep_focus}>
-        <div class="rows" role="none" ${styled({ height: `${this.rows_.length * kRow_px}px` })}>
+      <div class="tree" id="tree" role="tree" tabindex="-1" aria-label=${words.tree} ${styled({ "min-height": found ? `${this._wholePx}px` : null })} @scroll=${() => this.requestUpdate()} @pointerdown=${this.keepFocus}>
+        <div class="rows" role="none" ${styled({ height: `${this._rows.length * kRowPx}px` })}>
           ${repeat(
-            this.in_sight(),
+            this.inSight(),
             ([, row]) => row.term.key,
             ([index, row]) => this.row(row, index),
           )}
@@ -241,11 +241,11 @@ export class StrataTermChooser extends LitElement {
    * term to read about it.
    */
   private now({ terms }: TermTree): TemplateResult {
-    const { chosen, found_: found } = this;
+    const { chosen, _found: found } = this;
     const known =
       [terms, found?.terms ?? []].find((some) => some.some(({ key }) => key === chosen)) ?? [];
     const term = known.find(({ key }) => key === chosen);
-    const above = path_to(known, chosen);
+    const above = pathTo(known, chosen);
     // of a very large list
     const name =
       term?.name ??
@@ -261,7 +261,7 @@ export class StrataTermChooser extends LitElement {
   private row({ term, parent, folded, place, of }: TermRow, index: number): TemplateResult {
     const chosen = term.key === this.chosen;
     return html`<div
-      class="term ${term.key === this.at_ ? "at" : ""} ${term.match ? "" : "above-found"}"
+      class="term ${term.key === this._at ? "at" : ""} ${term.match ? "" : "above-found"}"
       id="term-${term.key}"
       role="treeitem"
       aria-level=${term.depth + 1}
@@ -270,10 +270,10 @@ export class StrataTermChooser extends LitElement {
       aria-expanded=${parent ? !folded : nothing}
       aria-selected=${chosen}
       title=${term.definition || term.name}
-      ${styled({ top: `${index * kRow_px}px`, "padding-left": `${term.depth * kIndent_px}px` })}
+      ${styled({ top: `${index * kRowPx}px`, "padding-left": `${term.depth * kIndentPx}px` })}
       @click=${() => this.choose(term.key)}
     >
-      <span class="fold" @click=${(event: Event) => this.on_fold(event, term, parent, folded)}>${parent ? icon("chevron") : nothing}</span>
+      <span class="fold" @click=${(event: Event) => this.onFold(event, term, parent, folded)}>${parent ? icon("chevron") : nothing}</span>
       ${this.swatch(term.key)}<span class="ellipsis">${term.name}</span>${chosen ? icon("check") : nothing}
     </div>`;
   }
@@ -284,10 +284,10 @@ export class StrataTermChooser extends LitElement {
    */
   private swatch(key: number): TemplateResult {
     const palette = this.session.layers.palette(this.layer);
-    const color = color_of(palette, key);
-    const point = point_of(palette, key) ?? (color === null ? null : { color });
+    const color = colorOf(palette, key);
+    const point = pointOf(palette, key) ?? (color === null ? null : { color });
     return point && !palette.column
-      ? html`<span class="swatch" ${styled(swatch_style(point))}></span>`
+      ? html`<span class="swatch" ${styled(swatchStyle(point))}></span>`
       : html`<span></span>`;
   }
 
@@ -307,37 +307,37 @@ export class StrataTermChooser extends LitElement {
         : "";
   }
 
-  private in_sight(): [number, TermRow][] {
-    const { scrollTop: top = 0, clientHeight: height = kTree_px } = this.tree_ ?? {};
-    const first = Math.max(0, Math.floor(top / kRow_px) - kAbove);
-    const last = Math.ceil((top + Math.max(height, kTree_px)) / kRow_px) + kAbove;
-    return this.rows_.slice(first, last).map((row, index) => [first + index, row]);
+  private inSight(): [number, TermRow][] {
+    const { scrollTop: top = 0, clientHeight: height = kTreePx } = this._tree ?? {};
+    const first = Math.max(0, Math.floor(top / kRowPx) - kAbove);
+    const last = Math.ceil((top + Math.max(height, kTreePx)) / kRowPx) + kAbove;
+    return this._rows.slice(first, last).map((row, index) => [first + index, row]);
   }
 
-  private scroll_to(key: number): void {
-    const index = this.rows_.findIndex(({ term }) => term.key === key);
-    const tree = this.tree_;
+  private scrollToPlace(key: number): void {
+    const index = this._rows.findIndex(({ term }) => term.key === key);
+    const tree = this._tree;
     if (!tree || index < 0) return;
-    const top = index * kRow_px;
+    const top = index * kRowPx;
     if (top < tree.scrollTop) tree.scrollTop = top;
-    else if (top + kRow_px > tree.scrollTop + tree.clientHeight)
-      tree.scrollTop = top + kRow_px - tree.clientHeight;
+    else if (top + kRowPx > tree.scrollTop + tree.clientHeight)
+      tree.scrollTop = top + kRowPx - tree.clientHeight;
   }
 
   // ── choosing
   // ──────────────────────────────────────────────────────────────────────────────────────────────────────
 
   private choose(key: number): void {
-    this.at_ = key;
+    this._at = key;
     this.dispatchEvent(new CustomEvent<number>("chosen", { detail: key }));
   }
 
   /** A press on the tree leaves the focus, and the keyboard of a phone, as they are. */
-  private keep_focus(event: Event): void {
+  private keepFocus(event: Event): void {
     event.preventDefault();
   }
 
-  private on_fold(event: Event, term: ListedTerm, parent: boolean, folded: boolean): void {
+  private onFold(event: Event, term: ListedTerm, parent: boolean, folded: boolean): void {
     if (!parent) return; // a press before its name is one on the term
     event.stopPropagation();
     this.fold(term.key, !folded);
@@ -346,20 +346,20 @@ export class StrataTermChooser extends LitElement {
   private fold(key: number, fold: boolean): void {
     const change = (keys: ReadonlySet<number>): Set<number> =>
       fold ? new Set([...keys, key]) : without(keys, key);
-    if (this.found_) this.found_folded_ = change(this.found_folded_);
-    else this.folded_ = change(this.folded_);
+    if (this._found) this._foundFolded = change(this._foundFolded);
+    else this._folded = change(this._folded);
   }
 
-  private on_key(event: KeyboardEvent): void {
+  private onKey(event: KeyboardEvent): void {
     const { key } = event;
-    if (key === "Enter") void this.on_enter();
-    else if (key === "Escape") this.on_escape();
+    if (key === "Enter") void this.onEnter();
+    else if (key === "Escape") this.onEscape();
     else if (
       event.ctrlKey ||
       event.metaKey ||
       event.altKey ||
       event.shiftKey ||
-      !this.on_tree_key(key)
+      !this.onTreeKey(key)
     )
       return;
     event.preventDefault();
@@ -367,70 +367,70 @@ export class StrataTermChooser extends LitElement {
   }
 
   /** Left and right are for the text until the arrows have gone into the tree. */
-  private on_tree_key(key: string): boolean {
-    if ((key === "ArrowLeft" || key === "ArrowRight") && !this.walks_ && this.text_ !== "")
+  private onTreeKey(key: string): boolean {
+    if ((key === "ArrowLeft" || key === "ArrowRight") && !this._walks && this._text !== "")
       return false;
-    const at = this.rows_.findIndex(({ term }) => term.key === (this.at_ ?? this.chosen));
-    const step = tree_step(
+    const at = this._rows.findIndex(({ term }) => term.key === (this._at ?? this.chosen));
+    const step = treeStep(
       key,
-      this.rows_,
+      this._rows,
       at,
-      Math.floor((this.tree_?.clientHeight ?? kTree_px) / kRow_px),
+      Math.floor((this._tree?.clientHeight ?? kTreePx) / kRowPx),
     );
     if (!step) return false;
-    this.walks_ = true;
-    const next = "at" in step ? this.rows_[step.at]! : this.rows_[at]!;
-    this.at_ = next.term.key;
+    this._walks = true;
+    const next = "at" in step ? this._rows[step.at]! : this._rows[at]!;
+    this._at = next.term.key;
     if ("fold" in step) this.fold(next.term.key, step.fold);
-    void this.updateComplete.then(() => this.scroll_to(next.term.key));
+    void this.updateComplete.then(() => this.scrollToPlace(next.term.key));
     return true;
   }
 
   /** What was typed may still be looked for. */
-  private async on_enter(): Promise<void> {
-    await this.searching_;
-    if (this.at_ === null) return;
-    this.choose(this.at_);
-    this.input_.select();
+  private async onEnter(): Promise<void> {
+    await this._searching;
+    if (this._at === null) return;
+    this.choose(this._at);
+    this._input.select();
   }
 
-  private on_escape(): void {
-    if (this.text_ === "") this.input_.blur();
+  private onEscape(): void {
+    if (this._text === "") this._input.blur();
     else this.clear();
   }
 
   // ── searching
   // ─────────────────────────────────────────────────────────────────────────────────────────────────────
 
-  private on_input(): void {
-    this.text_ = this.input_.value;
+  private onInput(): void {
+    this._text = this._input.value;
     this.search();
   }
 
   private readonly clear = (): void => {
-    this.text_ = "";
+    this._text = "";
     this.search();
-    this.input_.focus();
+    this._input.focus();
   };
 
   private search(): void {
-    this.searching_ ??= this.find().finally(() => (this.searching_ = null));
+    this._searching ??= this.find().finally(() => (this._searching = null));
   }
 
   /** Until what was found is what is asked for now. */
   private async find(): Promise<void> {
     for (;;) {
       const { terms } = this;
-      const text = this.text_.trim();
-      this.problem_ = "";
+      const text = this._text.trim();
+      this._problem = "";
       try {
         const found = text === "" || !terms ? null : await terms.search(text);
-        if (terms !== this.terms || text !== this.text_.trim()) continue;
+        if (terms !== this.terms || text !== this._text.trim()) continue;
         this.show(found);
       } catch (error) {
         if (!(error instanceof ApiError)) throw error;
-        if (terms !== this.terms || text !== this.text_.trim()) continue;
-        this.problem_ = error.message;
+        if (terms !== this.terms || text !== this._text.trim()) continue;
+        this._problem = error.message;
       }
       return;
     }
@@ -438,11 +438,11 @@ export class StrataTermChooser extends LitElement {
 
   /** Null: the whole tree again. */
   private show(found: FoundTerms | null): void {
-    this.found_ = found;
-    this.walks_ = false;
-    this.at_ = found?.terms.find(({ match }) => match)?.key ?? null;
-    this.found_folded_ = new Set();
-    void this.updateComplete.then(() => this.scroll_to(this.at_ ?? this.chosen));
+    this._found = found;
+    this._walks = false;
+    this._at = found?.terms.find(({ match }) => match)?.key ?? null;
+    this._foundFolded = new Set();
+    void this.updateComplete.then(() => this.scrollToPlace(this._at ?? this.chosen));
   }
 }
 

@@ -18,18 +18,18 @@ const kMostUnfolded = 60; // terms of a tree that is shown whole at first
  * Keys of the terms that are folded when a tree is shown first: of a long one all but those above
  * `chosen`.
  */
-export function folded_at_first(terms: readonly ListedTerm[], chosen: number): Set<number> {
+export function foldedAtFirst(terms: readonly ListedTerm[], chosen: number): Set<number> {
   const folded = new Set<number>();
   if (terms.length <= kMostUnfolded) return folded;
   terms.forEach((term, index) => {
-    if (has_below(terms, index)) folded.add(term.key);
+    if (hasBelow(terms, index)) folded.add(term.key);
   });
-  for (const above of path_to(terms, chosen)) folded.delete(above.key);
+  for (const above of pathTo(terms, chosen)) folded.delete(above.key);
   return folded;
 }
 
 /** The terms above one, the topmost first. */
-export function path_to(terms: readonly ListedTerm[], key: number): ListedTerm[] {
+export function pathTo(terms: readonly ListedTerm[], key: number): ListedTerm[] {
   const path: ListedTerm[] = [];
   let index = terms.findIndex((term) => term.key === key);
   for (let depth = terms[index]?.depth ?? 0; index >= 0 && depth > 0; --index) {
@@ -48,7 +48,7 @@ const plain = (text: string): string => text.normalize("NFD").replace(/\p{M}/gu,
  * Those that have all of the words in their names, whatever the case and the accents, with those
  * above them, which do not `match`.
  */
-export function terms_with(terms: readonly ListedTerm[], words: string): ListedTerm[] {
+export function termsWith(terms: readonly ListedTerm[], words: string): ListedTerm[] {
   const wanted = plain(words)
     .split(/\s+/)
     .filter((word) => word !== "");
@@ -70,25 +70,25 @@ export function terms_with(terms: readonly ListedTerm[], words: string): ListedT
 }
 
 /** `terms`: each before those below it. */
-export function rows_of(terms: readonly ListedTerm[], folded: ReadonlySet<number>): TermRow[] {
+export function rowsOf(terms: readonly ListedTerm[], folded: ReadonlySet<number>): TermRow[] {
   const rows: TermRow[] = [];
-  let hidden_below = Infinity; // depth of the folded term that hides what comes
+  let hiddenBelow = Infinity; // depth of the folded term that hides what comes
   terms.forEach((term, index) => {
-    if (term.depth > hidden_below) return;
-    const parent = has_below(terms, index);
+    if (term.depth > hiddenBelow) return;
+    const parent = hasBelow(terms, index);
     const row = { term, parent, folded: parent && folded.has(term.key), place: 0, of: 0 };
-    hidden_below = row.folded ? term.depth : Infinity;
+    hiddenBelow = row.folded ? term.depth : Infinity;
     rows.push(row);
   });
-  number_siblings(rows);
+  numberSiblings(rows);
   return rows;
 }
 
-const has_below = (terms: readonly ListedTerm[], index: number): boolean =>
+const hasBelow = (terms: readonly ListedTerm[], index: number): boolean =>
   (terms[index + 1]?.depth ?? 0) > terms[index]!.depth;
 
 /** Rows of one parent stand at one depth, with nothing less deep between them. */
-function number_siblings(rows: readonly TermRow[]): void {
+function numberSiblings(rows: readonly TermRow[]): void {
   const open: TermRow[][] = []; // by depth: the siblings so far
   const close = (depth: number): void => {
     for (const siblings of open.splice(depth)) for (const row of siblings) row.of = siblings.length;
@@ -107,7 +107,7 @@ function number_siblings(rows: readonly TermRow[]): void {
  * What a key does at a row (-1: at none): goes to another one, folds its term or unfolds it. Null:
  * nothing, it is for others. `page`: rows in sight.
  */
-export function tree_step(
+export function treeStep(
   key: string,
   rows: readonly TermRow[],
   at: number,

@@ -2,7 +2,7 @@
 // the list changes; of very large lists the first ones, since the server finds the others.
 
 import { ApiError, type Api } from "../../net/api";
-import { person_languages } from "../../core/locale";
+import { personLanguages } from "../../core/locale";
 import type { ListedTerm, TermTree as FoundTerms } from "../../core/protocol.gen";
 
 const kAtOnce = 1000;
@@ -15,31 +15,31 @@ export class TermTree {
   problem = "";
   /** Grows when the terms change. */
   generation = 0;
-  private state_: "unasked" | "loading" | "loaded" = "unasked";
-  private again_ = false;
-  private places_: ReadonlyMap<number, number> = new Map();
-  private placed_ = 0; // generation of `places_`
+  private _state: "unasked" | "loading" | "loaded" = "unasked";
+  private _again = false;
+  private _places: ReadonlyMap<number, number> = new Map();
+  private _placed = 0; // generation of `_places`
 
   constructor(
-    private readonly api_: Api,
-    private readonly table_: number,
-    private readonly changed_: () => void,
-    private readonly language_ = person_languages()[0]!,
+    private readonly _api: Api,
+    private readonly _table: number,
+    private readonly _changed: () => void,
+    private readonly _language = personLanguages()[0]!,
   ) {}
 
   /** Where each stands in the tree, by key; asks for the terms. */
   get places(): ReadonlyMap<number, number> {
     this.want();
-    if (this.placed_ !== this.generation) {
-      this.placed_ = this.generation;
-      this.places_ = new Map(this.terms.map(({ key }, place) => [key, place]));
+    if (this._placed !== this.generation) {
+      this._placed = this.generation;
+      this._places = new Map(this.terms.map(({ key }, place) => [key, place]));
     }
-    return this.places_;
+    return this._places;
   }
 
   /** To be called by who shows them. */
   want(): void {
-    if (this.state_ === "unasked") void this.load();
+    if (this._state === "unasked") void this.load();
   }
   get loaded(): boolean {
     return this.generation > 0;
@@ -47,29 +47,29 @@ export class TermTree {
 
   /** Those that have all of the words, with those above them. */
   async search(words: string): Promise<FoundTerms> {
-    return this.api_.terms(this.table_, {
+    return this._api.terms(this._table, {
       q: words,
-      lang: this.language_,
+      lang: this._language,
       limit: kMostFound,
       offset: 0,
     });
   }
 
   refresh(): void {
-    if (this.state_ === "loading") this.again_ = true;
-    else if (this.state_ === "loaded") void this.load();
+    if (this._state === "loading") this._again = true;
+    else if (this._state === "loaded") void this.load();
   }
 
   private async load(): Promise<void> {
-    this.state_ = "loading";
+    this._state = "loading";
     try {
       do {
-        this.again_ = false;
+        this._again = false;
         const terms: ListedTerm[] = [];
         let total = 1;
         while (terms.length < Math.min(total, kMostTerms)) {
-          const page = await this.api_.terms(this.table_, {
-            lang: this.language_,
+          const page = await this._api.terms(this._table, {
+            lang: this._language,
             limit: kAtOnce,
             offset: terms.length,
           });
@@ -79,14 +79,14 @@ export class TermTree {
         }
         this.terms = terms;
         this.total = total;
-      } while (this.again_);
+      } while (this._again);
       this.problem = "";
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this.problem = error.message;
     }
-    this.state_ = "loaded";
+    this._state = "loaded";
     this.generation += 1;
-    this.changed_();
+    this._changed();
   }
 }

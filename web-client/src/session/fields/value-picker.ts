@@ -4,17 +4,17 @@
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { ApiError } from "../../net/api";
-import { read_number } from "../../core/locale";
-import { css_color, purpose_of } from "../../domain/palette";
+import { readNumber } from "../../core/locale";
+import { cssColor, purposeOf } from "../../domain/palette";
 import type { Layer } from "../../core/types";
-import { describe_value, value_problem } from "../layer-values";
-import { follow_session } from "../follow-session";
+import { describeValue, valueProblem } from "../layer-values";
+import { followSession } from "../follow-session";
 import type { ModelSession } from "../model-session";
-import { number_input } from "../../ui/number-input";
-import { radio_group } from "../../ui/radio-group";
+import { numberInput } from "../../ui/number-input";
+import { radioGroup } from "../../ui/radio-group";
 import "./record-chooser";
 import { styled } from "../../ui/styled";
-import { number_field_styles, shared_styles } from "../../ui/styles";
+import { numberFieldStyles, sharedStyles } from "../../ui/styles";
 import "./term-chooser";
 import { texts } from "../../texts";
 
@@ -23,18 +23,18 @@ export class StrataValuePicker extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) layer!: Layer;
   @property({ attribute: false }) value = 0;
-  @state() private wrong_value_ = "";
-  @state() private asking_ = false;
-  @state() private missing_: number | null = null; // a number that was typed and has no record
+  @state() private _wrongValue = "";
+  @state() private _asking = false;
+  @state() private _missing: number | null = null; // a number that was typed and has no record
 
   constructor() {
     super();
-    follow_session(this);
+    followSession(this);
   }
 
   static override styles = [
-    shared_styles,
-    number_field_styles,
+    sharedStyles,
+    numberFieldStyles,
     css`
       :host {
         display: block;
@@ -73,33 +73,33 @@ export class StrataValuePicker extends LitElement {
 
   override willUpdate(changed: PropertyValues<this>): void {
     if (changed.has("layer") && changed.get("layer")?.id !== this.layer.id) {
-      this.wrong_value_ = "";
-      this.missing_ = null;
+      this._wrongValue = "";
+      this._missing = null;
     }
   }
 
   override render(): TemplateResult {
     const { layer, value } = this;
-    const purpose = purpose_of(layer);
+    const purpose = purposeOf(layer);
     const { points } = layer.palette;
     if (purpose === "presence") {
       return html`<div class="line">
-        <span class="swatch" ${styled({ background: css_color(points[0]!.color) })}></span>
-        <span class="ellipsis">${texts.brush.paints(describe_value(layer, value))}</span>
+        <span class="swatch" ${styled({ background: cssColor(points[0]!.color) })}></span>
+        <span class="ellipsis">${texts.brush.paints(describeValue(layer, value))}</span>
       </div>`;
     }
     if (purpose === "classes" && points.length > 0) {
-      return radio_group({
+      return radioGroup({
         label: texts.brush.class,
         class: "classes",
         choices: points.map(({ at, color }) => ({
           value: at,
-          content: html`<span class="swatch" ${styled({ background: css_color(color) })}></span>
-            <span class="ellipsis">${describe_value(layer, at)}</span>`,
-          title: describe_value(layer, at),
+          content: html`<span class="swatch" ${styled({ background: cssColor(color) })}></span>
+            <span class="ellipsis">${describeValue(layer, at)}</span>`,
+          title: describeValue(layer, at),
         })),
         chosen: value,
-        choose: (at) => this.set_value(layer, at),
+        choose: (at) => this.setValue(layer, at),
       });
     }
     if (layer.table !== undefined && this.session.tables.terms(layer.table)) {
@@ -107,7 +107,7 @@ export class StrataValuePicker extends LitElement {
         .session=${this.session}
         .layer=${layer}
         .chosen=${value}
-        @chosen=${(event: CustomEvent<number>) => this.set_record(layer, event.detail)}
+        @chosen=${(event: CustomEvent<number>) => this.setRecord(layer, event.detail)}
       ></strata-term-chooser>`;
     }
     const steps = layer.type.startsWith("f") ? "any" : "1";
@@ -115,7 +115,7 @@ export class StrataValuePicker extends LitElement {
       <label class="field">
         <span>${purpose === "records" ? texts.brush.record : texts.brush.value}</span>
         <span class="number">
-          ${number_input({ value: this.missing_ ?? value, wrong: this.wrong_value_ !== "", changed: (text) => this.on_value(layer, read_number(text)) })}
+          ${numberInput({ value: this._missing ?? value, wrong: this._wrongValue !== "", changed: (text) => this.onValue(layer, readNumber(text)) })}
           <span>${layer.unit}</span>
         </span>
       </label>
@@ -127,10 +127,10 @@ export class StrataValuePicker extends LitElement {
             .table=${layer.table}
             .chosen=${[value]}
             label=${texts.brush.find_record}
-            @chosen=${(event: CustomEvent<number[]>) => this.set_record(layer, event.detail[0] ?? value)}
+            @chosen=${(event: CustomEvent<number[]>) => this.setRecord(layer, event.detail[0] ?? value)}
           ></strata-record-chooser>`
       }
-      ${layer.table === undefined ? nothing : this.record_buttons(layer, layer.table)}
+      ${layer.table === undefined ? nothing : this.recordButtons(layer, layer.table)}
       ${
         purpose === "measurement"
           ? html`<input
@@ -140,21 +140,21 @@ export class StrataValuePicker extends LitElement {
             step=${steps === "any" ? (layer.palette.max - layer.palette.min) / 200 : 1}
             .value=${String(value)}
             aria-label=${texts.brush.value}
-            @input=${(event: Event) => this.on_value(layer, (event.target as HTMLInputElement).valueAsNumber)}
+            @input=${(event: Event) => this.onValue(layer, (event.target as HTMLInputElement).valueAsNumber)}
           />`
           : nothing
       }
-      ${this.wrong_value_ ? html`<p class="error" role="alert">${this.wrong_value_}</p>` : nothing}
+      ${this._wrongValue ? html`<p class="error" role="alert">${this._wrongValue}</p>` : nothing}
     </div>`;
   }
 
-  private record_buttons(layer: Layer, table: number): TemplateResult {
-    const missing = this.missing_;
+  private recordButtons(layer: Layer, table: number): TemplateResult {
+    const missing = this._missing;
     const add = (key?: number) => () =>
       void this.ask(async () =>
-        this.set_record(
+        this.setRecord(
           layer,
-          (await this.session.api.create_record(table, { ...(key === undefined ? {} : { key }) }))
+          (await this.session.api.createRecord(table, { ...(key === undefined ? {} : { key }) }))
             .key,
         ),
       );
@@ -162,45 +162,45 @@ export class StrataValuePicker extends LitElement {
       missing === null
         ? nothing
         : html`<p class="hint" role="status">${texts.brush.no_record(missing)}</p>
-            <button ?disabled=${this.asking_} @click=${add(missing)}>${texts.brush.make_record(missing)}</button>`
+            <button ?disabled=${this._asking} @click=${add(missing)}>${texts.brush.make_record(missing)}</button>`
     }
-      <button title=${texts.brush.new_record_hint} ?disabled=${this.asking_} @click=${add()}>${texts.brush.new_record}</button>`;
+      <button title=${texts.brush.new_record_hint} ?disabled=${this._asking} @click=${add()}>${texts.brush.new_record}</button>`;
   }
 
-  private set_record(layer: Layer, key: number): void {
-    this.missing_ = null;
-    this.set_value(layer, key);
+  private setRecord(layer: Layer, key: number): void {
+    this._missing = null;
+    this.setValue(layer, key);
   }
 
   /** Only records can be painted: a number that has none is offered to be made. */
-  private async find_record(layer: Layer, table: number, key: number): Promise<void> {
-    if (await this.session.api.has_record(table, key)) this.set_record(layer, key);
-    else this.missing_ = key;
+  private async findRecord(layer: Layer, table: number, key: number): Promise<void> {
+    if (await this.session.api.hasRecord(table, key)) this.setRecord(layer, key);
+    else this._missing = key;
   }
 
   private async ask(work: () => Promise<void>): Promise<void> {
-    this.asking_ = true;
-    this.wrong_value_ = "";
+    this._asking = true;
+    this._wrongValue = "";
     try {
       await work();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.wrong_value_ = error.message;
+      this._wrongValue = error.message;
     } finally {
-      this.asking_ = false;
+      this._asking = false;
     }
   }
 
-  private set_value(layer: Layer, value: number): void {
-    this.session.painting.set_brush((brush) => brush.set_value(layer, value));
+  private setValue(layer: Layer, value: number): void {
+    this.session.painting.setBrush((brush) => brush.setValue(layer, value));
   }
 
-  private on_value(layer: Layer, number: number): void {
+  private onValue(layer: Layer, number: number): void {
     const value = layer.type.startsWith("f") ? Number(number.toPrecision(6)) : number;
-    this.wrong_value_ = value_problem(layer, value) ?? "";
-    if (this.wrong_value_) return;
+    this._wrongValue = valueProblem(layer, value) ?? "";
+    if (this._wrongValue) return;
     const { table } = layer;
-    if (table === undefined) this.set_value(layer, value);
-    else void this.ask(() => this.find_record(layer, table, value));
+    if (table === undefined) this.setValue(layer, value);
+    else void this.ask(() => this.findRecord(layer, table, value));
   }
 }

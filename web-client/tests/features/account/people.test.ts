@@ -1,36 +1,36 @@
 import { describe, expect, it } from "vitest";
 
 import {
-  invitation_of,
-  is_useless_link,
-  login_path_of,
-  password_words,
-  sign_in_problem,
+  invitationOf,
+  isUselessLink,
+  loginPathOf,
+  passwordWords,
+  signInProblem,
 } from "../../../src/features/account/entry";
-import { route_of } from "../../../src/ui/routes";
+import { routeOf } from "../../../src/ui/routes";
 import { texts } from "../../../src/texts";
-import { told_date, told_time } from "../../../src/domain/times";
-import { Api, ApiError, next_page } from "../../../src/net/api";
+import { toldDate, toldTime } from "../../../src/domain/times";
+import { Api, ApiError, nextPage } from "../../../src/net/api";
 import {
-  browser_of,
+  browserOf,
   called,
-  find_people,
+  findPeople,
   initials,
-  is_user_name,
-  may_change,
-  password_mistake,
-  role_by_groups,
-  roles_of_tokens,
-  roles_of_tokens_in,
-  roles_to_give,
+  isUserName,
+  mayChange,
+  passwordMistake,
+  roleByGroups,
+  rolesOfTokens,
+  rolesOfTokensIn,
+  rolesToGive,
 } from "../../../src/domain/people";
 import type { Person } from "../../../src/core/protocol.gen";
-import { may_administer } from "../../../src/core/types";
+import { mayAdminister } from "../../../src/core/types";
 
-const person = (user: string, full_name = "", more: Partial<Person> = {}): Person => ({
+const person = (user: string, fullName = "", more: Partial<Person> = {}): Person => ({
   id: 2,
   user,
-  full_name,
+  full_name: fullName,
   role: "annotator",
   state: "active",
   created: "2026-05-04T12:00:00.000Z",
@@ -42,7 +42,7 @@ const refusal = (status: number, more: { field?: string; detail?: string } = {})
   new ApiError({ status, title: "Refused", ...more });
 
 /** An interface whose server gives these answers in turn, and what it was asked. */
-function api_of(...answers: [status: number, body: unknown, headers?: Record<string, string>][]): {
+function apiOf(...answers: [status: number, body: unknown, headers?: Record<string, string>][]): {
   api: Api;
   asked: { what: string; body: unknown; headers: Record<string, string> }[];
 } {
@@ -69,27 +69,27 @@ describe("roles by groups", () => {
   ] as const;
 
   it("the highest of those that a person is in counts, and all that give it are told", () => {
-    expect(role_by_groups(given, ["Guests", "Students", "Diggers"])).toEqual({
+    expect(roleByGroups(given, ["Guests", "Students", "Diggers"])).toEqual({
       role: "annotator",
       groups: ["Diggers", "Students"],
     });
-    expect(role_by_groups(given, ["Guests"])).toEqual({ role: "viewer", groups: ["Guests"] });
-    expect(role_by_groups(given, ["Heads", "Guests"])).toEqual({
+    expect(roleByGroups(given, ["Guests"])).toEqual({ role: "viewer", groups: ["Guests"] });
+    expect(roleByGroups(given, ["Heads", "Guests"])).toEqual({
       role: "curator",
       groups: ["Heads"],
     });
   });
 
   it("groups that have no role there, and none at all, give nothing", () => {
-    expect(role_by_groups(given, ["Others"])).toBeNull();
-    expect(role_by_groups(given, [])).toBeNull();
-    expect(role_by_groups([], ["Diggers"])).toBeNull();
+    expect(roleByGroups(given, ["Others"])).toBeNull();
+    expect(roleByGroups(given, [])).toBeNull();
+    expect(roleByGroups([], ["Diggers"])).toBeNull();
   });
 });
 
 describe("what people are called", () => {
   it("one or two letters stand for a person", () => {
-    const of = (user: string, full_name = ""): string => initials({ user, full_name });
+    const of = (user: string, fullName = ""): string => initials({ user, full_name: fullName });
     expect(of("ada", "Ada Lovelace")).toBe("AL");
     expect(of("x", "  maría de los Ángeles  Ochoa ")).toBe("MO");
     expect(of("ada")).toBe("A");
@@ -103,9 +103,9 @@ describe("what people are called", () => {
   });
   it("names for signing in are the server's", () => {
     expect(
-      ["a", "Ada", "ada.l@x-y_z", "4da", "a".repeat(64)].filter((name) => !is_user_name(name)),
+      ["a", "Ada", "ada.l@x-y_z", "4da", "a".repeat(64)].filter((name) => !isUserName(name)),
     ).toEqual([]);
-    expect(["", ".ada", "-a", "ada l", "ädä", "a/b", "a".repeat(65)].filter(is_user_name)).toEqual(
+    expect(["", ".ada", "-a", "ada l", "ädä", "a/b", "a".repeat(65)].filter(isUserName)).toEqual(
       [],
     );
   });
@@ -113,71 +113,69 @@ describe("what people are called", () => {
 
 describe("passwords", () => {
   it("are told what is wrong with them before they are sent", () => {
-    expect(password_mistake("ada", "123456789", "123456789")).toEqual({
+    expect(passwordMistake("ada", "123456789", "123456789")).toEqual({
       field: "password",
       kind: "too_short",
     });
-    expect(password_mistake("Ada.Lovelace", "ada.lovelace", "ada.lovelace")).toEqual({
+    expect(passwordMistake("Ada.Lovelace", "ada.lovelace", "ada.lovelace")).toEqual({
       field: "password",
       kind: "is_the_name",
     });
-    expect(password_mistake("ada", "1234567890", "123456789O")).toEqual({
+    expect(passwordMistake("ada", "1234567890", "123456789O")).toEqual({
       field: "repeat",
       kind: "differs",
     });
-    expect(password_mistake("ada", "1234567890", "1234567890")).toBeNull();
+    expect(passwordMistake("ada", "1234567890", "1234567890")).toBeNull();
   });
   it("a character is one, however many bytes it takes", () => {
-    expect(password_mistake("ada", "𓂀".repeat(9), "𓂀".repeat(9))?.kind).toBe("too_short");
-    expect(password_mistake("ada", "𓂀".repeat(10), "𓂀".repeat(10))).toBeNull();
+    expect(passwordMistake("ada", "𓂀".repeat(9), "𓂀".repeat(9))?.kind).toBe("too_short");
+    expect(passwordMistake("ada", "𓂀".repeat(10), "𓂀".repeat(10))).toBeNull();
   });
   it("each mistake has its words", () => {
-    expect(password_words({ field: "password", kind: "too_short" })).toContain("10");
-    expect(password_words({ field: "repeat", kind: "differs" })).toBe(texts.password.differs);
+    expect(passwordWords({ field: "password", kind: "too_short" })).toContain("10");
+    expect(passwordWords({ field: "repeat", kind: "differs" })).toBe(texts.password.differs);
   });
 });
 
 describe("roles", () => {
   it("nobody makes another owner, nor gives more than they have", () => {
-    expect(roles_to_give("owner")).toEqual([
+    expect(rolesToGive("owner")).toEqual([
       "guest",
       "viewer",
       "annotator",
       "curator",
       "administrator",
     ]);
-    expect(roles_to_give("administrator")).toEqual([
+    expect(rolesToGive("administrator")).toEqual([
       "guest",
       "viewer",
       "annotator",
       "curator",
       "administrator",
     ]);
-    expect(roles_to_give("curator")).toEqual(["guest", "viewer", "annotator", "curator"]);
+    expect(rolesToGive("curator")).toEqual(["guest", "viewer", "annotator", "curator"]);
   });
   it("a token may have what its person has", () => {
-    expect(roles_of_tokens("viewer")).toEqual(["viewer"]);
-    expect(roles_of_tokens("owner").at(-1)).toBe("owner");
-    expect(roles_of_tokens_in("owner")).toEqual(["viewer", "annotator", "curator"]);
-    expect(roles_of_tokens_in("annotator")).toEqual(["viewer", "annotator"]);
+    expect(rolesOfTokens("viewer")).toEqual(["viewer"]);
+    expect(rolesOfTokens("owner").at(-1)).toBe("owner");
+    expect(rolesOfTokensIn("owner")).toEqual(["viewer", "annotator", "curator"]);
+    expect(rolesOfTokensIn("annotator")).toEqual(["viewer", "annotator"]);
   });
   it("administrators and the owner look after people", () => {
     expect(
-      (["viewer", "annotator", "curator", "administrator", "owner"] as const).filter(
-        may_administer,
-      ),
+      (["viewer", "annotator", "curator", "administrator", "owner"] as const).filter(mayAdminister),
     ).toEqual(["administrator", "owner"]);
   });
   it("nobody changes themselves, the owner, or whoever may do as much", () => {
     const administrator = { user: "bea", role: "administrator" } as const;
-    expect(may_change(administrator, person("ada"))).toBe(true);
-    expect(may_change(administrator, person("bea", "", { role: "administrator" }))).toBe(false);
-    expect(may_change(administrator, person("carl", "", { role: "administrator" }))).toBe(false);
+    expect(mayChange(administrator, person("ada"))).toBe(true);
+    expect(mayChange(administrator, person("bea", "", { role: "administrator" }))).toBe(false);
+    expect(mayChange(administrator, person("carl", "", { role: "administrator" }))).toBe(false);
     expect(
-      may_change({ user: "owner", role: "owner" }, person("carl", "", { role: "administrator" })),
+      mayChange({ user: "owner", role: "owner" }, person("carl", "", { role: "administrator" })),
     ).toBe(true);
-    expect(may_change(administrator, person("owner", "", { role: "owner" }))).toBe(false);
-    expect(may_change({ user: "carl", role: "curator" }, administrator)).toBe(false);
+    expect(mayChange(administrator, person("owner", "", { role: "owner" }))).toBe(false);
+    expect(mayChange({ user: "carl", role: "curator" }, administrator)).toBe(false);
   });
 });
 
@@ -188,7 +186,7 @@ describe("finding people", () => {
     person("o.a@dig", "Olga Adler", { state: "disabled" }),
   ];
   const found = (text: string): string[] =>
-    find_people(people, text, ({ role, state }) => `${role} ${state}`).map(({ user }) => user);
+    findPeople(people, text, ({ role, state }) => `${role} ${state}`).map(({ user }) => user);
   it("by the beginnings of their names, in any case, and by what they may do", () => {
     expect(found("")).toEqual(["ada", "grace.h", "o.a@dig"]);
     expect(found("AD")).toEqual(["ada", "o.a@dig"]);
@@ -202,7 +200,7 @@ describe("finding people", () => {
 
 describe("browsers", () => {
   const told = (agent: string): string => {
-    const { browser, system } = browser_of(agent);
+    const { browser, system } = browserOf(agent);
     return texts.account.browser(browser, system);
   };
   it.each([
@@ -248,49 +246,49 @@ describe("browsers", () => {
 describe("moments", () => {
   const now = new Date(2026, 4, 4, 12, 0);
   const at = (...parts: [number, number, number, number, number]): string =>
-    told_time(new Date(...parts).toISOString(), now);
+    toldTime(new Date(...parts).toISOString(), now);
   it("are told by their day, those of late by its name", () => {
     expect(at(2026, 4, 4, 9, 5)).toBe("today, 09:05");
     expect(at(2026, 4, 3, 23, 59)).toBe("yesterday, 23:59");
     expect(at(2026, 4, 2, 9, 5)).toBe("2 May 2026, 09:05");
-    expect(told_date(new Date(2027, 0, 31, 5).toISOString())).toBe("31 Jan 2027");
+    expect(toldDate(new Date(2027, 0, 31, 5).toISOString())).toBe("31 Jan 2027");
   });
 });
 
 describe("coming in", () => {
   it("an invitation has an address of its own, and its secret is in the fragment", () => {
-    expect(route_of("/join")).toEqual({ page: "join" });
-    expect(route_of("/join/")).toEqual({ page: "join" });
-    expect(route_of("/joiner")).toEqual({ page: "home", project: null });
-    expect(invitation_of("#3q2-7wAAqrs_")).toBe("3q2-7wAAqrs_");
-    expect(["", "#", "#a b", "#<x>"].map(invitation_of)).toEqual(["", "", "", ""]);
+    expect(routeOf("/join")).toEqual({ page: "join" });
+    expect(routeOf("/join/")).toEqual({ page: "join" });
+    expect(routeOf("/joiner")).toEqual({ page: "home", project: null });
+    expect(invitationOf("#3q2-7wAAqrs_")).toBe("3q2-7wAAqrs_");
+    expect(["", "#", "#a b", "#<x>"].map(invitationOf)).toEqual(["", "", "", ""]);
   });
   it("a pasted link of the server is opened, whatever stands around it", () => {
-    expect(login_path_of("see http://127.0.0.1:8080/login?link=3q2-7wAA, please")).toBe(
+    expect(loginPathOf("see http://127.0.0.1:8080/login?link=3q2-7wAA, please")).toBe(
       "/login?link=3q2-7wAA",
     );
-    expect(login_path_of("3q2-7wAAqrs")).toBeNull();
+    expect(loginPathOf("3q2-7wAAqrs")).toBeNull();
   });
   it("a refused sign-in says what does not fit, and when to go on", () => {
-    expect(sign_in_problem(refusal(401), "password")).toBe(texts.sign_in.wrong);
-    expect(sign_in_problem(refusal(401), "token")).toBe(texts.sign_in.token_wrong);
-    expect(sign_in_problem(refusal(403, { detail: "For scripts." }), "token")).toBe("For scripts.");
-    expect(sign_in_problem(refusal(429, { detail: "Wait ten seconds." }), "password")).toBe(
+    expect(signInProblem(refusal(401), "password")).toBe(texts.sign_in.wrong);
+    expect(signInProblem(refusal(401), "token")).toBe(texts.sign_in.token_wrong);
+    expect(signInProblem(refusal(403, { detail: "For scripts." }), "token")).toBe("For scripts.");
+    expect(signInProblem(refusal(429, { detail: "Wait ten seconds." }), "password")).toBe(
       "Wait ten seconds.",
     );
-    expect(sign_in_problem(refusal(429, { detail: "Wait ten seconds." }), "token")).toBe(
+    expect(signInProblem(refusal(429, { detail: "Wait ten seconds." }), "token")).toBe(
       "Wait ten seconds.",
     );
-    expect(sign_in_problem(refusal(0, { detail: "Away." }), "password")).toBe("Away.");
-    expect(sign_in_problem(refusal(503, { detail: "It starts." }), "token")).toBe("It starts.");
+    expect(signInProblem(refusal(0, { detail: "Away." }), "password")).toBe("Away.");
+    expect(signInProblem(refusal(503, { detail: "It starts." }), "token")).toBe("It starts.");
   });
   it("a link is useless when the server does not know it, but not when the password is bad", () => {
     expect(
-      [refusal(401), refusal(404), refusal(422, { field: "invitation" })].every(is_useless_link),
+      [refusal(401), refusal(404), refusal(422, { field: "invitation" })].every(isUselessLink),
     ).toBe(true);
     expect(
       [refusal(422, { field: "password" }), refusal(429), refusal(0), refusal(503)].some(
-        is_useless_link,
+        isUselessLink,
       ),
     ).toBe(false);
   });
@@ -298,14 +296,14 @@ describe("coming in", () => {
 
 describe("the interface", () => {
   it("has the server keep no answer with a secret for a repeated call", async () => {
-    const { api, asked } = api_of(...Array.from({ length: 7 }, (): [number, unknown] => [200, {}]));
+    const { api, asked } = apiOf(...Array.from({ length: 7 }, (): [number, unknown] => [200, {}]));
     await api.login({ user: "ada", password: "x" });
-    await api.accept_invitation({ invitation: "i", password: "x" });
-    await api.change_password({ password: "x" });
-    await api.create_token({ name: "n" });
+    await api.acceptInvitation({ invitation: "i", password: "x" });
+    await api.changePassword({ password: "x" });
+    await api.createToken({ name: "n" });
     await api.invite({ user: "ada" });
-    await api.invite_again("a@b");
-    await api.create_layer(1, { name: "L" }).catch(() => {});
+    await api.inviteAgain("a@b");
+    await api.createLayer(1, { name: "L" }).catch(() => {});
     expect(asked.map(({ what, headers }) => [what, "Idempotency-Key" in headers])).toEqual([
       ["POST /api/v1/login", false],
       ["POST /api/v1/invitations/accept", false],
@@ -320,7 +318,7 @@ describe("the interface", () => {
     const page = (from: number, to: number): Person[] =>
       Array.from({ length: to - from }, (_, n) => person(`p${from + n}`));
     const next = { Link: '</api/v1/users?limit=1000&after=WyJh>; rel="next"' };
-    const { api, asked } = api_of(
+    const { api, asked } = apiOf(
       [200, { users: page(0, 1000), total: 1200 }, next],
       [200, { users: page(1000, 1200), total: 1200 }],
     );
@@ -331,7 +329,7 @@ describe("the interface", () => {
     ]);
   });
   it("ends although people went away between two pages", async () => {
-    const { api } = api_of(
+    const { api } = apiOf(
       [
         200,
         { users: [person("a")], total: 3 },
@@ -349,7 +347,7 @@ describe("the interface", () => {
       '</users>; rel="next"',
       '</api/v1/users>; rel="prev"',
     ])
-      expect(next_page(link)).toBeNull();
+      expect(nextPage(link)).toBeNull();
   });
   it("names the version in every change of what has one", async () => {
     const seen: [number, unknown, Record<string, string>] = [
@@ -357,34 +355,34 @@ describe("the interface", () => {
       { palette: {} },
       { ETag: '"v7"' },
     ];
-    const of_whatever_is_there: ((api: Api) => Promise<unknown>)[] = [
-      (api) => api.set_title_column("units", 3),
-      (api) => api.change_column("units", "depth", { name: "Depth" }),
-      (api) => api.drop_column("units", "depth"),
-      (api) => api.change_record("units", 1, { values: {} }),
-      (api) => api.delete_record("units", 1, { what: "clear" }),
-      (api) => api.delete_look(1, 2),
+    const ofWhateverIsThere: ((api: Api) => Promise<unknown>)[] = [
+      (api) => api.setTitleColumn("units", 3),
+      (api) => api.changeColumn("units", "depth", { name: "Depth" }),
+      (api) => api.dropColumn("units", "depth"),
+      (api) => api.changeRecord("units", 1, { values: {} }),
+      (api) => api.deleteRecord("units", 1, { what: "clear" }),
+      (api) => api.deleteLook(1, 2),
     ];
-    for (const change of of_whatever_is_there) {
-      const { api, asked } = api_of([200, {}]);
+    for (const change of ofWhateverIsThere) {
+      const { api, asked } = apiOf([200, {}]);
       await change(api);
       expect(asked.map(({ headers }) => headers["If-Match"])).toEqual(["*"]);
     }
     const changes: ((api: Api) => Promise<unknown>)[] = [
-      (api) => api.change_look(1, 2, { name: "x" }),
-      (api) => api.change_layer(1, 2, { name: "x" }),
-      (api) => api.delete_layer(1, 2),
-      (api) => api.delete_model(1),
-      (api) => api.delete_table("units"),
-      (api) => api.delete_project("villa"),
+      (api) => api.changeLook(1, 2, { name: "x" }),
+      (api) => api.changeLayer(1, 2, { name: "x" }),
+      (api) => api.deleteLayer(1, 2),
+      (api) => api.deleteModel(1),
+      (api) => api.deleteTable("units"),
+      (api) => api.deleteProject("villa"),
     ];
     for (const change of changes) {
-      const { api, asked } = api_of(seen, [200, { palette: {} }]);
+      const { api, asked } = apiOf(seen, [200, { palette: {} }]);
       await change(api);
       expect(asked.map(({ headers }) => headers["If-Match"])).toEqual([undefined, '"v7"']);
     }
-    const { api, asked } = api_of([200, {}]);
-    await api.change_record("units", 1, { values: {}, version: 4 });
+    const { api, asked } = apiOf([200, {}]);
+    await api.changeRecord("units", 1, { values: {}, version: 4 });
     expect(asked[0]!.headers["If-Match"]).toBe('"v4"');
   });
 });

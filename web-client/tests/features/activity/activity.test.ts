@@ -1,8 +1,8 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { Activities, type ActivitiesHost } from "../../../src/features/activity/activity";
-import { told_day } from "../../../src/domain/times";
-import { by_day, with_first_page, with_next_page } from "../../../src/domain/activity";
+import { toldDay } from "../../../src/domain/times";
+import { byDay, withFirstPage, withNextPage } from "../../../src/domain/activity";
 import { ApiError, type Api } from "../../../src/net/api";
 import type { Activity, ActivityList } from "../../../src/core/protocol.gen";
 
@@ -17,7 +17,7 @@ describe("a log of activity", () => {
 
   it("takes a newer first page, where a line that went on has moved to the top", () => {
     const page = { lines: [line(5, 50), line(3, 49, { count: 2 }), line(4, 40)], next: "earlier" };
-    const now = with_first_page(known, page);
+    const now = withFirstPage(known, page);
     expect(ids(now)).toEqual([5, 3, 4, 2, 1]);
     expect(now.lines[1]!.count).toBe(2);
     expect(now.next).toBe("a place");
@@ -25,16 +25,16 @@ describe("a log of activity", () => {
 
   it("forgets what does not meet the page, and what the page lacks though it would stand there", () => {
     expect(
-      ids(with_first_page(known, { lines: [line(9, 59), line(8, 58)], next: "earlier" })),
+      ids(withFirstPage(known, { lines: [line(9, 59), line(8, 58)], next: "earlier" })),
     ).toEqual([9, 8]);
     // comment 3 was deleted
-    const gone = with_first_page(known, { lines: [line(4, 40), line(2, 20)], next: "earlier" });
+    const gone = withFirstPage(known, { lines: [line(4, 40), line(2, 20)], next: "earlier" });
     expect(ids(gone)).toEqual([4, 2, 1]);
-    expect(ids(with_first_page(known, { lines: [], next: undefined }))).toEqual([]);
+    expect(ids(withFirstPage(known, { lines: [], next: undefined }))).toEqual([]);
   });
 
   it("goes on with the next page, no line twice", () => {
-    const now = with_next_page(known, { lines: [line(1, 10), line(6, 5)], next: undefined });
+    const now = withNextPage(known, { lines: [line(1, 10), line(6, 5)], next: undefined });
     expect(ids(now)).toEqual([4, 3, 2, 1, 6]);
     expect(now.next).toBeUndefined();
   });
@@ -43,7 +43,7 @@ describe("a log of activity", () => {
     const now = new Date(2026, 4, 4, 18);
     const at = (id: number, day: number): Activity =>
       line(id, 0, { time: new Date(2026, 4, day, 12).toISOString() });
-    const days = by_day([at(4, 4), at(3, 4), at(2, 3), at(1, 1)], (iso) => told_day(iso, now));
+    const days = byDay([at(4, 4), at(3, 4), at(2, 3), at(1, 1)], (iso) => toldDay(iso, now));
     expect(days.map(({ day, lines }) => [day, lines.length])).toEqual([
       ["today", 2],
       ["yesterday", 1],
@@ -63,7 +63,7 @@ describe("the activity of a model", () => {
   } as unknown as Api;
   const flown: unknown[] = [];
   const host = {
-    comments: { go_to: (id: number) => flown.push(id) },
+    comments: { goTo: (id: number) => flown.push(id) },
     layers: { find: () => null, all: [] },
     model: () => ({ id: 7, project: 1 }),
     changed: () => {},
@@ -116,9 +116,9 @@ describe("the activity of a model", () => {
   it("goes on where the page ended, and of the whole project begins anew", async () => {
     activity.watch(true);
     await settle();
-    expect([ids(activity), activity.has_more]).toEqual([[2], true]);
+    expect([ids(activity), activity.hasMore]).toEqual([[2], true]);
     await activity.more();
-    expect([ids(activity), activity.has_more]).toEqual([[2, 1], false]);
+    expect([ids(activity), activity.hasMore]).toEqual([[2, 1], false]);
     activity.whole = true;
     expect(activity.lines).toEqual([]);
     await settle();
@@ -142,17 +142,17 @@ describe("the activity of a model", () => {
 
   it("leads to comments that are there, and nowhere without a thing", async () => {
     const comment = line(1, 1, { kind: "comment", op: "written", model: 7, comment: 5 });
-    expect(activity.leads_somewhere(comment)).toBe(true);
-    expect(activity.leads_somewhere(line(1, 1, { kind: "comment", op: "written", model: 7 }))).toBe(
+    expect(activity.leadsSomewhere(comment)).toBe(true);
+    expect(activity.leadsSomewhere(line(1, 1, { kind: "comment", op: "written", model: 7 }))).toBe(
       false,
     );
-    expect(activity.leads_somewhere(line(1, 1, { kind: "layer", op: "deleted", model: 7 }))).toBe(
+    expect(activity.leadsSomewhere(line(1, 1, { kind: "layer", op: "deleted", model: 7 }))).toBe(
       false,
     );
-    expect(activity.leads_somewhere(line(1, 1, { kind: "model", op: "changed", model: 8 }))).toBe(
+    expect(activity.leadsSomewhere(line(1, 1, { kind: "model", op: "changed", model: 8 }))).toBe(
       true,
     );
-    await activity.go_to(comment);
+    await activity.goTo(comment);
     expect(flown).toEqual([5]);
   });
 });

@@ -4,10 +4,10 @@ import { Appearance } from "../../../src/features/appearance/appearance";
 import { notices } from "../../../src/ui/notices";
 import { Api } from "../../../src/net/api";
 import { OrbitCamera } from "../../../src/math/camera";
-import { angles_of, direction_of, on_pad, pad_point } from "../../../src/math/light";
+import { anglesOf, directionOf, onPad, padPoint } from "../../../src/math/light";
 import type { Light, Look, LookShown, Plane } from "../../../src/core/protocol.gen";
-import { no_section, section_planes, with_box_side } from "../../../src/math/section";
-import { with_range } from "../../../src/domain/palette";
+import { noSection, sectionPlanes, withBoxSide } from "../../../src/math/section";
+import { withRange } from "../../../src/domain/palette";
 
 const bounds = {
   min: [0, 10, -4] as [number, number, number],
@@ -18,34 +18,34 @@ const above = (plane: Plane, [x, y, z]: [number, number, number]): boolean =>
 
 describe("sections", () => {
   it("cuts across an axis and keeps the lower side, or the other when flipped", () => {
-    const [plane] = section_planes({ ...no_section(), mode: "y", position: 0.25 }, bounds);
+    const [plane] = sectionPlanes({ ...noSection(), mode: "y", position: 0.25 }, bounds);
     expect(above(plane!, [1, 12, 0])).toBe(true);
     expect(above(plane!, [1, 13, 0])).toBe(false);
-    const [other] = section_planes(
-      { ...no_section(), mode: "y", position: 0.25, flipped: true },
+    const [other] = sectionPlanes(
+      { ...noSection(), mode: "y", position: 0.25, flipped: true },
       bounds,
     );
     expect(above(other!, [1, 12, 0])).toBe(false);
   });
 
   it("makes a box of the sides that were moved, six at most", () => {
-    const whole = { ...no_section(), mode: "box" as const };
-    expect(section_planes(whole, bounds)).toEqual([]);
-    const one = with_box_side(whole, "min", 0, 0.5);
-    expect(section_planes(one, bounds)).toEqual([[1, 0, 0, -1]]);
-    let all = whole as ReturnType<typeof no_section>;
+    const whole = { ...noSection(), mode: "box" as const };
+    expect(sectionPlanes(whole, bounds)).toEqual([]);
+    const one = withBoxSide(whole, "min", 0, 0.5);
+    expect(sectionPlanes(one, bounds)).toEqual([[1, 0, 0, -1]]);
+    let all = whole as ReturnType<typeof noSection>;
     for (const axis of [0, 1, 2])
-      all = with_box_side(with_box_side(all, "min", axis, 0.2), "max", axis, 0.8);
-    const planes = section_planes(all, bounds);
+      all = withBoxSide(withBoxSide(all, "min", axis, 0.2), "max", axis, 0.8);
+    const planes = sectionPlanes(all, bounds);
     expect(planes).toHaveLength(6);
     expect(planes.every((plane) => above(plane, [1, 15, 0]))).toBe(true);
     expect(planes.every((plane) => above(plane, [1.9, 15, 0]))).toBe(false);
   });
 
   it("never turns a box inside out", () => {
-    const narrow = with_box_side(with_box_side(no_section(), "max", 2, 0.3), "min", 2, 0.9);
+    const narrow = withBoxSide(withBoxSide(noSection(), "max", 2, 0.3), "min", 2, 0.9);
     expect(narrow.box.min[2]).toBeLessThan(narrow.box.max[2]);
-    expect(with_box_side(no_section(), "max", 0, -5).box.max[0]).toBeGreaterThan(0);
+    expect(withBoxSide(noSection(), "max", 0, -5).box.max[0]).toBeGreaterThan(0);
   });
 
   it("go out with the camera, and only where there are some", () => {
@@ -58,26 +58,26 @@ describe("sections", () => {
 
 describe("the light's pad", () => {
   it("is the hemisphere before the viewer", () => {
-    expect(direction_of({ x: 0, y: 0 })).toEqual([0, 0, 1]);
-    const [x, y, z] = direction_of({ x: 3, y: 4 });
+    expect(directionOf({ x: 0, y: 0 })).toEqual([0, 0, 1]);
+    const [x, y, z] = directionOf({ x: 3, y: 4 });
     expect(Math.hypot(x, y, z)).toBeCloseTo(1);
     expect(y / x).toBeCloseTo(4 / 3);
     expect(z).toBeGreaterThan(0.05);
   });
 
   it("finds the point of a direction again, of any length", () => {
-    const point = pad_point([-0.6, 0.2, 2]);
-    const again = pad_point(direction_of(point));
+    const point = padPoint([-0.6, 0.2, 2]);
+    const again = padPoint(directionOf(point));
     expect(again.x).toBeCloseTo(point.x);
     expect(again.y).toBeCloseTo(point.y);
-    expect(on_pad({ x: 0.1, y: 0.2 })).toEqual({ x: 0.1, y: 0.2 });
+    expect(onPad({ x: 0.1, y: 0.2 })).toEqual({ x: 0.1, y: 0.2 });
   });
 
   it("is told in words", () => {
-    expect(angles_of({ x: 0, y: 1 }).from).toBe(0);
-    expect(angles_of({ x: 1, y: 0 }).from).toBe(90);
-    expect(angles_of({ x: -1, y: 0 }).from).toBe(270);
-    expect(angles_of({ x: 0, y: 0 }).above).toBe(90);
+    expect(anglesOf({ x: 0, y: 1 }).from).toBe(0);
+    expect(anglesOf({ x: 1, y: 0 }).from).toBe(90);
+    expect(anglesOf({ x: -1, y: 0 }).from).toBe(270);
+    expect(anglesOf({ x: 0, y: 0 }).above).toBe(90);
   });
 });
 
@@ -100,21 +100,21 @@ describe("how a person sees the model", () => {
   let sent: [LookShown[] | null, Light][];
   let planes: Plane[];
   let server: Look[];
-  let refuse_after: number;
+  let refuseAfter: number;
   let appearance: Appearance;
 
   beforeEach(() => {
     sent = [];
     planes = [];
     server = [look(1, true), look(2, false), look(3, false)];
-    refuse_after = Infinity;
+    refuseAfter = Infinity;
     const answer = (body: unknown): Response =>
       new Response(JSON.stringify(body), { headers: { ETag: '"1"' } });
     const api = new Api(async (path, init) => {
       const id = Number(/looks\/(\d+)/.exec(path)?.[1]);
       if (!id) return answer({ looks: server, total: server.length });
       if (init?.method === "PATCH") {
-        if (refuse_after-- <= 0) return new Response("", { status: 503 });
+        if (refuseAfter-- <= 0) return new Response("", { status: 503 });
         server = server.map((each) =>
           each.id === id ? { ...each, ...(JSON.parse(String(init.body)) as Partial<Look>) } : each,
         );
@@ -123,40 +123,40 @@ describe("how a person sees the model", () => {
     });
     appearance = new Appearance(api, "1", {
       send: (looks, light) => sent.push([looks, light]),
-      send_section: (of) => (planes = of),
+      sendSection: (of) => (planes = of),
       bounds: () => bounds,
       changed: vi.fn(),
     });
-    appearance.take_looks([look(1, true), look(2, false), look(3, false)]);
+    appearance.takeLooks([look(1, true), look(2, false), look(3, false)]);
   });
 
   it("follows what everyone sees until something is chosen", () => {
     expect(sent.at(-1)![0]).toBeNull();
-    appearance.set_visible(appearance.looks[1]!, true);
-    appearance.set_opacity(appearance.looks[1]!, 0.5);
+    appearance.setVisible(appearance.looks[1]!, true);
+    appearance.setOpacity(appearance.looks[1]!, 0.5);
     expect(sent.at(-1)![0]).toEqual([
       { look: 1, opacity: 1 },
       { look: 2, opacity: 0.5 },
     ]);
-    appearance.set_visible(appearance.looks[1]!, false);
-    appearance.set_opacity(appearance.looks[1]!, 1);
+    appearance.setVisible(appearance.looks[1]!, false);
+    appearance.setOpacity(appearance.looks[1]!, 1);
     expect(sent.at(-1)![0]).toBeNull();
   });
 
   it("shows four looks and no more", () => {
     const told = vi.spyOn(notices, "show");
-    appearance.take_looks([1, 2, 3, 4, 5].map((id) => look(id, id < 5)));
-    appearance.set_visible(appearance.looks[4]!, true);
+    appearance.takeLooks([1, 2, 3, 4, 5].map((id) => look(id, id < 5)));
+    appearance.setVisible(appearance.looks[4]!, true);
     expect(appearance.visible(appearance.looks[4]!)).toBe(false);
     expect(told).toHaveBeenCalledOnce();
   });
 
   it("forgets a look that is gone", () => {
-    appearance.set_visible(appearance.looks[2]!, true);
-    appearance.on_event({ op: "look", event: "deleted", look_id: 3 });
+    appearance.setVisible(appearance.looks[2]!, true);
+    appearance.onEvent({ op: "look", event: "deleted", look_id: 3 });
     expect(appearance.looks.map(({ id }) => id)).toEqual([1, 2]);
     expect(sent.at(-1)![0]).toBeNull();
-    appearance.on_event({ op: "look", event: "created", look_id: 9, look: look(9, false) });
+    appearance.onEvent({ op: "look", event: "created", look_id: 9, look: look(9, false) });
     expect(appearance.looks.map(({ id }) => id)).toEqual([1, 2, 9]);
   });
 
@@ -164,7 +164,7 @@ describe("how a person sees the model", () => {
     await appearance.move(appearance.looks[2]!, 0);
     expect(appearance.looks.map(({ id }) => id)).toEqual([3, 1, 2]);
     expect([...server].sort((a, b) => a.order - b.order).map(({ id }) => id)).toEqual([3, 1, 2]);
-    refuse_after = 1;
+    refuseAfter = 1;
     await expect(appearance.move(appearance.looks[2]!, 0)).rejects.toThrow();
     const kept = [...server].sort((a, b) => a.order - b.order || a.id - b.id).map(({ id }) => id);
     expect(appearance.looks.map(({ id }) => id)).toEqual(kept);
@@ -177,23 +177,23 @@ describe("how a person sees the model", () => {
   });
 
   it("goes back to the beginning at once", () => {
-    appearance.set_light({ mode: "raking", direction: [1, 0, 0.2] });
-    appearance.set_section({ mode: "x" });
+    appearance.setLight({ mode: "raking", direction: [1, 0, 0.2] });
+    appearance.setSection({ mode: "x" });
     expect(sent.at(-1)![1]).toEqual({ mode: "raking", direction: [1, 0, 0.2] });
     expect(planes).toHaveLength(1);
-    expect(appearance.is_default).toBe(false);
+    expect(appearance.isDefault).toBe(false);
     appearance.reset();
-    expect(appearance.is_default).toBe(true);
+    expect(appearance.isDefault).toBe(true);
     expect(planes).toEqual([]);
     expect(sent.at(-1)![1].mode).toBe("museum");
   });
 
   it("steps through lights and cuts by a key each", () => {
-    appearance.next_light();
+    appearance.nextLight();
     expect(appearance.light.mode).toBe("headlight");
-    for (let i = 0; i < 3; ++i) appearance.next_light();
+    for (let i = 0; i < 3; ++i) appearance.nextLight();
     expect(appearance.light.mode).toBe("museum");
-    for (let i = 0; i < 4; ++i) appearance.next_section();
+    for (let i = 0; i < 4; ++i) appearance.nextSection();
     expect(appearance.section.mode).toBe("off");
   });
 });
@@ -205,7 +205,7 @@ describe("the range of a palette", () => {
       { at: 15, color: "#888888ff" },
       { at: 20, color: "#ffffffff" },
     ];
-    const moved = with_range({ mode: "linear", min: 10, max: 20, points }, 0, 4);
+    const moved = withRange({ mode: "linear", min: 10, max: 20, points }, 0, 4);
     expect([moved.min, moved.max, ...moved.points.map(({ at }) => at)]).toEqual([0, 4, 0, 2, 4]);
     expect(moved.points.map(({ color }) => color)).toEqual(points.map(({ color }) => color));
   });

@@ -3,17 +3,17 @@ import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Comments, type CommentsHost } from "../../../src/features/comments/comments";
 import { notices } from "../../../src/ui/notices";
 import { kMostLooked, PinSight, type PinPlace } from "../../../src/session/pin-sight";
-import { comment_of, hash_of_comment } from "../../../src/ui/routes";
+import { commentOf, hashOfComment } from "../../../src/ui/routes";
 import { Api } from "../../../src/net/api";
 import { OrbitCamera } from "../../../src/math/camera";
-import { mention_begun, people_like } from "../../../src/domain/mentions";
+import { mentionBegun, peopleLike } from "../../../src/domain/mentions";
 import {
-  find_threads,
-  is_unread,
+  findThreads,
+  isUnread,
   mentions,
-  text_parts,
-  threads_of,
-  with_thread_read,
+  textParts,
+  threadsOf,
+  withThreadRead,
 } from "../../../src/domain/comments";
 import type { Point } from "../../../src/net/connection";
 import type { Comment } from "../../../src/core/protocol.gen";
@@ -49,7 +49,7 @@ describe("threads", () => {
 
   it("have their replies in order, and those that were written in last come first", () => {
     expect(
-      threads_of(comments).map(({ first, replies, newest }) => [
+      threadsOf(comments).map(({ first, replies, newest }) => [
         first.id,
         replies.map(({ id }) => id),
         newest,
@@ -63,7 +63,7 @@ describe("threads", () => {
 
   it("are found by state, by who takes part, and by words of names and texts", () => {
     const ids = (state: "open" | "resolved" | "all", of: string | null, words: string): number[] =>
-      find_threads(threads_of(comments), { state, of, words }).map(({ first }) => first.id);
+      findThreads(threadsOf(comments), { state, of, words }).map(({ first }) => first.id);
     expect(ids("all", null, "")).toEqual([5, 1, 2]);
     expect(ids("open", null, "")).toEqual([1, 2]);
     expect(ids("resolved", null, "")).toEqual([5]);
@@ -74,25 +74,25 @@ describe("threads", () => {
   });
 
   it("without their first comment are none", () => {
-    expect(threads_of([reply(3, 1)])).toEqual([]);
+    expect(threadsOf([reply(3, 1)])).toEqual([]);
   });
 
   it("are unread while somebody else wrote what was not seen", () => {
-    const [thread] = threads_of([written(1), reply(3, 1, { user: "bob" })]);
+    const [thread] = threadsOf([written(1), reply(3, 1, { user: "bob" })]);
     const none = { upto: 0, threads: {} };
-    expect(is_unread(thread!, none, "ada")).toBe(true);
-    expect(is_unread(thread!, none, "bob")).toBe(true);
-    expect(is_unread(thread!, { upto: 1, threads: {} }, "bob")).toBe(false);
-    expect(is_unread(thread!, { upto: 2, threads: {} }, "ada")).toBe(true);
-    expect(is_unread(thread!, with_thread_read(none, thread!), "ada")).toBe(false);
-    expect(is_unread(threads_of([written(1, { deleted: true })])[0]!, none, "carl")).toBe(false);
+    expect(isUnread(thread!, none, "ada")).toBe(true);
+    expect(isUnread(thread!, none, "bob")).toBe(true);
+    expect(isUnread(thread!, { upto: 1, threads: {} }, "bob")).toBe(false);
+    expect(isUnread(thread!, { upto: 2, threads: {} }, "ada")).toBe(true);
+    expect(isUnread(thread!, withThreadRead(none, thread!), "ada")).toBe(false);
+    expect(isUnread(threadsOf([written(1, { deleted: true })])[0]!, none, "carl")).toBe(false);
   });
 });
 
 describe("the text of a comment", () => {
   const people = new Set(["ada", "Carl.B"]);
   const told = (text: string): string =>
-    text_parts(text, people)
+    textParts(text, people)
       .map(({ kind, text }) => (kind === "text" ? text : `[${kind} ${text}]`))
       .join("");
 
@@ -112,9 +112,9 @@ describe("the text of a comment", () => {
       "file:///etc",
       "xhttps//a",
     ]) {
-      expect(text_parts(text, people)).toEqual([{ kind: "text", text }]);
+      expect(textParts(text, people)).toEqual([{ kind: "text", text }]);
     }
-    const parts = text_parts('https://a.org/"onclick="x <b>https://b.org</b>', people);
+    const parts = textParts('https://a.org/"onclick="x <b>https://b.org</b>', people);
     expect(parts.filter(({ kind }) => kind === "link").map(({ text }) => text)).toEqual([
       "https://a.org/",
       "https://b.org",
@@ -132,7 +132,7 @@ describe("the text of a comment", () => {
   it("keeps every character", () => {
     const text = "a\n\n b\t@ada https://x.org. 😀 <script>";
     expect(
-      text_parts(text, people)
+      textParts(text, people)
         .map((part) => part.text)
         .join(""),
     ).toBe(text);
@@ -141,9 +141,9 @@ describe("the text of a comment", () => {
 
 describe("addresses of comments", () => {
   it("are read back", () => {
-    expect(comment_of(hash_of_comment(12))).toBe(12);
+    expect(commentOf(hashOfComment(12))).toBe(12);
     for (const hash of ["", "#comment=", "#comment=0", "#comment=x", "#comment=1e3", "#layer=1"])
-      expect(comment_of(hash)).toBeNull();
+      expect(commentOf(hash)).toBeNull();
   });
 });
 
@@ -172,11 +172,11 @@ describe("the comment tool", () => {
 });
 
 /** A ball of radius 1 around the origin, seen from the front (from −y). */
-function front_camera(): OrbitCamera {
+function frontCamera(): OrbitCamera {
   const camera = new OrbitCamera();
-  camera.set_model({ min: [-1, -1, -1], max: [1, 1, 1] }, "z");
+  camera.setModel({ min: [-1, -1, -1], max: [1, 1, 1] }, "z");
   camera.resize(800, 600);
-  camera.standard_view("front");
+  camera.standardView("front");
   return camera;
 }
 const front: PinPlace = { id: 1, position: [0, -1, 0], normal: [0, -1, 0] };
@@ -191,14 +191,14 @@ describe("what is seen of pins", () => {
   let sight: PinSight;
 
   beforeEach(() => {
-    camera = front_camera();
+    camera = frontCamera();
     places = [front, back, side];
     asked = [];
     surface = (pixels) => pixels.map(() => null);
     sight = new PinSight({
       camera: () => camera,
       places: () => places,
-      look_at: async (_, pixels) => {
+      lookAt: async (_, pixels) => {
         asked.push(pixels);
         return surface(pixels);
       },
@@ -207,7 +207,7 @@ describe("what is seen of pins", () => {
   });
 
   it("is what faces the camera while it moves", () => {
-    expect([front, back, side].map((place) => sight.is_seen(place))).toEqual([true, false, true]);
+    expect([front, back, side].map((place) => sight.isSeen(place))).toEqual([true, false, true]);
   });
 
   it("is what nothing lies before, once it rests", async () => {
@@ -215,17 +215,17 @@ describe("what is seen of pins", () => {
     surface = () => [front.position, back.position, [0.55, -1.5, 0]];
     await sight.look();
     expect(asked[0]).toHaveLength(3);
-    expect([front, back, side].map((place) => sight.is_seen(place))).toEqual([true, true, false]);
-    sight.camera_moved();
-    expect(sight.is_seen(side)).toBe(false);
-    expect(sight.is_seen(back)).toBe(false);
-    expect(sight.is_seen(front)).toBe(true);
+    expect([front, back, side].map((place) => sight.isSeen(place))).toEqual([true, true, false]);
+    sight.cameraMoved();
+    expect(sight.isSeen(side)).toBe(false);
+    expect(sight.isSeen(back)).toBe(false);
+    expect(sight.isSeen(front)).toBe(true);
   });
 
   it("is what the surface hides by no more than a hair", async () => {
     surface = () => [[0, -1.001, 0], [0, -1, 0], null];
     await sight.look();
-    expect([front, back, side].map((place) => sight.is_seen(place))).toEqual([true, false, true]);
+    expect([front, back, side].map((place) => sight.isSeen(place))).toEqual([true, false, true]);
   });
 
   it("is nothing that a section cuts away, which the server is not asked of", async () => {
@@ -233,15 +233,15 @@ describe("what is seen of pins", () => {
     surface = () => [back.position, back.position];
     await sight.look();
     expect(asked[0]).toHaveLength(2); // one place is asked of as two
-    expect([front, back, side].map((place) => sight.is_seen(place))).toEqual([false, true, false]);
+    expect([front, back, side].map((place) => sight.isSeen(place))).toEqual([false, true, false]);
   });
 
   it("is not answered for a camera that moved on", async () => {
     surface = (pixels) => pixels.map(() => [0, -9, 0]);
     const looking = sight.look();
-    sight.camera_moved();
+    sight.cameraMoved();
     await looking;
-    expect(sight.is_seen(front)).toBe(true);
+    expect(sight.isSeen(front)).toBe(true);
   });
 
   it("is asked of what lies in the picture, and of no more than the server takes", async () => {
@@ -267,15 +267,15 @@ describe("names behind an @", () => {
     { user: "bob", full_name: "Robert Ádám", color: "#aa3333" },
     { user: "carl", full_name: "", color: "#aa3333" },
   ];
-  const found = (word: string): string[] => people_like(people, word).map(({ user }) => user);
+  const found = (word: string): string[] => peopleLike(people, word).map(({ user }) => user);
 
   it("are begun where the caret stands behind one, and not in an address of a mail", () => {
-    expect(mention_begun("see @ad", 7)).toEqual({ at: 4, word: "ad" });
-    expect(mention_begun("see @ad now", 7)).toEqual({ at: 4, word: "ad" });
-    expect(mention_begun("@", 1)).toEqual({ at: 0, word: "" });
-    expect(mention_begun("see @ad now", 9)).toBeNull();
-    expect(mention_begun("bob@ad", 6)).toBeNull();
-    expect(mention_begun("see ad", 6)).toBeNull();
+    expect(mentionBegun("see @ad", 7)).toEqual({ at: 4, word: "ad" });
+    expect(mentionBegun("see @ad now", 7)).toEqual({ at: 4, word: "ad" });
+    expect(mentionBegun("@", 1)).toEqual({ at: 0, word: "" });
+    expect(mentionBegun("see @ad now", 9)).toBeNull();
+    expect(mentionBegun("bob@ad", 6)).toBeNull();
+    expect(mentionBegun("see ad", 6)).toBeNull();
   });
 
   it("are found by how they begin, then by parts of them and of full names, in any case and without accents", () => {
@@ -289,7 +289,7 @@ describe("names behind an @", () => {
       full_name: "",
       color: "#aa3333",
     }));
-    expect(people_like(many, "p")).toHaveLength(6);
+    expect(peopleLike(many, "p")).toHaveLength(6);
   });
 });
 
@@ -305,7 +305,7 @@ describe("the comments of a model", () => {
     ]);
 
   function open(): Comments {
-    const camera = front_camera();
+    const camera = frontCamera();
     const api = new Api(async (path, init) => {
       const call = `${init!.method} ${path}`;
       const headers = init!.headers as Record<string, string>;
@@ -318,7 +318,7 @@ describe("the comments of a model", () => {
       return new Response(status === 204 ? null : JSON.stringify(body), { status });
     });
     return new Comments(api, "1", {
-      view: { camera, fly_to: () => {} },
+      view: { camera, flyTo: () => {} },
       layers: { all: [], selected: null },
       tables: {},
       here: () => [],
@@ -348,18 +348,18 @@ describe("the comments of a model", () => {
   it("have pins for those of the chosen state, and for the one that is looked at", () => {
     const pins = (): number[] => comments.pins.map(({ first }) => first.id);
     expect(pins()).toEqual([1]);
-    comments.choose_state("all");
+    comments.chooseState("all");
     expect(pins().sort()).toEqual([1, 3]);
-    comments.choose_state("open");
+    comments.chooseState("open");
     comments.show(3);
     expect(pins()).toEqual([1, 3]);
-    comments.pins_shown = false;
+    comments.pinsShown = false;
     expect(pins()).toEqual([3]);
-    expect(comments.open_count).toBe(1);
+    expect(comments.openCount).toBe(1);
   });
 
   it("may name the people of the project, who are asked for once, and again where that failed", async () => {
-    expect(await comments.load_people()).toEqual([]);
+    expect(await comments.loadPeople()).toEqual([]);
     const dora = { user: "dora", full_name: "Dora D." };
     answers.set("GET /api/v1/projects/7/people?limit=1000", () => [
       200,
@@ -367,17 +367,17 @@ describe("the comments of a model", () => {
     ]);
     const asked = (): number => calls.filter(({ call }) => call.includes("/people")).length;
     expect(asked()).toBe(1);
-    expect(await Promise.all([comments.load_people(), comments.load_people()])).toEqual([
+    expect(await Promise.all([comments.loadPeople(), comments.loadPeople()])).toEqual([
       [dora],
       [dora],
     ]);
-    await comments.load_people();
+    await comments.loadPeople();
     expect(asked()).toBe(2);
     expect(comments.people.has("dora")).toBe(true);
   });
 
   it("follow what others do", () => {
-    comments.on_event({
+    comments.onEvent({
       op: "comment",
       event: "created",
       comment_id: 4,
@@ -386,13 +386,13 @@ describe("the comments of a model", () => {
     });
     expect(comments.find(1)!.replies.map(({ id }) => id)).toEqual([2, 4]);
     expect(comments.said).toContain("Look");
-    comments.on_event({
+    comments.onEvent({
       op: "comment",
       event: "changed",
       comment_id: 1,
       comment: written(1, { version: 3, state: "resolved" }),
     });
-    comments.on_event({
+    comments.onEvent({
       op: "comment",
       event: "changed",
       comment_id: 1,
@@ -400,7 +400,7 @@ describe("the comments of a model", () => {
     });
     expect(comments.find(1)!.first.state).toBe("resolved");
     comments.show(1);
-    comments.on_event({ op: "comment", event: "deleted", comment_id: 1 });
+    comments.onEvent({ op: "comment", event: "deleted", comment_id: 1 });
     expect(comments.find(1)).toBeNull();
     expect(comments.card).toBeNull();
   });
@@ -408,18 +408,18 @@ describe("the comments of a model", () => {
   it("that name this person are shown as a notice, but to who reads the thread", () => {
     let told: readonly string[] = [];
     const stop = notices.subscribe((shown) => (told = shown.map(({ detail }) => detail)));
-    const reply_with = (id: number, text: string): void =>
-      comments.on_event({
+    const replyWith = (id: number, text: string): void =>
+      comments.onEvent({
         op: "comment",
         event: "created",
         comment_id: id,
         comment: reply(id, 1, { user: "bob", text }),
         user: "bob",
       });
-    reply_with(4, "@ada first");
-    reply_with(5, "for everybody");
+    replyWith(4, "@ada first");
+    replyWith(5, "for everybody");
     comments.show(1);
-    reply_with(6, "@ada second");
+    replyWith(6, "@ada second");
     expect(told).toEqual(["@ada first"]);
     expect(comments.said).toContain("@ada second");
     stop();
@@ -429,14 +429,14 @@ describe("the comments of a model", () => {
     // comment 3 was deleted while the connection was lost
     list(written(1), reply(2, 1, { user: "bob" }));
     comments.welcome("ada");
-    comments.on_event({
+    comments.onEvent({
       op: "comment",
       event: "created",
       comment_id: 4,
       comment: written(4, { user: "bob" }),
       user: "bob",
     });
-    comments.on_event({ op: "comment", event: "deleted", comment_id: 2 });
+    comments.onEvent({ op: "comment", event: "deleted", comment_id: 2 });
     await settle();
     expect(comments.threads.map(({ first, replies }) => [first.id, replies.length])).toEqual([
       [4, 0],
@@ -457,32 +457,32 @@ describe("the comments of a model", () => {
   });
 
   it("are read once they were looked at, also by the next page", async () => {
-    expect(comments.unread_count).toBe(1);
-    comments.mark_read(comments.find(1)!);
-    expect(comments.unread_count).toBe(0);
-    comments.on_event({
+    expect(comments.unreadCount).toBe(1);
+    comments.markRead(comments.find(1)!);
+    expect(comments.unreadCount).toBe(0);
+    comments.onEvent({
       op: "comment",
       event: "created",
       comment_id: 4,
       comment: reply(4, 1, { user: "bob" }),
       user: "bob",
     });
-    expect(comments.unread_count).toBe(1);
-    comments.mark_all_read();
+    expect(comments.unreadCount).toBe(1);
+    comments.markAllRead();
     comments = open();
     comments.welcome("ada");
     await settle();
-    expect(comments.unread_count).toBe(0);
+    expect(comments.unreadCount).toBe(0);
     comments.welcome("carl");
     await settle();
-    expect(comments.unread_count).toBe(2);
+    expect(comments.unreadCount).toBe(2);
   });
 
   it("keep what is written for the next page, and for its person alone", async () => {
     await comments.begin({ x: 1, y: 1 });
     expect(comments.card).toBe("new");
-    comments.set_draft("new", { text: "Half a th" });
-    comments.set_draft("reply 1", { text: "Yes" });
+    comments.setDraft("new", { text: "Half a th" });
+    comments.setDraft("reply 1", { text: "Yes" });
     expect(comments.close()).toBe(true);
     expect(comments.close()).toBe(false);
     comments = open();
@@ -495,18 +495,18 @@ describe("the comments of a model", () => {
 
   it("of which nothing was written leave nothing behind", async () => {
     await comments.begin({ x: 1, y: 1 });
-    comments.set_draft("new", { text: "  " });
+    comments.setDraft("new", { text: "  " });
     comments.close();
     expect(comments.draft("new")).toBeNull();
   });
 
   it("are sent again with the key of the same text", async () => {
-    comments.set_draft("reply 1", { text: "Yes" });
-    await expect(comments.send_reply(1)).rejects.toThrow();
-    await expect(comments.send_reply(1)).rejects.toThrow();
-    comments.set_draft("reply 1", { text: "Yes!" });
+    comments.setDraft("reply 1", { text: "Yes" });
+    await expect(comments.sendReply(1)).rejects.toThrow();
+    await expect(comments.sendReply(1)).rejects.toThrow();
+    comments.setDraft("reply 1", { text: "Yes!" });
     answers.set("POST /api/v1/comments/1/replies", () => [201, reply(9, 1, { text: "Yes!" })]);
-    await comments.send_reply(1);
+    await comments.sendReply(1);
     const keys = calls
       .filter(({ call }) => call === "POST /api/v1/comments/1/replies")
       .map(({ key }) => key);

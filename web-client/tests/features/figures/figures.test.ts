@@ -3,26 +3,26 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { FacePick } from "../../../src/features/figures/face-pick";
 import { Figures } from "../../../src/features/figures/figures";
-import { is_busy, LayerJobs } from "../../../src/session/layer-jobs";
+import { isBusy, LayerJobs } from "../../../src/session/layer-jobs";
 import { notices, type Notice } from "../../../src/ui/notices";
 import { texts } from "../../../src/texts";
 import { Api, ApiError } from "../../../src/net/api";
 import { OrbitCamera } from "../../../src/math/camera";
 import {
-  figure_choices,
-  figure_request,
+  figureChoices,
+  figureRequest,
   kDirections,
   kPapers,
   kScaleRange,
   kScales,
-  preview_request,
-  read_scale,
-  scale_text,
-  usual_figure,
+  previewRequest,
+  readScale,
+  scaleText,
+  usualFigure,
   type FigureChoices,
   type FigureWords,
 } from "../../../src/domain/figures";
-import { set_locale } from "../../../src/core/locale";
+import { setLocale } from "../../../src/core/locale";
 import type { ViewContent } from "../../../src/domain/views";
 import { FaceTool } from "../../../src/features/figures/face-tool";
 import { OrbitTool } from "../../../src/tools/navigate";
@@ -50,7 +50,7 @@ describe("a scale that is typed", () => {
     ["0.5", 0.5],
     ["100:1", 0.01],
   ];
-  it.each(scales)("%s is read", (typed, scale) => expect(read_scale(typed)).toBe(scale));
+  it.each(scales)("%s is read", (typed, scale) => expect(readScale(typed)).toBe(scale));
 
   it.each([
     "",
@@ -67,12 +67,12 @@ describe("a scale that is typed", () => {
     "1000:1",
     "Infinity",
     "NaN",
-  ])("%s is none", (typed) => expect(read_scale(typed)).toBeNaN());
+  ])("%s is none", (typed) => expect(readScale(typed)).toBeNaN());
 
   it("is read as it is written, in the language of the page", () => {
     try {
       for (const language of ["en", "de", "es"] as const) {
-        set_locale(language, true, []);
+        setLocale(language, true, []);
         fc.assert(
           fc.property(
             fc.double({
@@ -85,17 +85,17 @@ describe("a scale that is typed", () => {
                 kScaleRange.most,
                 Math.max(kScaleRange.least, Math.exp(power)),
               );
-              expect(read_scale(scale_text(scale)) / scale).toBeCloseTo(1, 4);
+              expect(readScale(scaleText(scale)) / scale).toBeCloseTo(1, 4);
             },
           ),
         );
-        for (const scale of kScales) expect(read_scale(scale_text(scale))).toBe(scale);
+        for (const scale of kScales) expect(readScale(scaleText(scale))).toBe(scale);
       }
-      expect(scale_text(2.5)).toBe("1 : 2,5");
+      expect(scaleText(2.5)).toBe("1 : 2,5");
     } finally {
-      set_locale("en", true, []);
+      setLocale("en", true, []);
     }
-    expect([scale_text(0.5), scale_text(2.5), scale_text(500)]).toEqual([
+    expect([scaleText(0.5), scaleText(2.5), scaleText(500)]).toEqual([
       "2 : 1",
       "1 : 2.5",
       "1 : 500",
@@ -104,7 +104,7 @@ describe("a scale that is typed", () => {
 });
 
 describe("choices that a browser kept", () => {
-  const a_choice: fc.Arbitrary<FigureChoices> = fc.record({
+  const aChoice: fc.Arbitrary<FigureChoices> = fc.record({
     from: fc.constantFrom("camera" as const, "face" as const, ...kDirections),
     scale: fc.option(fc.constantFrom(...kScales, 0.01, 1_000_000, 37.5)),
     paper: fc.constantFrom(...kPapers),
@@ -117,16 +117,16 @@ describe("choices that a browser kept", () => {
   it("come back", () => {
     fc.assert(
       fc.property(
-        a_choice,
+        aChoice,
         (choices) =>
-          void expect(figure_choices(JSON.parse(JSON.stringify(choices)))).toEqual(choices),
+          void expect(figureChoices(JSON.parse(JSON.stringify(choices)))).toEqual(choices),
       ),
     );
   });
 
   it("are the usual ones where they are none, one by one", () => {
     for (const nonsense of [null, undefined, 3, "x", [], {}])
-      expect(figure_choices(nonsense)).toEqual(usual_figure());
+      expect(figureChoices(nonsense)).toEqual(usualFigure());
     const kept = {
       from: "north",
       scale: "5",
@@ -137,23 +137,22 @@ describe("choices that a browser kept", () => {
       legend: 1,
       more: true,
     };
-    expect(figure_choices(kept)).toEqual(usual_figure());
-    expect(figure_choices({ ...kept, paper: "a3", dpi: 72 })).toEqual({
-      ...usual_figure(),
+    expect(figureChoices(kept)).toEqual(usualFigure());
+    expect(figureChoices({ ...kept, paper: "a3", dpi: 72 })).toEqual({
+      ...usualFigure(),
       paper: "a3",
       dpi: 72,
     });
     for (const scale of [0, -1, 0.001, 2e6, Number.NaN])
-      expect(figure_choices({ scale }).scale).toBeNull();
-    for (const dpi of [49, 601, 0]) expect(figure_choices({ dpi }).dpi).toBe(300);
+      expect(figureChoices({ scale }).scale).toBeNull();
+    for (const dpi of [49, 601, 0]) expect(figureChoices({ dpi }).dpi).toBe(300);
   });
 
   it("are the usual ones whatever stands there", () => {
     fc.assert(
       fc.property(
         fc.anything(),
-        (kept) =>
-          void expect(Object.keys(figure_choices(kept))).toEqual(Object.keys(usual_figure())),
+        (kept) => void expect(Object.keys(figureChoices(kept))).toEqual(Object.keys(usualFigure())),
       ),
     );
   });
@@ -161,7 +160,7 @@ describe("choices that a browser kept", () => {
 
 describe("what is asked for", () => {
   it("is all that the person sees, and only what was chosen or written besides", () => {
-    expect(figure_request(shown, usual_figure(), unwritten, null, null)).toEqual({
+    expect(figureRequest(shown, usualFigure(), unwritten, null, null)).toEqual({
       ...shown,
       paper: "a4",
       dpi: 300,
@@ -178,7 +177,7 @@ describe("what is asked for", () => {
       legend: false,
     };
     const words = { title: "West wall ", caption: "After\ncleaning", credit: "Museum" };
-    expect(figure_request(shown, choices, words, face, { layer: 7, column: "name" })).toEqual({
+    expect(figureRequest(shown, choices, words, face, { layer: 7, column: "name" })).toEqual({
       ...shown,
       direction: "front",
       scale: 5,
@@ -196,14 +195,14 @@ describe("what is asked for", () => {
 
   it("is a named view's where one is meant", () => {
     expect(
-      figure_request({ view: "12" }, { ...usual_figure(), from: "top" }, unwritten, null, null),
+      figureRequest({ view: "12" }, { ...usualFigure(), from: "top" }, unwritten, null, null),
     ).toEqual({ view: "12", direction: "top", paper: "a4", dpi: 300, format: "pdf", legend: true });
   });
 
   it("is square to a face that was picked, and nothing before", () => {
-    const choices: FigureChoices = { ...usual_figure(), from: "face" };
-    expect(figure_request(shown, choices, unwritten, null, null)).toBeNull();
-    const request = figure_request(shown, choices, unwritten, face, null)!;
+    const choices: FigureChoices = { ...usualFigure(), from: "face" };
+    expect(figureRequest(shown, choices, unwritten, null, null)).toBeNull();
+    const request = figureRequest(shown, choices, unwritten, face, null)!;
     expect([request.normal, request.center, request.direction]).toEqual([
       face.normal,
       face.center,
@@ -212,17 +211,17 @@ describe("what is asked for", () => {
   });
 
   it("is the same sheet as a small picture for the preview", () => {
-    const request = figure_request(
+    const request = figureRequest(
       shown,
-      { ...usual_figure(), paper: "a3", dpi: 600, scale: 5 },
+      { ...usualFigure(), paper: "a3", dpi: 600, scale: 5 },
       unwritten,
       null,
       null,
     )!;
-    const preview = preview_request(request);
+    const preview = previewRequest(request);
     expect(preview).toEqual({ ...request, dpi: preview.dpi, format: "png" });
     for (const paper of kPapers) {
-      const { dpi = 0 } = preview_request({ paper });
+      const { dpi = 0 } = previewRequest({ paper });
       expect(Number.isInteger(dpi) && dpi >= 50 && dpi <= 100).toBe(true);
     }
   });
@@ -272,7 +271,7 @@ beforeEach(() => {
     );
     return Promise.race([answer, stopped]);
   });
-  unsubscribe = notices.subscribe((shown_now) => (told = shown_now));
+  unsubscribe = notices.subscribe((shownNow) => (told = shownNow));
   vi.stubGlobal("document", {
     createElement: () => ({
       click(this: { download: string }) {
@@ -341,7 +340,7 @@ describe("a figure", () => {
     await make();
     figures.awaited = null;
     await end(job("done", { file }));
-    expect([saved, jobs.entries.length, is_busy(jobs.entries[0]!)]).toEqual([[], 1, false]);
+    expect([saved, jobs.entries.length, isBusy(jobs.entries[0]!)]).toEqual([[], 1, false]);
     expect(told.map(({ title, detail }) => [title, detail])).toEqual([
       [texts.figures.ready, "pot-front.pdf"],
     ]);
@@ -415,22 +414,22 @@ describe("a face that is asked for", () => {
 
   beforeEach(() => {
     camera = new OrbitCamera();
-    camera.set_model({ min: [-50, -50, -50], max: [50, 50, 50] }, "z");
+    camera.setModel({ min: [-50, -50, -50], max: [50, 50, 50] }, "z");
     camera.resize(400, 400);
-    camera.standard_view("front"); // looks along +y
+    camera.standardView("front"); // looks along +y
     turned = 0;
     const navigator = { orbit: () => void (turned += 1), pan: () => {}, tap: () => {} };
     pick = new FacePick(api, {
       view: { camera } as never,
       model: () => ({ id: 9 }) as never,
       begin: () => tools.borrow("face"),
-      end: () => tools.give_back(),
+      end: () => tools.giveBack(),
     });
     const host = {
       ...navigator,
-      tap: (sample: { x: number; y: number }) => void pick.take_at(sample),
-      take_in_middle: () => pick.take_in_middle(),
-      give_up: () => pick.give_up(),
+      tap: (sample: { x: number; y: number }) => void pick.takeAt(sample),
+      takeInMiddle: () => pick.takeInMiddle(),
+      giveUp: () => pick.giveUp(),
     };
     tools = new ToolManager(
       [
@@ -528,8 +527,8 @@ describe("a face that is asked for", () => {
           orbit: vi.fn(),
           pan: vi.fn(),
           tap: vi.fn(),
-          take_in_middle: vi.fn(),
-          give_up: vi.fn(),
+          takeInMiddle: vi.fn(),
+          giveUp: vi.fn(),
         }),
       ],
       "pan",
@@ -537,8 +536,8 @@ describe("a face that is asked for", () => {
     );
     manager.borrow("face");
     manager.borrow("face");
-    manager.give_back();
-    manager.give_back();
+    manager.giveBack();
+    manager.giveBack();
     expect([manager.active, before.activate.mock.calls.length, begun.mock.calls.length]).toEqual([
       "pan",
       1,

@@ -24,7 +24,7 @@ const problem = (status: number): NonNullable<Job["problem"]> => ({
 function importing(...answers: (Job | number)[]): { imports: Imports; sent: string[] } {
   const sent: string[] = [];
   const api = {
-    upload_model: (_files: unknown, name: string) => {
+    uploadModel: (_files: unknown, name: string) => {
       sent.push(name);
       return { done: Promise.resolve(job("queued")), cancel: () => {} };
     },
@@ -52,9 +52,7 @@ describe("an import", () => {
       const first = imports.start(scan, "default");
       await vi.runAllTimersAsync();
       expect(await first).toEqual({ model: null, problem: problem(503) });
-      expect(imports.entries).toMatchObject([
-        { name: "a/mesh", state: "failed", may_repeat: true },
-      ]);
+      expect(imports.entries).toMatchObject([{ name: "a/mesh", state: "failed", mayRepeat: true }]);
       const second = imports.repeat(imports.entries[0]!.key);
       await vi.runAllTimersAsync();
       expect(await second).toEqual({ model: 3, problem: null });
@@ -71,7 +69,7 @@ describe("an import", () => {
       const ending = imports.start(scan, "default");
       await vi.runAllTimersAsync();
       expect((await ending).problem?.status).toBe(422);
-      expect(imports.entries).toMatchObject([{ state: "failed", may_repeat: false }]);
+      expect(imports.entries).toMatchObject([{ state: "failed", mayRepeat: false }]);
     } finally {
       vi.useRealTimers();
     }

@@ -17,7 +17,7 @@ class FakeServer {
     this.meanwhile = null;
     return answer;
   };
-  change_project = async (
+  changeProject = async (
     _: number | string,
     change: Partial<Project>,
     etag: string,
@@ -76,7 +76,7 @@ describe("a change of a project", () => {
 
   it("says what else goes wrong", async () => {
     const server = new FakeServer();
-    server.change_project = () =>
+    server.changeProject = () =>
       Promise.reject(new ApiError({ status: 403, title: "Not allowed" }));
     await expect(new ProjectChange(server, server.now).save(wanted, false)).rejects.toMatchObject({
       status: 403,

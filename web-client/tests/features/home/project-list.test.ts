@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { is_one_of_several, list_projects } from "../../../src/features/home/project-list";
+import { isOneOfSeveral, listProjects } from "../../../src/features/home/project-list";
 import type { Project } from "../../../src/core/protocol.gen";
 import type { Model, Role } from "../../../src/core/types";
 
@@ -13,7 +13,7 @@ const project = (slug: string, name = slug, role: Role = "viewer"): Project => (
 });
 const model = (id: number, of: string): Model => ({ id, project: of }) as Model;
 const listed = (projects: Project[], models: Model[]): string[] =>
-  list_projects(projects, models).map(({ project: { slug }, models: own }) =>
+  listProjects(projects, models).map(({ project: { slug }, models: own }) =>
     [slug, ...own.map(({ id }) => id)].join(" "),
   );
 
@@ -40,13 +40,13 @@ describe("projects to choose among", () => {
   });
 
   it("tell whether one of them stands beside others", () => {
-    expect(is_one_of_several("villa", [project("default"), project("villa")])).toBe(true);
-    expect(is_one_of_several("gone", [project("default"), project("villa")])).toBe(false);
-    expect(is_one_of_several("default", [project("default"), project("villa")])).toBe(true);
-    expect(
-      is_one_of_several("villa", [project("default"), project("villa"), project("site")]),
-    ).toBe(true);
-    expect(is_one_of_several("default", [project("default")])).toBe(false);
+    expect(isOneOfSeveral("villa", [project("default"), project("villa")])).toBe(true);
+    expect(isOneOfSeveral("gone", [project("default"), project("villa")])).toBe(false);
+    expect(isOneOfSeveral("default", [project("default"), project("villa")])).toBe(true);
+    expect(isOneOfSeveral("villa", [project("default"), project("villa"), project("site")])).toBe(
+      true,
+    );
+    expect(isOneOfSeveral("default", [project("default")])).toBe(false);
   });
 
   it("may be none", () => {

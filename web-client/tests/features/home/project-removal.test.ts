@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { is_name_of, remove_project } from "../../../src/features/home/project-removal";
+import { isNameOf, removeProject } from "../../../src/features/home/project-removal";
 import { ApiError } from "../../../src/net/api";
 import type { Project, Table } from "../../../src/core/protocol.gen";
 
@@ -14,27 +14,27 @@ class FakeServer {
   readonly faults = new Map<number, ApiError>();
 
   constructor(
-    private readonly names_: Map<number, number[]>,
-    private has_project_ = true,
+    private readonly _names: Map<number, number[]>,
+    private _hasProject = true,
   ) {}
 
-  async delete_table(id: number | string): Promise<void> {
+  async deleteTable(id: number | string): Promise<void> {
     const at = Number(id);
     const fault = this.faults.get(at);
     this.faults.delete(at);
     if (fault) throw fault;
-    if (!this.names_.has(at)) throw new ApiError({ status: 404, title: "Not found" });
-    for (const [other, named] of this.names_)
+    if (!this._names.has(at)) throw new ApiError({ status: 404, title: "Not found" });
+    for (const [other, named] of this._names)
       if (other !== at && named.includes(at))
         throw new ApiError({ status: 409, title: "Table in use", detail: `named by ${other}` });
-    this.names_.delete(at);
+    this._names.delete(at);
     this.done.push(at);
   }
-  async delete_project(slug: number | string): Promise<void> {
-    if (this.names_.size > 0)
+  async deleteProject(slug: number | string): Promise<void> {
+    if (this._names.size > 0)
       throw new ApiError({ status: 409, title: "Conflict", detail: "still has tables" });
-    if (!this.has_project_) throw new ApiError({ status: 404, title: "Not found" });
-    this.has_project_ = false;
+    if (!this._hasProject) throw new ApiError({ status: 404, title: "Not found" });
+    this._hasProject = false;
     this.done.push(slug);
   }
 }
@@ -48,7 +48,7 @@ describe("deleting a project", () => {
         [3, [2, 3]],
       ]),
     );
-    await remove_project(server, villa, [table(1), table(2), table(3)]);
+    await removeProject(server, villa, [table(1), table(2), table(3)]);
     expect(server.done).toEqual([3, 2, 1, "villa"]);
   });
 
@@ -61,7 +61,7 @@ describe("deleting a project", () => {
       ]),
     );
     await expect(
-      remove_project(server, villa, [table(1), table(2), table(3)]),
+      removeProject(server, villa, [table(1), table(2), table(3)]),
     ).rejects.toMatchObject({ status: 409, problem: { title: "Table in use" } });
     expect(server.done).toEqual([3]);
   });
@@ -74,18 +74,18 @@ describe("deleting a project", () => {
       ]),
     );
     server.faults.set(2, new ApiError({ status: 503, title: "Busy" }));
-    await expect(remove_project(server, villa, [table(1), table(2)])).rejects.toMatchObject({
+    await expect(removeProject(server, villa, [table(1), table(2)])).rejects.toMatchObject({
       status: 503,
     });
     expect(server.done).toEqual([1]);
-    await remove_project(server, villa, [table(1), table(2)]);
+    await removeProject(server, villa, [table(1), table(2)]);
     expect(server.done).toEqual([1, 2, "villa"]);
-    await remove_project(server, villa, []); // somebody else was faster
+    await removeProject(server, villa, []); // somebody else was faster
   });
 
   it("fails where there is more in it than was shown", async () => {
     const server = new FakeServer(new Map([[1, []]]));
-    await expect(remove_project(server, villa, [])).rejects.toMatchObject({
+    await expect(removeProject(server, villa, [])).rejects.toMatchObject({
       status: 409,
       problem: { detail: "still has tables" },
     });
@@ -94,11 +94,11 @@ describe("deleting a project", () => {
 
 describe("the name that is typed", () => {
   it("is the project's as it is seen", () => {
-    expect(is_name_of("Villa Ñuño", villa)).toBe(true);
+    expect(isNameOf("Villa Ñuño", villa)).toBe(true);
     // a keyboard that composes letters
-    expect(is_name_of("  Villa N\u0303un\u0303o ", villa)).toBe(true);
+    expect(isNameOf("  Villa N\u0303un\u0303o ", villa)).toBe(true);
     for (const other of ["", "villa ñuño", "Villa", "Villa Ñuño 2"])
-      expect(is_name_of(other, villa)).toBe(false);
-    expect(is_name_of(" ", { ...villa, name: "\u2003" })).toBe(false);
+      expect(isNameOf(other, villa)).toBe(false);
+    expect(isNameOf(" ", { ...villa, name: "\u2003" })).toBe(false);
   });
 });

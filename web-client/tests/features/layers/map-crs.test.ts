@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { crs_in_doubt, crs_query, kNotAsked } from "../../../src/features/layers/map-crs";
+import { crsInDoubt, crsQuery, kNotAsked } from "../../../src/features/layers/map-crs";
 import type { MapContents, Model } from "../../../src/core/types";
 
 const map = (crs?: string): MapContents => ({
@@ -11,16 +11,16 @@ const model = (crs: string): Model => ({ crs }) as Model;
 
 describe("the coordinate system of a map", () => {
   it("is in doubt only where the map names one and the model has none", () => {
-    expect(crs_in_doubt(map("EPSG:25830"), model(""))).toBe("EPSG:25830");
-    expect(crs_in_doubt(map("EPSG:25830"), model("EPSG:25830"))).toBeNull();
-    expect(crs_in_doubt(map(), model(""))).toBeNull();
-    expect(crs_in_doubt(null, model(""))).toBeNull();
-    expect(crs_in_doubt(map("EPSG:25830"), null)).toBeNull();
+    expect(crsInDoubt(map("EPSG:25830"), model(""))).toBe("EPSG:25830");
+    expect(crsInDoubt(map("EPSG:25830"), model("EPSG:25830"))).toBeNull();
+    expect(crsInDoubt(map(), model(""))).toBeNull();
+    expect(crsInDoubt(null, model(""))).toBeNull();
+    expect(crsInDoubt(map("EPSG:25830"), null)).toBeNull();
   });
 
   it("is sent once it was taken", () => {
-    expect(crs_query(kNotAsked)).toEqual({});
-    expect(crs_query({ asked: true, taken: null })).toEqual({});
-    expect(crs_query({ asked: true, taken: "EPSG:25830" })).toEqual({ crs: "EPSG:25830" });
+    expect(crsQuery(kNotAsked)).toEqual({});
+    expect(crsQuery({ asked: true, taken: null })).toEqual({});
+    expect(crsQuery({ asked: true, taken: "EPSG:25830" })).toEqual({ crs: "EPSG:25830" });
   });
 });

@@ -1,15 +1,15 @@
 import { describe, expect, it } from "vitest";
 
 import {
-  color_keys,
-  color_rows,
-  file_kind,
-  picture_modes,
-  table_kind,
-  unknown_file,
-  world_numbers,
+  colorKeys,
+  colorRows,
+  fileKind,
+  pictureModes,
+  tableKind,
+  unknownFile,
+  worldNumbers,
 } from "../../../src/features/layers/map-file";
-import { formats_of, plan_of, raster_format } from "../../../src/features/layers/raster-files";
+import { formatsOf, planOf, rasterFormat } from "../../../src/features/layers/raster-files";
 import type { Layer, MapColor } from "../../../src/core/types";
 
 describe("raster files", () => {
@@ -21,15 +21,15 @@ describe("raster files", () => {
     ["x.jpg", null],
     ["png", null],
     ["", null],
-  ])("%s", (name, format) => expect(raster_format(name)).toBe(format));
+  ])("%s", (name, format) => expect(rasterFormat(name)).toBe(format));
 
   it("PNG is offered for what it can hold", () => {
-    expect(formats_of({ type: "u16" } as Layer)).toEqual(["tif", "png", "npy"]);
-    expect(formats_of({ type: "f32" } as Layer)).toEqual(["tif", "npy"]);
+    expect(formatsOf({ type: "u16" } as Layer)).toEqual(["tif", "png", "npy"]);
+    expect(formatsOf({ type: "f32" } as Layer)).toEqual(["tif", "npy"]);
   });
 
   it("outlines are laid on the ground, whichever axis is up", () => {
-    expect(["x", "y", "z", "-x", "-y", "-z"].map(plan_of)).toEqual([
+    expect(["x", "y", "z", "-x", "-y", "-z"].map(planOf)).toEqual([
       "-x",
       "-y",
       "-z",
@@ -50,10 +50,10 @@ describe("files that are painted over a layer", () => {
     [["a.csv", "b.csv"], null],
     [["d.shp", "notes.doc"], null],
     [[], null],
-  ])("%s", (names, kind) => expect(file_kind(names)).toBe(kind));
+  ])("%s", (names, kind) => expect(fileKind(names)).toBe(kind));
 
   it("the one that is not taken is named", () =>
-    expect(unknown_file(["d.shp", "notes.doc"])).toBe("notes.doc"));
+    expect(unknownFile(["d.shp", "notes.doc"])).toBe("notes.doc"));
 
   it.each([
     ["x,y,z,value\n1,2,3,4", "readings"],
@@ -61,12 +61,12 @@ describe("files that are painted over a layer", () => {
     ["0.5\n0.7\n", "vertices"],
     ["quality\n0.5\n", "vertices"],
     ["", "vertices"],
-  ])("%s", (text, kind) => expect(table_kind(text)).toBe(kind));
+  ])("%s", (text, kind) => expect(tableKind(text)).toBe(kind));
 
   it("a world file is six numbers", () => {
-    expect(world_numbers("0.5\r\n0\r\n0\r\n-0.5\r\n100\r\n2e2\r\n")).toBe("0.5,0,0,-0.5,100,2e2");
+    expect(worldNumbers("0.5\r\n0\r\n0\r\n-0.5\r\n100\r\n2e2\r\n")).toBe("0.5,0,0,-0.5,100,2e2");
     for (const wrong of ["", "1 2 3 4 5", "1 2 3 4 5 x", "1 2 3 4 5 6 7"])
-      expect(world_numbers(wrong)).toBe(null);
+      expect(worldNumbers(wrong)).toBe(null);
   });
 });
 
@@ -79,19 +79,21 @@ describe("what a picture's places get", () => {
 
   it("is what the picture holds", () => {
     const picture = { kind: "picture", format: "tiff" } as const;
-    expect(picture_modes({ ...picture, bands: 2, has_colors: false })).toEqual(["band"]);
-    expect(picture_modes({ ...picture, bands: 1, has_colors: true, is_rgb: false })).toEqual([
+    expect(pictureModes({ ...picture, bands: 2, has_colors: false })).toEqual(["band"]);
+    expect(pictureModes({ ...picture, bands: 1, has_colors: true, is_rgb: false })).toEqual([
       "band",
       "luminance",
     ]);
     const colors = [color("#ffffff", true), color("#ff0000")];
-    expect(picture_modes({ ...picture, bands: 3, has_colors: true, is_rgb: true, colors })).toEqual(
-      ["colors", "luminance", "band"],
-    );
+    expect(pictureModes({ ...picture, bands: 3, has_colors: true, is_rgb: true, colors })).toEqual([
+      "colors",
+      "luminance",
+      "band",
+    ]);
   });
 
   it("by colour: the classes of the layer first, then new numbers; not the paper", () => {
-    const rows = color_rows(
+    const rows = colorRows(
       [color("#fff000", true), color("#ff0000"), color("#00ff00"), color("#0000ff")],
       [3, 4],
     );
@@ -101,9 +103,9 @@ describe("what a picture's places get", () => {
       [true, "4"],
       [true, "5"],
     ]);
-    expect(color_keys(rows)).toBe('{"#ff0000":3,"#00ff00":4,"#0000ff":5}');
-    expect(color_keys(rows.map((row) => ({ ...row, used: false })))).toBe(null);
-    expect(color_keys(rows.map((row) => ({ ...row, value: "" })))).toBe(null);
-    expect(color_rows([color("#ff0000")], [])[0]!.value).toBe("1");
+    expect(colorKeys(rows)).toBe('{"#ff0000":3,"#00ff00":4,"#0000ff":5}');
+    expect(colorKeys(rows.map((row) => ({ ...row, used: false })))).toBe(null);
+    expect(colorKeys(rows.map((row) => ({ ...row, value: "" })))).toBe(null);
+    expect(colorRows([color("#ff0000")], [])[0]!.value).toBe("1");
   });
 });

@@ -1,14 +1,14 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
-import { is_busy, LayerJobs } from "../../../src/session/layer-jobs";
+import { isBusy, LayerJobs } from "../../../src/session/layer-jobs";
 import {
   kShapeGroups,
-  other_models,
-  recipe_of,
+  otherModels,
+  recipeOf,
   type ShapeInput,
 } from "../../../src/features/layers/shape-kinds";
 import { texts } from "../../../src/texts";
-import { likely_tolerance_mm, share_text } from "../../../src/features/layers/transfer-dialog";
+import { likelyToleranceMm, shareText } from "../../../src/features/layers/transfer-dialog";
 import { Api } from "../../../src/net/api";
 import type { Job, Model } from "../../../src/core/types";
 
@@ -24,20 +24,20 @@ const input: ShapeInput = {
 
 describe("a recipe from what was filled in", () => {
   it("leaves out what is empty or not of its kind", () => {
-    expect(recipe_of({ ...input, distance: "5", absolute: true, model: "7" })).toEqual({
+    expect(recipeOf({ ...input, distance: "5", absolute: true, model: "7" })).toEqual({
       kind: "roughness",
     });
-    expect(recipe_of({ ...input, radius: " 2.5 " })).toEqual({ kind: "roughness", radius_mm: 2.5 });
-    expect(recipe_of({ ...input, kind: "height", absolute: true })).toEqual({
+    expect(recipeOf({ ...input, radius: " 2.5 " })).toEqual({ kind: "roughness", radius_mm: 2.5 });
+    expect(recipeOf({ ...input, kind: "height", absolute: true })).toEqual({
       kind: "height",
       absolute: true,
     });
-    expect(recipe_of({ ...input, kind: "model_distance", model: "7", distance: "30" })).toEqual({
+    expect(recipeOf({ ...input, kind: "model_distance", model: "7", distance: "30" })).toEqual({
       kind: "model_distance",
       model: "7",
       distance_mm: 30,
     });
-    expect(recipe_of({ ...input, kind: "vertex_property", property: "pot.ply/a/b" })).toEqual({
+    expect(recipeOf({ ...input, kind: "vertex_property", property: "pot.ply/a/b" })).toEqual({
       kind: "vertex_property",
       source: "pot.ply",
       property: "a/b",
@@ -45,22 +45,22 @@ describe("a recipe from what was filled in", () => {
   });
   it("takes a number of rays for openness alone, within the server's bounds", () => {
     const openness = { ...input, kind: "ambient_occlusion" as const };
-    expect(recipe_of({ ...openness, rays: "256" })).toEqual({
+    expect(recipeOf({ ...openness, rays: "256" })).toEqual({
       kind: "ambient_occlusion",
       rays: 256,
     });
-    expect(recipe_of({ ...input, rays: "256" })).toEqual({ kind: "roughness" });
+    expect(recipeOf({ ...input, rays: "256" })).toEqual({ kind: "roughness" });
     for (const rays of ["15", "1025", "20.5", "many"])
-      expect(recipe_of({ ...openness, rays })).toMatchObject({ field: "rays" });
+      expect(recipeOf({ ...openness, rays })).toMatchObject({ field: "rays" });
   });
   it("names the field that is wrong", () => {
     for (const radius of ["0", "-3", "wide"])
-      expect(recipe_of({ ...input, radius })).toEqual({
+      expect(recipeOf({ ...input, radius })).toEqual({
         problem: texts.shape.bad_length,
         field: "radius",
       });
-    expect(recipe_of({ ...input, kind: "model_distance" })).toMatchObject({ field: "model" });
-    expect(recipe_of({ ...input, kind: "vertex_property" })).toMatchObject({ field: "property" });
+    expect(recipeOf({ ...input, kind: "model_distance" })).toMatchObject({ field: "model" });
+    expect(recipeOf({ ...input, kind: "vertex_property" })).toMatchObject({ field: "property" });
   });
   it("has words for every kind that the server knows", () => {
     const kinds = kShapeGroups.flatMap((group) => group.kinds.map(({ kind }) => kind));
@@ -74,16 +74,16 @@ describe("the other model", () => {
   const model = (id: number, project: string): Model => ({ id, project }) as unknown as Model;
   it("is never the same, and those of the project come first", () => {
     const all = [model(1, "b"), model(2, "a"), model(3, "a")];
-    expect(other_models(all, all[1]!).map(({ id }) => id)).toEqual([3, 1]);
+    expect(otherModels(all, all[1]!).map(({ id }) => id)).toEqual([3, 1]);
   });
   it("is first thought to differ by a 500th of the size", () => {
     const bounds: Model["bounds"] = { min: [0, 0, 0], max: [3, 4, 0] };
-    expect(likely_tolerance_mm({ bounds, unit: "m" })).toBe(10);
-    expect(likely_tolerance_mm({ bounds, unit: "mm" })).toBe(0.01);
+    expect(likelyToleranceMm({ bounds, unit: "m" })).toBe(10);
+    expect(likelyToleranceMm({ bounds, unit: "mm" })).toBe(0.01);
   });
   it("a share of nothing is no share", () => {
-    expect(share_text(0, 0)).toBe("–");
-    expect(share_text(0.982, 1)).toBe("98.2 %");
+    expect(shareText(0, 0)).toBe("–");
+    expect(shareText(0.982, 1)).toBe("98.2 %");
   });
 });
 
@@ -115,7 +115,7 @@ describe("work that makes layers", () => {
     answers = [job("queued"), job("running"), job("done", { layers: [9] })];
     const { done } = await jobs.compute({ name: "Marks", compute: { kind: "roughness" } });
     expect(asked[0]).toEqual(["POST", "/models/3/layers"]);
-    expect(jobs.entries.map((entry) => [entry.name, is_busy(entry)])).toEqual([["Marks", true]]);
+    expect(jobs.entries.map((entry) => [entry.name, isBusy(entry)])).toEqual([["Marks", true]]);
     await vi.advanceTimersByTimeAsync(400);
     expect(jobs.entries[0]!.job.state).toBe("running");
     await vi.advanceTimersByTimeAsync(400);
@@ -131,7 +131,7 @@ describe("work that makes layers", () => {
     await vi.advanceTimersByTimeAsync(400);
     expect(await done).toEqual([]);
     expect(jobs.entries[0]!.problem?.title).toBe("No boundary");
-    expect(is_busy(jobs.entries[0]!)).toBe(false);
+    expect(isBusy(jobs.entries[0]!)).toBe(false);
     jobs.dismiss(jobs.entries[0]!.key);
     expect(jobs.entries).toEqual([]);
   });

@@ -10,7 +10,7 @@ import { MeasureTool, type MeasureHost } from "../../../src/features/measuring/m
 // A wall in the plane y = 0, 100 mm wide and high, seen from the front in parallel: a pixel is a
 // millimetre.
 const comes = (check: () => void): Promise<void> => vi.waitFor(check, { timeout: 20_000 });
-const at_mm = (x: number, z: number): { x: number; y: number } => ({ x: 200 + x, y: 200 - z });
+const atMm = (x: number, z: number): { x: number; y: number } => ({ x: 200 + x, y: 200 - z });
 
 let camera: OrbitCamera;
 let asked: { path: string; body: Record<string, unknown> }[];
@@ -58,10 +58,10 @@ function answer(path: string, body: Record<string, unknown>): object {
 
 beforeEach(() => {
   camera = new OrbitCamera();
-  camera.set_model({ min: [-50, 0, -50], max: [50, 0, 50] }, "z");
+  camera.setModel({ min: [-50, 0, -50], max: [50, 0, 50] }, "z");
   camera.resize(400, 400);
   camera.perspective = false;
-  camera.distance = 200 / camera.half_field;
+  camera.distance = 200 / camera.halfField;
   [asked, hold, sees] = [[], null, () => true];
   const api = new Api(async (path, init) => {
     const body = JSON.parse(String(init!.body)) as Record<string, unknown>;
@@ -86,9 +86,9 @@ beforeEach(() => {
 
 describe("measuring", () => {
   it("sets places where taps see the surface, and follows it under the straight lines", async () => {
-    measuring.set_at(at_mm(-30, 0));
-    measuring.set_at(at_mm(30, 0));
-    measuring.set_at(at_mm(30, 40));
+    measuring.setAt(atMm(-30, 0));
+    measuring.setAt(atMm(30, 0));
+    measuring.setAt(atMm(30, 40));
     await comes(() => expect(measuring.along).toBeCloseTo(100, 6));
     expect(measuring.positions.map((place) => place.map(Math.round))).toEqual([
       [-30, 0, 0],
@@ -100,12 +100,12 @@ describe("measuring", () => {
   });
 
   it("ends with a second tap on the last place, also when its answer is still on its way; the next tap begins anew", async () => {
-    measuring.set_at(at_mm(-30, 0));
-    measuring.set_at(at_mm(30, 0));
-    measuring.set_at(at_mm(32, 1));
+    measuring.setAt(atMm(-30, 0));
+    measuring.setAt(atMm(30, 0));
+    measuring.setAt(atMm(32, 1));
     await comes(() => expect(measuring.ended).toBe(true));
     expect(measuring.places).toHaveLength(2);
-    measuring.set_at(at_mm(0, 10));
+    measuring.setAt(atMm(0, 10));
     await comes(() =>
       expect(measuring.positions.map((place) => place.map(Math.round))).toEqual([[0, 0, 10]]),
     );
@@ -119,21 +119,21 @@ describe("measuring", () => {
       [0, 30],
       [-30, 0],
     ] as const)
-      measuring.set_at(at_mm(x, z));
+      measuring.setAt(atMm(x, z));
     await comes(() => expect(measuring.ended).toBe(true));
     expect(measuring.places).toHaveLength(3);
     measuring.clear();
-    measuring.set_at(at_mm(0, 0));
+    measuring.setAt(atMm(0, 0));
     await comes(() => expect(measuring.places).toHaveLength(1));
     camera.azimuth = Math.PI;
-    measuring.set_at(at_mm(0, 0));
+    measuring.setAt(atMm(0, 0));
     await comes(() => expect(measuring.places).toHaveLength(2));
   });
 
   it("takes the last place back, and goes on", async () => {
-    for (const x of [-30, 0, 30]) measuring.set_at(at_mm(x, 0));
+    for (const x of [-30, 0, 30]) measuring.setAt(atMm(x, 0));
     measuring.end();
-    measuring.take_back();
+    measuring.takeBack();
     await comes(() => expect(measuring.along).toBeCloseTo(30, 6));
     expect([measuring.places.length, measuring.ended]).toEqual([2, false]);
   });
@@ -141,24 +141,24 @@ describe("measuring", () => {
   it("forgets what is answered after it was cleared", async () => {
     let go = (): void => {};
     hold = new Promise((done) => (go = done));
-    measuring.set_at(at_mm(0, 0));
+    measuring.setAt(atMm(0, 0));
     expect(measuring.begun).toBe(true); // Escape takes away what is on its way, too
     await comes(() => expect(asked).toHaveLength(1));
     measuring.clear();
     expect(measuring.begun).toBe(false);
     go();
     hold = null;
-    measuring.set_at(at_mm(20, 0));
+    measuring.setAt(atMm(20, 0));
     await comes(() =>
       expect(measuring.positions.map((place) => place.map(Math.round))).toEqual([[20, 0, 0]]),
     );
   });
 
   it("has not begun where its only place is taken back, or was missed", async () => {
-    measuring.set_at(at_mm(0, 0));
-    measuring.take_back();
+    measuring.setAt(atMm(0, 0));
+    measuring.takeBack();
     await comes(() => expect(measuring.begun).toBe(false));
-    measuring.set_at(at_mm(70, 0));
+    measuring.setAt(atMm(70, 0));
     expect(measuring.begun).toBe(true);
     await comes(() => expect(measuring.begun).toBe(false));
   });
@@ -166,17 +166,17 @@ describe("measuring", () => {
   it("says where there is no surface, and sets nothing", async () => {
     let told = "";
     const stop = notices.subscribe((now) => (told = now.at(-1)?.title ?? told));
-    measuring.set_at(at_mm(90, 0));
+    measuring.setAt(atMm(90, 0));
     await comes(() => expect(told).toBe(texts.marks.missed));
     expect(measuring.places).toEqual([]);
     stop();
   });
 
   it("follows what is nearest where not all places are seen from here, or where that is wanted", async () => {
-    measuring.set_at(at_mm(-30, 0));
+    measuring.setAt(atMm(-30, 0));
     await comes(() => expect(measuring.places).toHaveLength(1));
     sees = (x) => x > 0; // something stands before the first one now
-    measuring.set_at(at_mm(30, 0));
+    measuring.setAt(atMm(30, 0));
     await comes(() => expect(measuring.profile?.way).toBe("nearest"));
     expect(measuring.along).toBeCloseTo(60, 6);
     expect(asked.at(-1)!.body).toMatchObject({
@@ -184,30 +184,30 @@ describe("measuring", () => {
       layers: [],
     });
     sees = () => true;
-    measuring.choose_way("seen");
+    measuring.chooseWay("seen");
     await comes(() => expect(measuring.profile?.way).toBe("seen"));
-    measuring.choose_way("nearest");
+    measuring.chooseWay("nearest");
     await comes(() => expect(measuring.profile?.way).toBe("nearest"));
   });
 
   it("tells no way over the surface where what is nearest is in patches, but parts of what was seen", async () => {
     sees = (x) => Math.abs(x) > 10;
-    measuring.set_at(at_mm(-30, 0));
-    measuring.set_at(at_mm(30, 0));
+    measuring.setAt(atMm(-30, 0));
+    measuring.setAt(atMm(30, 0));
     await comes(() => expect(measuring.profile?.parts).toHaveLength(2));
     expect(measuring.along).toBeGreaterThan(37);
     expect(measuring.along).toBeLessThan(40.1);
-    expect(measuring.has_way).toBe(true);
+    expect(measuring.hasWay).toBe(true);
     measuring.profile = { ...measuring.profile!, way: "nearest" };
-    expect(measuring.has_way).toBe(false);
+    expect(measuring.hasWay).toBe(false);
   });
 
   it("has values of the layer that is plotted, and saves the same line as CSV with those of all", async () => {
-    measuring.set_at(at_mm(-30, 0));
-    measuring.set_at(at_mm(30, 0));
+    measuring.setAt(atMm(-30, 0));
+    measuring.setAt(atMm(30, 0));
     await comes(() => expect(measuring.profile).not.toBeNull());
     expect(measuring.layers.map(({ id }) => id)).toEqual([4]);
-    measuring.choose_layer(4);
+    measuring.chooseLayer(4);
     await comes(() => expect(measuring.profile!.places[0]!.value).toBe(7));
     expect(measuring.profile!.places.at(-1)!.value).toBeNull();
     expect(await (await measuring.csv()).text()).toBe("along_mm,x");
@@ -259,6 +259,6 @@ describe("the tool for measuring", () => {
     ]);
     expect(tool.key("m")).toBe(true);
     tool.deactivate();
-    expect(done).toEqual(["end", "take_back", "take_back", "clear", "set_in_middle", "clear"]);
+    expect(done).toEqual(["end", "takeBack", "takeBack", "clear", "setInMiddle", "clear"]);
   });
 });

@@ -1,20 +1,20 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 
-import { kSteps, nearest_step, steps_for } from "../../../src/features/onboarding/onboarding-steps";
-import { beside_bar, type Box } from "../../../src/ui/beside";
+import { kSteps, nearestStep, stepsFor } from "../../../src/features/onboarding/onboarding-steps";
+import { besideBar, type Box } from "../../../src/ui/beside";
 
 describe("the steps of the tour", () => {
   it("are six at most, and those that paint are for who may paint", () => {
-    expect(steps_for(true)).toEqual([...kSteps]);
+    expect(stepsFor(true)).toEqual([...kSteps]);
     expect(kSteps.length).toBeLessThanOrEqual(6);
-    expect(steps_for(false)).toEqual(["turn", "layers", "values", "share"]);
+    expect(stepsFor(false)).toEqual(["turn", "layers", "values", "share"]);
   });
 
   it("leave out what is not there: the next one that is comes in its place, or else the last before", () => {
-    expect(nearest_step("brush", kSteps)).toBe("brush");
-    expect(nearest_step("brush", ["turn", "values", "share"])).toBe("values");
-    expect(nearest_step("share", ["turn", "values"])).toBe("values");
-    expect(nearest_step("turn", [])).toBeNull();
+    expect(nearestStep("brush", kSteps)).toBe("brush");
+    expect(nearestStep("brush", ["turn", "values", "share"])).toBe("values");
+    expect(nearestStep("share", ["turn", "values"])).toBe("values");
+    expect(nearestStep("turn", [])).toBeNull();
   });
 });
 
@@ -31,20 +31,20 @@ describe("the card of the tour", () => {
   it("stands on that side of the bar that has room, at the height of the thing", () => {
     const desktop = { width: 1280, height: 800 };
     const rail = box(0, 54, 58, 746);
-    expect(beside_bar(box(8, 400, 42, 42), rail, card, desktop, gap)).toMatchObject({
+    expect(besideBar(box(8, 400, 42, 42), rail, card, desktop, gap)).toMatchObject({
       left: 70,
       top: 341,
     });
     const panel = box(950, 54, 330, 746);
-    expect(beside_bar(panel, panel, card, desktop, gap)).toMatchObject({ left: 608, top: 347 });
+    expect(besideBar(panel, panel, card, desktop, gap)).toMatchObject({ left: 608, top: 347 });
     const head = box(0, 0, 1280, 54);
-    expect(beside_bar(box(1140, 9, 36, 36), head, card, desktop, gap)).toMatchObject({
+    expect(besideBar(box(1140, 9, 36, 36), head, card, desktop, gap)).toMatchObject({
       left: 938,
       top: 66,
     });
     const phone = { width: 390, height: 844 };
     const foot = box(0, 788, 390, 56);
-    expect(beside_bar(box(80, 794, 40, 44), foot, card, phone, gap)).toMatchObject({
+    expect(besideBar(box(80, 794, 40, 44), foot, card, phone, gap)).toMatchObject({
       left: 12,
       top: 616,
     });
@@ -69,14 +69,14 @@ describe("the card of the tour", () => {
         );
       for (const bar of bars) {
         const size = { width: Math.min(card.width, frame.width - 24), height: card.height };
-        const { left, top, most_height } = beside_bar(bar, bar, size, frame, gap);
-        const height = Math.min(size.height, most_height);
+        const { left, top, mostHeight } = besideBar(bar, bar, size, frame, gap);
+        const height = Math.min(size.height, mostHeight);
         const beside =
           left >= bar.left + bar.width ||
           left + size.width <= bar.left ||
           top >= bar.top + bar.height ||
           top + height <= bar.top;
-        expect(beside, JSON.stringify({ frame, bar, left, top, most_height })).toBe(true);
+        expect(beside, JSON.stringify({ frame, bar, left, top, mostHeight })).toBe(true);
         expect(height).toBeGreaterThan(60);
         expect(left).toBeGreaterThanOrEqual(0);
         expect(top).toBeGreaterThanOrEqual(0);
@@ -107,10 +107,10 @@ describe("that the tour is over", () => {
 
   it("is kept by the browser, for pages that are open, too", async () => {
     const [one, other] = [await page(), await page()];
-    expect(one.tour_is_over()).toBe(false);
-    one.keep_tour_over();
-    expect(other.tour_is_over()).toBe(true);
-    expect((await page()).tour_is_over()).toBe(true);
+    expect(one.tourIsOver()).toBe(false);
+    one.keepTourOver();
+    expect(other.tourIsOver()).toBe(true);
+    expect((await page()).tourIsOver()).toBe(true);
   });
 
   it("holds for the page where the browser keeps nothing", async () => {
@@ -123,8 +123,8 @@ describe("that the tour is over", () => {
       },
     });
     const one = await page();
-    expect(one.tour_is_over()).toBe(false);
-    one.keep_tour_over();
-    expect(one.tour_is_over()).toBe(true);
+    expect(one.tourIsOver()).toBe(false);
+    one.keepTourOver();
+    expect(one.tourIsOver()).toBe(true);
   });
 });

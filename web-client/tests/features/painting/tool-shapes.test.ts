@@ -6,7 +6,7 @@ import { texts } from "../../../src/texts";
 import { ToolShapes } from "../../../src/features/painting/tool-shapes";
 import { Api } from "../../../src/net/api";
 import type { Tool, ToolShape } from "../../../src/core/protocol.gen";
-import { in_square, likely_part, to_shape, type ShapePart } from "../../../src/domain/shape";
+import { inSquare, likelyPart, toShape, type ShapePart } from "../../../src/domain/shape";
 
 const tool = (id: number, name: string): Tool => ({
   id,
@@ -57,13 +57,13 @@ describe("the shapes that all people share", () => {
     chosen = 2;
     const told: string[] = [];
     const unsubscribe = notices.subscribe((shown) => told.push(...shown.map(({ title }) => title)));
-    shapes.on_event({ op: "tool", event: "created", tool_id: 3, tool: tool(3, "Axe") });
-    shapes.on_event({ op: "tool", event: "changed", tool_id: 2, tool: tool(2, "Oak leaf") });
+    shapes.onEvent({ op: "tool", event: "created", tool_id: 3, tool: tool(3, "Axe") });
+    shapes.onEvent({ op: "tool", event: "changed", tool_id: 2, tool: tool(2, "Oak leaf") });
     expect(shapes.list.map(({ name }) => name)).toEqual(["Axe", "Oak leaf", "Star"]);
-    shapes.on_event({ op: "tool", event: "deleted", tool_id: 1 });
+    shapes.onEvent({ op: "tool", event: "deleted", tool_id: 1 });
     expect(chosen).toBe(2);
     expect(told).toEqual([]);
-    shapes.on_event({ op: "tool", event: "deleted", tool_id: 2 });
+    shapes.onEvent({ op: "tool", event: "deleted", tool_id: 2 });
     expect(chosen).toBe("disc");
     expect(told).toContain(texts.shapes.gone("Oak leaf"));
     unsubscribe();
@@ -108,15 +108,15 @@ describe("a picture as a shape", () => {
       outside,
       outside,
     ];
-    expect(likely_part(pixels(3, ring(255, 0)))).toBe("dark");
-    expect(likely_part(pixels(3, ring(0, 255)))).toBe("light");
-    expect(likely_part(pixels(3, ring(-1, 0)))).toBe("opaque");
+    expect(likelyPart(pixels(3, ring(255, 0)))).toBe("dark");
+    expect(likelyPart(pixels(3, ring(0, 255)))).toBe("light");
+    expect(likelyPart(pixels(3, ring(-1, 0)))).toBe("opaque");
   });
 
   it("takes what is the part by half and more", () => {
     const alpha = (part: ShapePart, levels: number[]): number[] => {
       const picture = pixels(levels.length, levels);
-      expect(to_shape(picture, part)).toBe(
+      expect(toShape(picture, part)).toBe(
         picture.data.some((value, at) => at % 4 === 3 && value === 255),
       );
       return levels.map((_, at) => picture.data[4 * at + 3]!);
@@ -128,8 +128,8 @@ describe("a picture as a shape", () => {
   });
 
   it("lies in the middle of its square", () => {
-    expect(in_square(100, 50, 256)).toEqual({ x: 0, y: 64, width: 256, height: 128 });
-    expect(in_square(50, 100, 256)).toEqual({ x: 64, y: 0, width: 128, height: 256 });
+    expect(inSquare(100, 50, 256)).toEqual({ x: 0, y: 64, width: 256, height: 128 });
+    expect(inSquare(50, 100, 256)).toEqual({ x: 64, y: 0, width: 128, height: 256 });
   });
 });
 
@@ -137,11 +137,11 @@ describe("the limit of the slant", () => {
   it("is off at first and stays between 1° and 90°", () => {
     const brush = new BrushSettings();
     expect(brush.slant.limited).toBe(false);
-    brush.set_slant(120);
-    expect(brush.slant.max_deg).toBe(90);
-    brush.set_slant(0);
-    expect(brush.slant.max_deg).toBe(1);
-    brush.set_slant(Number.NaN);
-    expect(brush.slant.max_deg).toBe(1);
+    brush.setSlant(120);
+    expect(brush.slant.maxDeg).toBe(90);
+    brush.setSlant(0);
+    expect(brush.slant.maxDeg).toBe(1);
+    brush.setSlant(Number.NaN);
+    expect(brush.slant.maxDeg).toBe(1);
   });
 });

@@ -33,9 +33,9 @@ const only = () => {
 beforeEach(() => {
   vi.useFakeTimers();
   camera = new OrbitCamera();
-  camera.set_model({ min: [-10, -10, -10], max: [10, 10, 10] }, "z");
+  camera.setModel({ min: [-10, -10, -10], max: [10, 10, 10] }, "z");
   camera.resize(1600, 1200);
-  camera.standard_view("front"); // looks along +y: x goes right, z up
+  camera.standardView("front"); // looks along +y: x goes right, z up
   asked = [];
   calm = false;
   ready = true;
@@ -43,8 +43,8 @@ beforeEach(() => {
     camera: () => camera,
     scale: () => 2,
     ready: () => ready,
-    ask: (id, x, y, seen_by) => void asked.push({ id, x, y, camera: seen_by }),
-    wants_less_motion: () => calm,
+    ask: (id, x, y, seenBy) => void asked.push({ id, x, y, camera: seenBy }),
+    wantsLessMotion: () => calm,
   });
 });
 afterEach(() => {
@@ -59,10 +59,10 @@ describe("where others point", () => {
     cursors.receive([bea([2, -5, 3], 1.5)]);
     vi.advanceTimersByTime(1000);
     // By hand: half the field is tan(17.5°), the eye at −distance.
-    const px_per_unit = 300 / Math.tan((17.5 * Math.PI) / 180) / (camera.distance - 5);
-    expect(only().x).toBeCloseTo(400 + 2 * px_per_unit, 6);
-    expect(only().y).toBeCloseTo(300 - 3 * px_per_unit, 6);
-    expect(only().radius).toBeCloseTo(1.5 * px_per_unit, 6);
+    const pxPerUnit = 300 / Math.tan((17.5 * Math.PI) / 180) / (camera.distance - 5);
+    expect(only().x).toBeCloseTo(400 + 2 * pxPerUnit, 6);
+    expect(only().y).toBeCloseTo(300 - 3 * pxPerUnit, 6);
+    expect(only().radius).toBeCloseTo(1.5 * pxPerUnit, 6);
   });
 
   it("is not drawn beside the window or behind the eye, nor when they point nowhere or leave", () => {
@@ -100,7 +100,7 @@ describe("where others point", () => {
   it("fades when it rests for ten seconds, is drawn then, and comes back with the next move", () => {
     let drawn = 0;
     cursors.receive([bea([0, 0, 0])]);
-    cursors.on_change = () => ++drawn;
+    cursors.onChange = () => ++drawn;
     vi.advanceTimersByTime(9000);
     cursors.receive([bea([0, 0, 0])]); // others moved
     drawn = 0;
@@ -125,17 +125,17 @@ describe("a place behind the surface", () => {
     expect(answer([2, -5, 3])).toBe(true);
     expect(only().hidden).toBe(true);
     camera.orbit(Math.PI, 0);
-    cursors.look_again();
+    cursors.lookAgain();
     vi.advanceTimersByTime(200);
     answer([2, 5, 3]);
     expect(only().hidden).toBe(false);
   });
 
   it("is shown where the ray meets it to some pixels, something behind it, or nothing", () => {
-    const slack = camera.unit_per_pixel(camera.depth_of([0, 0, 0])) * 3;
+    const slack = camera.unitPerPixel(camera.depthOf([0, 0, 0])) * 3;
     for (const met of [[0, -slack, 0], [0, 4, 0], null] as (Vec3 | null)[]) {
       cursors.receive([bea([0, 0, 0])]);
-      cursors.look_again();
+      cursors.lookAgain();
       vi.advanceTimersByTime(200);
       answer(met);
       expect(only().hidden).toBe(false);
@@ -182,14 +182,14 @@ describe("a place behind the surface", () => {
     cursors.receive([bea([0, 0, 0])]);
     expect(asked).toEqual([]);
     ready = true;
-    cursors.look_again();
+    cursors.lookAgain();
     expect(asked.length).toBe(1);
     expect([cursors.refused("another"), cursors.refused(asked[0]!.id)]).toEqual([false, true]);
     vi.advanceTimersByTime(200);
-    cursors.look_again();
+    cursors.lookAgain();
     expect(asked.length).toBe(2);
     vi.advanceTimersByTime(2100);
-    cursors.look_again();
+    cursors.lookAgain();
     expect(asked.length).toBe(3);
     expect(cursors.answer({ op: "picked", id: asked[1]!.id, hit: false })).toBe(false);
   });

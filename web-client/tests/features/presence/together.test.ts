@@ -5,7 +5,7 @@ import { notices, type Notice } from "../../../src/ui/notices";
 import { texts } from "../../../src/texts";
 import { Api } from "../../../src/net/api";
 import { OrbitCamera } from "../../../src/math/camera";
-import { presence_palette } from "../../../src/domain/palette";
+import { presencePalette } from "../../../src/domain/palette";
 import type { PresenceUpdate, PresenceUser, Welcome } from "../../../src/core/protocol.gen";
 import { length, subtract } from "../../../src/math/vector";
 import { FakeSocket, welcome } from "../../fake-socket";
@@ -31,7 +31,7 @@ const layer = {
   description: "",
   labels: {},
   descriptions: {},
-  palette: presence_palette("x", "#ff0000ff"),
+  palette: presencePalette("x", "#ff0000ff"),
   opacity: 1,
   visible: true,
   locked: false,
@@ -64,13 +64,13 @@ const here = (...users: PresenceUser[]): void =>
 /** A camera of hers, from another side. */
 function hers(azimuth: number): OrbitCamera {
   const camera = new OrbitCamera();
-  camera.set_model({ min: [...bounds.min], max: [...bounds.max] }, "z");
+  camera.setModel({ min: [...bounds.min], max: [...bounds.max] }, "z");
   camera.resize(900, 500);
-  camera.first_view();
+  camera.firstView();
   camera.azimuth = azimuth;
   return camera;
 }
-const far_from = (camera: OrbitCamera): number =>
+const farFrom = (camera: OrbitCamera): number =>
   length(subtract(session.view.camera.eye(), camera.eye()));
 
 function join(): void {
@@ -98,7 +98,7 @@ beforeEach(async () => {
   told = [];
   unsubscribe = notices.subscribe((shown) => (told = shown));
   await session.open();
-  session.view.set_viewport(800, 600, 1);
+  session.view.setViewport(800, 600, 1);
   join();
 });
 afterEach(() => {
@@ -119,9 +119,9 @@ describe("following somebody", () => {
   it("tells the server whom, and goes where they look from", () => {
     follow(hers(2));
     expect(said()).toEqual({ op: "presence", pointer: null, follow: "b" });
-    expect(far_from(hers(2))).toBeLessThan(1e-6);
+    expect(farFrom(hers(2))).toBeLessThan(1e-6);
     here(bea({ camera: hers(2.5).message() }));
-    expect(far_from(hers(2.5))).toBeLessThan(1e-6);
+    expect(farFrom(hers(2.5))).toBeLessThan(1e-6);
   });
 
   it("goes there smoothly, and arrives", () => {
@@ -130,10 +130,10 @@ describe("following somebody", () => {
     follow(hers(2));
     vi.advanceTimersByTime(50);
     expect(length(subtract(session.view.camera.eye(), start))).toBeGreaterThan(1);
-    const half_way = far_from(hers(2));
-    expect(half_way).toBeGreaterThan(1);
+    const halfWay = farFrom(hers(2));
+    expect(halfWay).toBeGreaterThan(1);
     vi.advanceTimersByTime(5000);
-    expect(far_from(hers(2))).toBeLessThan(1e-6);
+    expect(farFrom(hers(2))).toBeLessThan(1e-6);
     expect([session.view.gliding, session.together.followed?.session]).toEqual([false, "b"]);
   });
 
@@ -142,15 +142,15 @@ describe("following somebody", () => {
     session.gestures.hover({ x: 30, y: 40 });
     vi.advanceTimersByTime(200);
     expect(said()).toEqual({ op: "presence", pointer: [30, 40], follow: "b" });
-    session.together.stop_following();
+    session.together.stopFollowing();
     expect(said()).toEqual({ op: "presence", pointer: [30, 40] });
   });
 
   const moves: [string, () => void][] = [
     ["turning", () => session.gestures.orbit(10, 0)],
     ["zooming", () => session.gestures.zoom(0.9, 5, 5)],
-    ["a standard view", () => session.view.standard_view("top")],
-    ["flying to a record", () => session.view.fly_to({ min: [0, 0, 0], max: [5, 5, 5] })],
+    ["a standard view", () => session.view.standardView("top")],
+    ["flying to a record", () => session.view.flyTo({ min: [0, 0, 0], max: [5, 5, 5] })],
   ];
   it.each(moves)("stops with one's own %s", (_, move) => {
     follow(hers(2));
@@ -163,10 +163,10 @@ describe("following somebody", () => {
   });
 
   it("goes on from what was seen, turning around it, with the usual field", () => {
-    session.view.set_viewport(300, 600, 1);
-    const usual = session.view.camera.half_field;
+    session.view.setViewport(300, 600, 1);
+    const usual = session.view.camera.halfField;
     follow(hers(2));
-    expect(session.view.camera.half_field).toBeGreaterThan(1.5 * usual);
+    expect(session.view.camera.halfField).toBeGreaterThan(1.5 * usual);
     vi.advanceTimersByTime(200);
     const asked = socket()
       .of("pick")
@@ -174,28 +174,28 @@ describe("following somebody", () => {
     const { camera } = session.view;
     const seen = subtract(camera.eye(), camera.axes().back.map((c) => c * 40) as never);
     socket().receive({ op: "picked", id: asked.id!, hit: true, position: [...seen] });
-    session.together.stop_following();
-    expect(camera.half_field).toBe(usual);
+    session.together.stopFollowing();
+    expect(camera.halfField).toBe(usual);
     expect(length(subtract(camera.target, seen))).toBeLessThan(1e-6);
   });
 
   it("waits while one paints, and catches up", () => {
     follow(hers(2));
-    session.choose_tool("brush");
-    session.gestures.tool_down({ x: 5, y: 5 });
+    session.chooseTool("brush");
+    session.gestures.toolDown({ x: 5, y: 5 });
     here(bea({ camera: hers(1).message() }));
-    expect(far_from(hers(2))).toBeLessThan(1e-6);
-    session.gestures.tool_up();
-    expect(far_from(hers(1))).toBeLessThan(1e-6);
+    expect(farFrom(hers(2))).toBeLessThan(1e-6);
+    session.gestures.toolUp();
+    expect(farFrom(hers(1))).toBeLessThan(1e-6);
     expect(session.together.followed?.session).toBe("b");
   });
 
   it("fits a window that changes its shape meanwhile", () => {
     follow(hers(2));
-    const field = session.view.camera.half_field;
-    session.view.set_viewport(200, 600, 1);
-    expect(session.view.camera.half_field).toBeGreaterThan(2 * field);
-    expect(far_from(hers(2))).toBeLessThan(1e-6);
+    const field = session.view.camera.halfField;
+    session.view.setViewport(200, 600, 1);
+    expect(session.view.camera.halfField).toBeGreaterThan(2 * field);
+    expect(farFrom(hers(2))).toBeLessThan(1e-6);
   });
 
   it("ends when they leave, and the person is told, by whichever message comes first", () => {
@@ -241,7 +241,7 @@ describe("following somebody", () => {
 
   it("of who follows this window is not offered", () => {
     here(bea({ following: own }), { session: "c", name: "carl", color: "#009e73" });
-    expect(session.together.people.map((person) => session.together.can_follow(person))).toEqual([
+    expect(session.together.people.map((person) => session.together.canFollow(person))).toEqual([
       false,
       false,
       true,
@@ -256,9 +256,11 @@ describe("following somebody", () => {
     join();
     expect(said()).toEqual({ op: "presence", pointer: null, follow: "b" });
     here(bea({ camera: hers(1).message() }));
-    expect([session.together.followed?.session, far_from(hers(1)) < 1e-6, told.length > 1]).toEqual(
-      ["b", true, false],
-    );
+    expect([session.together.followed?.session, farFrom(hers(1)) < 1e-6, told.length > 1]).toEqual([
+      "b",
+      true,
+      false,
+    ]);
   });
 });
 
@@ -305,9 +307,9 @@ describe("leaving the model", () => {
   it("ends asking and following, also while something is still to be saved", () => {
     here(bea({ leading: true }));
     session.together.lead(true);
-    session.choose_tool("brush");
-    session.gestures.tool_down({ x: 5, y: 5 });
-    session.gestures.tool_up();
+    session.chooseTool("brush");
+    session.gestures.toolDown({ x: 5, y: 5 });
+    session.gestures.toolUp();
     session.close();
     expect([said(), told.length]).toEqual([{ op: "presence" }, 0]);
     here(bea({ leading: true }), { ...bea({ leading: true }), session: "c", name: "carl" });
@@ -333,14 +335,14 @@ describe("the page", () => {
 
 describe("what others see of the pointer", () => {
   it("is the brush as large as it is on the surface, while it is in hand", () => {
-    session.choose_tool("brush");
+    session.chooseTool("brush");
     session.gestures.hover({ x: 400, y: 300 });
     const { position } = { position: [50, 50, 50] as [number, number, number] };
     socket().receive({ op: "picked", id: socket().of("pick").at(-1)!.id!, hit: true, position });
     vi.advanceTimersByTime(200);
     const { camera } = session.view;
     expect(said().radius).toBeCloseTo(
-      session.painting.radius_window_px() * camera.unit_per_pixel(camera.depth_of(position)),
+      session.painting.radiusWindowPx() * camera.unitPerPixel(camera.depthOf(position)),
       9,
     );
     // What lies there may be known later than the place is told.
@@ -355,10 +357,10 @@ describe("what others see of the pointer", () => {
     });
     vi.advanceTimersByTime(200);
     expect(said().radius).toBeCloseTo(
-      session.painting.radius_window_px() * camera.unit_per_pixel(camera.depth_of(nearer)),
+      session.painting.radiusWindowPx() * camera.unitPerPixel(camera.depthOf(nearer)),
       9,
     );
-    session.choose_tool("orbit");
+    session.chooseTool("orbit");
     session.gestures.hover({ x: 401, y: 300 });
     vi.advanceTimersByTime(200);
     expect(said()).toEqual({ op: "presence", pointer: [401, 300] });

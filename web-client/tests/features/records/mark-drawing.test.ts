@@ -23,12 +23,12 @@ const table = {
   ],
 };
 const comes = (check: () => void): Promise<void> => vi.waitFor(check, { timeout: 20_000 });
-const is_told = (title: string): Promise<void> =>
+const isTold = (title: string): Promise<void> =>
   comes(() => expect(shown.at(-1)?.title).toBe(title));
 
 let stored: { key: number; version: number; values: Record<string, unknown> };
 let told: string[]; // what the server was asked
-let before_change: () => void;
+let beforeChange: () => void;
 let newest: number; // entry of the table's journal
 let undone: number[];
 let host: MarkDrawingHost;
@@ -42,7 +42,7 @@ const answer = (body: unknown, status = 200): Response =>
 beforeEach(() => {
   stored = { key: 7, version: 1, values: {} };
   [told, undone, newest] = [[], [], 2];
-  before_change = () => {};
+  beforeChange = () => {};
   const api = new Api((path, init) => {
     const what = `${init!.method} ${String(path).replace("/api/v1", "")}`;
     told.push(what);
@@ -63,8 +63,8 @@ beforeEach(() => {
     }
     if (what.endsWith("/pick")) return Promise.resolve(answer({ hit: true, position: [1, 2, 3] }));
     if (what.startsWith("PATCH")) {
-      before_change();
-      before_change = () => {};
+      beforeChange();
+      beforeChange = () => {};
       if (body!.version !== stored.version)
         return Promise.resolve(answer({ status: 412, title: "Changed" }, 412));
       stored = {
@@ -79,9 +79,9 @@ beforeEach(() => {
   });
   const layer = { id: 1, table: 3, name: "Damages" };
   host = {
-    view: { camera: { message: () => ({}), pixel_size: () => () => 1 } },
+    view: { camera: { message: () => ({}), pixelSize: () => () => 1 } },
     layers: { selected: layer },
-    painting: { stroking: false, chosen_layer: () => layer, brush: { value_of: () => 7 } },
+    painting: { stroking: false, chosenLayer: () => layer, brush: { valueFor: () => 7 } },
     tables: {
       find: () => table,
       lacks: (_: number, key: number) => key !== 7,
@@ -102,13 +102,13 @@ afterEach(() => {
 
 describe("what is drawn on the surface", () => {
   it("is added to the record in the column that was chosen, as lines where the surface was seen", async () => {
-    marks.choose_column(3, marks.columns("line")[1]!);
-    expect(marks.begin_line()).toBe(true);
-    marks.finish_line([
+    marks.chooseColumn(3, marks.columns("line")[1]!);
+    expect(marks.beginLine()).toBe(true);
+    marks.finishLine([
       [0, 0],
       [31, 31],
     ]);
-    await is_told(texts.marks.line_cut(2));
+    await isTold(texts.marks.line_cut(2));
     expect(shown.at(-1)!.detail).toBe(texts.marks.line_drawn("7 cm", "North"));
     expect(stored.values).toEqual({
       joints: [
@@ -132,33 +132,33 @@ describe("what is drawn on the surface", () => {
 
   it("stays with what others add to the record meanwhile, and with what was drawn just before", async () => {
     const other: Mark = { model: 2, coordinates: [[5, 5, 5]] };
-    before_change = () => (stored = { ...stored, version: 40, values: { samples: [other] } });
-    marks.set_point({ x: 1, y: 1 });
-    marks.set_point({ x: 2, y: 2 });
+    beforeChange = () => (stored = { ...stored, version: 40, values: { samples: [other] } });
+    marks.setPoint({ x: 1, y: 1 });
+    marks.setPoint({ x: 2, y: 2 });
     const mine = { model: 9, coordinates: [[1, 2, 3]] };
     await comes(() => expect(stored.values["samples"]).toEqual([other, mine, mine]));
-    await is_told(texts.marks.point_set("North"));
+    await isTold(texts.marks.point_set("North"));
     expect(shown).toHaveLength(1); // the newest can be taken back
   });
 
   it("is taken back by its notice, unless something came after it", async () => {
     const act = (): void => (shown[0]!.link as { act: () => void }).act();
-    marks.set_point({ x: 1, y: 1 });
-    await is_told(texts.marks.point_set("North"));
+    marks.setPoint({ x: 1, y: 1 });
+    await isTold(texts.marks.point_set("North"));
     act();
     await comes(() => expect(undone).toEqual([3]));
     newest = 3;
     act();
-    await is_told(texts.marks.changed_since);
+    await isTold(texts.marks.changed_since);
     expect(undone).toEqual([3]);
   });
 
   it("is refused where there is no record, or no column for it", () => {
-    host.painting.brush.value_of = () => 8;
-    expect(marks.begin_line()).toBe(false);
-    host.painting.brush.value_of = () => 7;
+    host.painting.brush.valueFor = () => 8;
+    expect(marks.beginLine()).toBe(false);
+    host.painting.brush.valueFor = () => 7;
     host.tables.find = () => null;
-    marks.set_point({ x: 1, y: 1 });
+    marks.setPoint({ x: 1, y: 1 });
     expect([told, host.painting.stroking]).toEqual([[], false]);
     expect(shown.map(({ title }) => title)).toEqual([
       texts.brush.no_record(8),

@@ -3,11 +3,11 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { RecordHover, type RecordAt } from "../../../src/features/records/record-hover";
 import { RecordShelf } from "../../../src/features/tables/record-cache";
 import { Api } from "../../../src/net/api";
-import { first_picture, telling_columns } from "../../../src/domain/cells";
+import { firstPicture, tellingColumns } from "../../../src/domain/cells";
 import type { Column, ColumnKind } from "../../../src/core/protocol.gen";
 import type { Layer } from "../../../src/core/types";
 
-const kLong_ms = 10_000;
+const kLongMs = 10_000;
 const record = (key: number): RecordAt => ({ layer: { id: 5 } as Layer, key });
 
 describe("the record that the mouse rests on", () => {
@@ -15,7 +15,7 @@ describe("the record that the mouse rests on", () => {
   let settled: boolean;
   let hover: RecordHover;
   let changes: number;
-  const rest = (): unknown => vi.advanceTimersByTime(kLong_ms);
+  const rest = (): unknown => vi.advanceTimersByTime(kLongMs);
   /** The answer to what the pointer asked there. */
   const lies = (found: RecordAt | null): void => {
     here = found;
@@ -78,14 +78,14 @@ describe("the record that the mouse rests on", () => {
   it("is gone while the view moves, and another after a rest", () => {
     hover.move({ x: 10, y: 10 });
     rest();
-    hover.wait_again();
+    hover.waitAgain();
     expect([hover.shown, changes]).toEqual([null, 2]);
     lies(record(8));
     expect(hover.shown).toBeNull();
     rest();
     expect(hover.shown).toEqual(record(8));
     hover.move(null);
-    hover.wait_again();
+    hover.waitAgain();
     rest();
     expect(hover.shown).toBeNull();
   });
@@ -165,9 +165,9 @@ describe("records that were looked at", () => {
     answers[0]!();
     await settle();
     expect(shelf.find(3, 7)?.version).toBe(2);
-    shelf.forget_table(33);
+    shelf.forgetTable(33);
     expect([shelf.find(3, 7)?.version, asked.length]).toEqual([2, 2]);
-    shelf.forget_table(3);
+    shelf.forgetTable(3);
     expect([shelf.find(3, 7), asked.length]).toEqual([null, 3]);
   });
 
@@ -207,8 +207,8 @@ describe("what a card tells of a record", () => {
 
   it("is its first picture, and the columns that say something beside its name", () => {
     const values = { name: "Pit", photo: [], views: [12, 13], depth: 0, above: [], note: "" };
-    expect(first_picture(table, { values })).toBe(12);
-    expect(telling_columns(table, { values }).map(({ slug }) => slug)).toEqual(["depth"]);
-    expect(first_picture(table, { values: {} })).toBeNull();
+    expect(firstPicture(table, { values })).toBe(12);
+    expect(tellingColumns(table, { values }).map(({ slug }) => slug)).toEqual(["depth"]);
+    expect(firstPicture(table, { values: {} })).toBeNull();
   });
 });

@@ -18,7 +18,7 @@ const stroke = (sequence: number, user: string): WaitingStroke => ({
   texels_changed: 3,
   area_m2: 1e-6,
 });
-const queue_of = (strokes: WaitingStroke[]): ReviewQueue => ({
+const queueOf = (strokes: WaitingStroke[]): ReviewQueue => ({
   strokes,
   total: strokes.length,
   people: [...new Set(strokes.map(({ user }) => user))].map((user) => ({
@@ -33,17 +33,17 @@ function make(role: "annotator" | "curator") {
     { id: 2, name: "Plaster", labels: {}, slug: "plaster", review: false },
   ] as unknown as Layer[];
   const queues = new Map([
-    [1, queue_of([stroke(4, "ada"), stroke(6, "ben")])],
-    [2, queue_of([])],
+    [1, queueOf([stroke(4, "ada"), stroke(6, "ben")])],
+    [2, queueOf([])],
   ]);
   const asked: number[] = [];
   const delays: Promise<void>[] = []; // of the next answers
   const sent: Review[] = [];
   let refusal: ApiError | null = null;
   const api = {
-    review_queue: async (_: string, layer: number, __: number, user: string | null) => {
+    reviewQueue: async (_: string, layer: number, __: number, user: string | null) => {
       asked.push(layer);
-      const queue = queue_of(
+      const queue = queueOf(
         queues.get(layer)!.strokes.filter((each) => user === null || each.user === user),
       );
       await delays.shift();
@@ -54,7 +54,7 @@ function make(role: "annotator" | "curator") {
       sent.push(decision);
       queues.set(
         layer,
-        queue_of(
+        queueOf(
           queues
             .get(layer)!
             .strokes.filter(
@@ -74,9 +74,9 @@ function make(role: "annotator" | "curator") {
     view: {} as never,
     layers: list as never,
     me: () => "ada",
-    name_of: (user) => user,
-    can_paint: () => true,
-    can_curate: () => role === "curator",
+    nameOf: (user) => user,
+    canPaint: () => true,
+    canCurate: () => role === "curator",
     changed: () => {},
   });
   return {
@@ -99,12 +99,12 @@ beforeEach(() => {
 describe("what waits for review", () => {
   it("is read of layers that ask for it, and for curators of all", async () => {
     const annotator = make("annotator");
-    await annotator.reviews.load_all();
+    await annotator.reviews.loadAll();
     expect(annotator.asked).toEqual([1]);
     expect(annotator.reviews.count).toBe(1); // her own
     expect(annotator.reviews.waiting.map(({ layer }) => layer.id)).toEqual([1]);
     const curator = make("curator");
-    await curator.reviews.load_all();
+    await curator.reviews.loadAll();
     expect(curator.asked).toEqual([1, 2]);
     expect(curator.reviews.count).toBe(2);
   });
@@ -113,7 +113,7 @@ describe("what waits for review", () => {
     vi.useFakeTimers();
     const { reviews, asked } = make("annotator");
     for (let i = 0; i < 20; ++i)
-      reviews.on_event({
+      reviews.onEvent({
         op: "layer",
         event: "edited",
         layer_id: 1,
@@ -121,7 +121,7 @@ describe("what waits for review", () => {
         user: "ben",
         provisional: true,
       });
-    reviews.on_event({ op: "layer", event: "edited", layer_id: 2, sequence: 40, user: "ben" });
+    reviews.onEvent({ op: "layer", event: "edited", layer_id: 2, sequence: 40, user: "ben" });
     await vi.runAllTimersAsync();
     vi.useRealTimers();
     expect(asked).toEqual([1, 1]);
@@ -131,9 +131,9 @@ describe("what waits for review", () => {
     const { reviews, queues, delays } = make("curator");
     let answer = (): void => {};
     delays.push(new Promise((resolve) => (answer = resolve)), Promise.resolve());
-    const late = reviews.load_all();
-    queues.set(1, queue_of([stroke(4, "ada")]));
-    await reviews.load_all();
+    const late = reviews.loadAll();
+    queues.set(1, queueOf([stroke(4, "ada")]));
+    await reviews.loadAll();
     answer();
     await late;
     expect(reviews.count).toBe(1);
@@ -149,10 +149,10 @@ describe("what waits for review", () => {
       user,
       review: { decision: "reject" as const, authors, reason: "Too wide" },
     });
-    reviews.on_event(event("cleo", ["ben"]));
-    reviews.on_event(event("ada", ["ada"]));
+    reviews.onEvent(event("cleo", ["ben"]));
+    reviews.onEvent(event("ada", ["ada"]));
     expect(told).toEqual([]);
-    reviews.on_event(event("cleo", ["ada", "ben"]));
+    reviews.onEvent(event("cleo", ["ada", "ben"]));
     expect(told).toMatchObject([
       { kind: "problem", title: "cleo rejected what you painted on Cracks", detail: "Too wide" },
     ]);
@@ -161,7 +161,7 @@ describe("what waits for review", () => {
 
   it("is decided, and the decision taken back by the strokes that it was about", async () => {
     const { reviews, sent, layers } = make("curator");
-    await reviews.load_all();
+    await reviews.loadAll();
     expect(await reviews.decide(layers[0]!, { decision: "accept", user: "ben" })).toBe(true);
     expect(reviews.count).toBe(1);
     expect(told).toMatchObject([
@@ -177,8 +177,8 @@ describe("what waits for review", () => {
 
   it("is read again where somebody else was quicker", async () => {
     const { reviews, queues, layers, refuse } = make("curator");
-    await reviews.load_all();
-    queues.set(1, queue_of([]));
+    await reviews.loadAll();
+    queues.set(1, queueOf([]));
     refuse(new ApiError({ title: "Not waiting for review", status: 409 }));
     expect(await reviews.decide(layers[0]!, { decision: "reject", edits: [4] })).toBe(false);
     expect(told).toMatchObject([{ kind: "problem", title: "Not waiting for review" }]);

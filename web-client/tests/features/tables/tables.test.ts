@@ -2,8 +2,8 @@ import { beforeEach, describe, expect, it } from "vitest";
 
 import { CellEdits } from "../../../src/features/tables/cell-edits";
 import {
-  column_changes,
-  of_kind,
+  columnChanges,
+  ofKind,
   type ColumnWanted,
 } from "../../../src/features/tables/column-changes";
 import { RecordNames } from "../../../src/features/tables/record-names";
@@ -11,11 +11,11 @@ import { kPageRows, RecordRows } from "../../../src/features/tables/record-rows"
 import { Tables } from "../../../src/features/tables/tables";
 import { Api, ApiError, type RecordQuery } from "../../../src/net/api";
 import {
-  label_column,
-  label_of,
-  label_of_record,
-  named_keys,
-  parse_cell,
+  labelColumn,
+  labelOf,
+  labelOfRecord,
+  namedKeys,
+  parseCell,
 } from "../../../src/domain/cells";
 import type {
   CellValue,
@@ -67,66 +67,64 @@ const settle = (): Promise<void> => new Promise((resolve) => setTimeout(resolve)
 
 describe("cells", () => {
   it("hold what was typed, and nothing is guessed", () => {
-    expect(parse_cell({ kind: "numeric" }, " 1.50 ")).toEqual({ value: 1.5 });
-    expect(parse_cell({ kind: "numeric" }, "-2e3")).toEqual({ value: -2000 });
+    expect(parseCell({ kind: "numeric" }, " 1.50 ")).toEqual({ value: 1.5 });
+    expect(parseCell({ kind: "numeric" }, "-2e3")).toEqual({ value: -2000 });
     for (const text of ["1,5", "1 000", "0x10", "Infinity", "deep", ".", "1e999"])
-      expect(parse_cell({ kind: "numeric" }, text)).toEqual({ wrong: "number" });
-    expect(parse_cell({ kind: "integer" }, "7")).toEqual({ value: 7 });
-    expect(parse_cell({ kind: "integer" }, "7.5")).toEqual({ wrong: "whole" });
-    expect(parse_cell({ kind: "period" }, " 1560~ ")).toEqual({ value: "1560~" });
-    expect(parse_cell({ kind: "text" }, " as it is ")).toEqual({ value: " as it is " });
-    expect(parse_cell({ kind: "boolean" }, "false")).toEqual({ value: false });
+      expect(parseCell({ kind: "numeric" }, text)).toEqual({ wrong: "number" });
+    expect(parseCell({ kind: "integer" }, "7")).toEqual({ value: 7 });
+    expect(parseCell({ kind: "integer" }, "7.5")).toEqual({ wrong: "whole" });
+    expect(parseCell({ kind: "period" }, " 1560~ ")).toEqual({ value: "1560~" });
+    expect(parseCell({ kind: "text" }, " as it is ")).toEqual({ value: " as it is " });
+    expect(parseCell({ kind: "boolean" }, "false")).toEqual({ value: false });
     for (const kind of ["text", "numeric", "date", "enumeration", "boolean"] as const)
-      expect(parse_cell({ kind }, "")).toEqual({ value: null });
+      expect(parseCell({ kind }, "")).toEqual({ value: null });
   });
 
   it("name the records of a relation and of a term", () => {
-    expect(named_keys([2, 5])).toEqual([2, 5]);
-    expect(named_keys(2)).toEqual([2]);
-    expect(named_keys(null)).toEqual([]);
+    expect(namedKeys([2, 5])).toEqual([2, 5]);
+    expect(namedKeys(2)).toEqual([2]);
+    expect(namedKeys(null)).toEqual([]);
   });
 
   it("are called as the person's languages have it, the nearest first", () => {
     const thing = { name: "Depth", labels: { es: "Profundidad", "pt-BR": "Profundidade" } };
-    expect(label_of(thing, ["es-MX", "en"])).toBe("Profundidad");
-    expect(label_of(thing, ["fr", "pt-BR"])).toBe("Profundidade");
-    expect(label_of(thing, ["pt-br"])).toBe("Profundidade");
-    expect(label_of(thing, ["fr"])).toBe("Depth");
+    expect(labelOf(thing, ["es-MX", "en"])).toBe("Profundidad");
+    expect(labelOf(thing, ["fr", "pt-BR"])).toBe("Profundidade");
+    expect(labelOf(thing, ["pt-br"])).toBe("Profundidade");
+    expect(labelOf(thing, ["fr"])).toBe("Depth");
   });
 
   it("of the column that tells records apart are what the record is called", () => {
     const code = column(2, "code", "text", { required: true, unique: true });
-    expect(label_column(table(column(1, "note"), code))).toBe(code);
-    expect(label_column(table(column(1, "note"), column(2, "depth", "numeric")))?.slug).toBe(
-      "note",
-    );
-    expect(label_column(table(column(1, "number", "integer", { unique: true })))?.slug).toBe(
+    expect(labelColumn(table(column(1, "note"), code))).toBe(code);
+    expect(labelColumn(table(column(1, "note"), column(2, "depth", "numeric")))?.slug).toBe("note");
+    expect(labelColumn(table(column(1, "number", "integer", { unique: true })))?.slug).toBe(
       "number",
     );
-    expect(label_column(table(column(1, "above", "relation", { unique: true })))).toBeNull();
-    expect(label_of_record(table(code), record(1, { code: "SU 1" }))).toBe("SU 1");
+    expect(labelColumn(table(column(1, "above", "relation", { unique: true })))).toBeNull();
+    expect(labelOfRecord(table(code), record(1, { code: "SU 1" }))).toBe("SU 1");
     const titled = {
       ...table(code, column(1, "note"), column(3, "damage", "term", { target: 9 })),
       title_column: 1,
     };
-    expect(label_column(titled)?.slug).toBe("note");
+    expect(labelColumn(titled)?.slug).toBe("note");
     // what has no title is called as before
-    expect(label_of_record(titled, record(1, { code: "SU 1", note: null }))).toBe("SU 1");
+    expect(labelOfRecord(titled, record(1, { code: "SU 1", note: null }))).toBe("SU 1");
     // one that was dropped, or is not seen
-    expect(label_column({ ...titled, title_column: 77 })).toBe(code);
-    const by_term = { ...titled, title_column: 3 };
+    expect(labelColumn({ ...titled, title_column: 77 })).toBe(code);
+    const byTerm = { ...titled, title_column: 3 };
     expect(
-      label_of_record(
-        by_term,
+      labelOfRecord(
+        byTerm,
         record(1, { code: "SU 1", damage: 4 }),
         ["en"],
         (of, key) => `${of}/${key}`,
       ),
     ).toBe("9/4");
-    expect(label_of_record(by_term, record(1, { code: "SU 1", damage: 4 }))).toBe("SU 1");
+    expect(labelOfRecord(byTerm, record(1, { code: "SU 1", damage: 4 }))).toBe("SU 1");
     const observed = table(column(1, "damage", "term", { target: 9 }), column(2, "observer"));
     expect(
-      label_of_record(
+      labelOfRecord(
         observed,
         record(1, { damage: 4, observer: "Ida" }),
         ["en"],
@@ -134,9 +132,9 @@ describe("cells", () => {
       ),
     ).toBe("9/4");
     expect(
-      label_column(table(column(2, "observer"), column(1, "damage", "term", { target: 9 })))?.slug,
+      labelColumn(table(column(2, "observer"), column(1, "damage", "term", { target: 9 })))?.slug,
     ).toBe("observer");
-    expect(label_of_record(table(), record(1))).toBe("");
+    expect(labelOfRecord(table(), record(1))).toBe("");
   });
 });
 
@@ -168,7 +166,7 @@ describe("the rows of a table", () => {
           });
         }),
       changed: () => {},
-      measures_outdated: () => void (outdated += 1),
+      measuresOutdated: () => void (outdated += 1),
     });
   });
 
@@ -193,22 +191,22 @@ describe("the rows of a table", () => {
   it("of another order replace the old ones when they are here, and answers to the old question are left", async () => {
     rows.want(0, 10);
     await answers[0]!(300);
-    rows.set_query({ sortby: "-n" });
+    rows.setQuery({ sortby: "-n" });
     expect(rows.row(0)?.key).toBe(0); // until the new ones are here
-    rows.set_query({ sortby: "n" });
+    rows.setQuery({ sortby: "n" });
     expect(asked.slice(1).map(({ sortby }) => sortby)).toEqual(["-n", "n"]);
     await answers[2]!(200);
     expect(rows.total).toBe(200);
     await answers[1]!(5);
     expect(rows.total).toBe(200);
-    rows.set_query({ sortby: "n" });
+    rows.setQuery({ sortby: "n" });
     expect(asked).toHaveLength(3);
   });
 
   it("that a wrong filter asks for stay as they were, with what is wrong", async () => {
     rows.want(0, 10);
     await answers[0]!(300);
-    rows.set_query({ filter: "n >" });
+    rows.setQuery({ filter: "n >" });
     await answers[1]!(
       0,
       new ApiError({ status: 422, title: "x", detail: "y", field: "filter", offset: 3 }),
@@ -217,7 +215,7 @@ describe("the rows of a table", () => {
     expect(rows.row(5)?.key).toBe(5);
     rows.want(0, 10);
     expect(asked).toHaveLength(2); // it is not asked again and again
-    rows.set_query({ filter: "n > 3" });
+    rows.setQuery({ filter: "n > 3" });
     expect(rows.problem).toBeNull();
     await answers[2]!(300);
     expect(rows.filter).toBe("n > 3");
@@ -286,7 +284,7 @@ describe("the rows of a table", () => {
 class FakeTable {
   stored = record(7, { depth: 1, code: "SU 7" }, 4);
   told: string[] = [];
-  before_change: () => void = () => {};
+  beforeChange: () => void = () => {};
   refuse: { status: number; title: string; detail: string } | null = null;
 
   readonly api = new Api(async (path, init) => {
@@ -296,8 +294,8 @@ class FakeTable {
     if (path.includes("/edits"))
       return answer(200, { edits: [{ user: "anna", time: "2024-05-02T12:00:00Z" }], total: 1 });
     if (init!.method === "GET") return answer(200, this.stored);
-    this.before_change();
-    this.before_change = () => {};
+    this.beforeChange();
+    this.beforeChange = () => {};
     if (this.refuse) return answer(this.refuse.status, this.refuse);
     const change = JSON.parse(init!.body as string) as {
       version: number;
@@ -355,14 +353,14 @@ describe("what is written into cells", () => {
   });
 
   it("goes onto what others wrote into other cells of the record", async () => {
-    server.before_change = () => server.write({ code: "SU 70" });
+    server.beforeChange = () => server.write({ code: "SU 70" });
     await edits.write(7, "depth", 2, 1);
     expect(server.stored.values).toEqual({ depth: 2, code: "SU 70" });
     expect(edits.open).toEqual([]);
   });
 
   it("waits for the person where somebody else wrote into the same cell: theirs stays, or mine goes over it", async () => {
-    server.before_change = () => server.write({ depth: 9 });
+    server.beforeChange = () => server.write({ depth: 9 });
     await edits.write(7, "depth", 2, 1);
     const [edit] = edits.open;
     expect(edit).toMatchObject({ state: "conflict", value: 2, theirs: { value: 9, user: "anna" } });
@@ -450,10 +448,10 @@ describe("the names of records", () => {
       return new Response(JSON.stringify({ records, total: records.length }));
     });
     const damage = column(2, "damage", "term", { target: 9 });
-    const with_terms = { ...table(units.columns[0]!, damage), id: 3 };
-    let now: Table = with_terms;
+    const withTerms = { ...table(units.columns[0]!, damage), id: 3 };
+    let now: Table = withTerms;
     const others = {
-      name_of: (_: number, key: number) => ({ 5: "Salts", 6: "Cracks", 7: "Loss" })[key] ?? null,
+      nameOf: (_: number, key: number) => ({ 5: "Salts", 6: "Cracks", 7: "Loss" })[key] ?? null,
       places: () =>
         new Map([
           [7, 0],
@@ -476,7 +474,7 @@ describe("the names of records", () => {
       "Zinc",
       "",
     ]);
-    now = { ...with_terms, title_column: 2 };
+    now = { ...withTerms, title_column: 2 };
     list.reorder();
     expect(list.search("").map(({ key, label }) => [key, label])).toEqual([
       [1, "Loss"],
@@ -511,61 +509,61 @@ describe("the card of a record", () => {
       values: { finds: { valid: true, value } },
     }) as unknown as Picked;
   let asked: string[];
-  let area_m2: number;
+  let areaM2: number;
   let tables: Tables;
 
   beforeEach(() => {
     asked = [];
-    area_m2 = 1;
+    areaM2 = 1;
     const api = new Api(async (path) => {
       asked.push(path.replace("/api/v1/models/1/layers/8/records/", ""));
       const key = Number(path.split("/").at(-1));
       return key < 9
-        ? new Response(JSON.stringify({ ...record(key), area_m2 }))
+        ? new Response(JSON.stringify({ ...record(key), area_m2: areaM2 }))
         : new Response("{}", { status: 404 });
     });
     tables = new Tables(api, {
-      model_id: "1",
+      modelId: "1",
       project: () => null,
       highlight: () => {},
-      fly_to: () => {},
+      flyTo: () => {},
       changed: () => {},
     });
   });
 
   it("shows what was taken from the surface, and follows its record and its area", async () => {
-    tables.show_card(layer, picked(2));
+    tables.showCard(layer, picked(2));
     await settle();
     expect(tables.card).toMatchObject({ key: 2, record: { key: 2, area_m2: 1 } });
-    area_m2 = 5;
-    tables.on_layer_edited(8);
+    areaM2 = 5;
+    tables.onLayerEdited(8);
     await settle();
     expect(tables.card?.record?.area_m2).toBe(5);
-    tables.on_layer_edited(9);
-    tables.on_record({ op: "record", event: "changed", table: 3, key: 7 });
+    tables.onLayerEdited(9);
+    tables.onRecord({ op: "record", event: "changed", table: 3, key: 7 });
     await settle();
     expect(asked).toEqual(["2", "2"]);
-    tables.on_record({ op: "record", event: "deleted", table: 3, key: 2 });
+    tables.onRecord({ op: "record", event: "deleted", table: 3, key: 2 });
     expect(tables.card).toBeNull();
   });
 
   it("is that of the last place, and goes where nothing is painted or the record is gone", async () => {
-    tables.show_card(layer, picked(2));
-    tables.show_card(layer, picked(3));
+    tables.showCard(layer, picked(2));
+    tables.showCard(layer, picked(3));
     await settle();
     expect(tables.card?.record?.key).toBe(3);
-    tables.show_card(layer, picked(9)); // paint without a record
+    tables.showCard(layer, picked(9)); // paint without a record
     await settle();
     expect(tables.card).toBeNull();
-    tables.show_card(layer, picked(3));
-    tables.show_card(layer, {
+    tables.showCard(layer, picked(3));
+    tables.showCard(layer, {
       op: "picked",
       id: "x",
       hit: true,
       values: { finds: { valid: false } },
     } as unknown as Picked);
     expect(tables.card).toBeNull();
-    tables.show_card({ ...layer, table: undefined }, picked(3));
+    tables.showCard({ ...layer, table: undefined }, picked(3));
     expect(tables.card).toBeNull();
   });
 });
@@ -587,7 +585,7 @@ describe("the dialog of a column", () => {
   });
 
   it("sends what suits the kind", () => {
-    expect(of_kind(wanted())).toEqual({
+    expect(ofKind(wanted())).toEqual({
       name: "Depth",
       labels: {},
       kind: "numeric",
@@ -598,9 +596,9 @@ describe("the dialog of a column", () => {
       minimum: 0,
       maximum: null,
     });
-    expect(of_kind(wanted({ kind: "enumeration" }))).toMatchObject({ choices: ["a"] });
-    expect(of_kind(wanted({ kind: "relation" }))).toMatchObject({ target: 4 });
-    expect(of_kind(wanted({ kind: "text" }))).toEqual({
+    expect(ofKind(wanted({ kind: "enumeration" }))).toMatchObject({ choices: ["a"] });
+    expect(ofKind(wanted({ kind: "relation" }))).toMatchObject({ target: 4 });
+    expect(ofKind(wanted({ kind: "text" }))).toEqual({
       name: "Depth",
       labels: {},
       kind: "text",
@@ -612,17 +610,17 @@ describe("the dialog of a column", () => {
 
   it("sends of a column that is there only what differs", () => {
     const depth = column(1, "depth", "numeric", { name: "Depth", unit: "m", minimum: 0 });
-    expect(column_changes(depth, wanted())).toEqual({});
-    expect(column_changes(depth, wanted({ name: "Depth below surface", minimum: null }))).toEqual({
+    expect(columnChanges(depth, wanted())).toEqual({});
+    expect(columnChanges(depth, wanted({ name: "Depth below surface", minimum: null }))).toEqual({
       name: "Depth below surface",
       minimum: null,
     });
-    expect(column_changes(depth, wanted({ kind: "text" }))).toEqual({ kind: "text" });
+    expect(columnChanges(depth, wanted({ kind: "text" }))).toEqual({ kind: "text" });
     const labelled = { ...depth, labels: { es: "Profundidad", de: "Tiefe" } };
-    expect(
-      column_changes(labelled, wanted({ labels: { de: "Tiefe", es: "Profundidad" } })),
-    ).toEqual({});
-    expect(column_changes(labelled, wanted({ labels: { de: "Tiefe" } }))).toEqual({
+    expect(columnChanges(labelled, wanted({ labels: { de: "Tiefe", es: "Profundidad" } }))).toEqual(
+      {},
+    );
+    expect(columnChanges(labelled, wanted({ labels: { de: "Tiefe" } }))).toEqual({
       labels: { de: "Tiefe" },
     });
   });

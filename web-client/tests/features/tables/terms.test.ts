@@ -1,19 +1,19 @@
 import { beforeEach, describe, expect, it } from "vitest";
 
-import { describe_value } from "../../../src/session/layer-values";
+import { describeValue } from "../../../src/session/layer-values";
 import {
-  folded_at_first,
-  path_to,
-  rows_of,
-  terms_with,
-  tree_step,
+  foldedAtFirst,
+  pathTo,
+  rowsOf,
+  termsWith,
+  treeStep,
   type TermRow,
 } from "../../../src/session/fields/term-rows";
-import { kTermsEndings, terms_type } from "../../../src/features/tables/terms-files";
+import { kTermsEndings, termsType } from "../../../src/features/tables/terms-files";
 import { kMostTerms, TermTree } from "../../../src/session/fields/term-tree";
 import { Api } from "../../../src/net/api";
-import { label_of_record } from "../../../src/domain/cells";
-import { record_palette } from "../../../src/domain/palette";
+import { labelOfRecord } from "../../../src/domain/cells";
+import { recordPalette } from "../../../src/domain/palette";
 import type { Column, ListedTerm } from "../../../src/core/protocol.gen";
 import type { Layer } from "../../../src/core/types";
 
@@ -41,21 +41,21 @@ const keys = (rows: readonly TermRow[]): number[] => rows.map((row) => row.term.
 
 describe("the rows of a tree of terms", () => {
   it("leave out what is folded, with all that is below it", () => {
-    expect(keys(rows_of(tree, new Set()))).toEqual([1, 2, 3, 4, 5, 6, 7]);
-    expect(keys(rows_of(tree, new Set([1])))).toEqual([1, 5, 6, 7]);
-    expect(keys(rows_of(tree, new Set([2, 6])))).toEqual([1, 2, 4, 5, 6]);
-    expect(keys(rows_of(tree, new Set([1, 2])))).toEqual([1, 5, 6, 7]);
-    expect(rows_of([], new Set())).toEqual([]);
+    expect(keys(rowsOf(tree, new Set()))).toEqual([1, 2, 3, 4, 5, 6, 7]);
+    expect(keys(rowsOf(tree, new Set([1])))).toEqual([1, 5, 6, 7]);
+    expect(keys(rowsOf(tree, new Set([2, 6])))).toEqual([1, 2, 4, 5, 6]);
+    expect(keys(rowsOf(tree, new Set([1, 2])))).toEqual([1, 5, 6, 7]);
+    expect(rowsOf([], new Set())).toEqual([]);
   });
 
   it("know which can be folded: one without terms below cannot", () => {
-    const rows = rows_of(tree, new Set([2, 5]));
+    const rows = rowsOf(tree, new Set([2, 5]));
     expect(rows.filter(({ parent }) => parent).map((row) => row.term.key)).toEqual([1, 2, 6]);
     expect(rows.filter(({ folded }) => folded).map((row) => row.term.key)).toEqual([2]);
   });
 
   it("know their places among those of the same parent", () => {
-    expect(rows_of(tree, new Set()).map(({ place, of }) => [place, of])).toEqual([
+    expect(rowsOf(tree, new Set()).map(({ place, of }) => [place, of])).toEqual([
       [1, 3],
       [1, 2],
       [1, 1],
@@ -64,7 +64,7 @@ describe("the rows of a tree of terms", () => {
       [3, 3],
       [1, 1],
     ]);
-    expect(rows_of(tree, new Set([1])).map(({ place, of }) => [place, of])).toEqual([
+    expect(rowsOf(tree, new Set([1])).map(({ place, of }) => [place, of])).toEqual([
       [1, 3],
       [2, 3],
       [3, 3],
@@ -73,25 +73,25 @@ describe("the rows of a tree of terms", () => {
   });
 
   it("are all shown of a short list; a long one is folded, but for what leads to the chosen term", () => {
-    expect(folded_at_first(tree, 3)).toEqual(new Set());
+    expect(foldedAtFirst(tree, 3)).toEqual(new Set());
     const long = [...tree, ...Array.from({ length: 100 }, (_, at) => term(100 + at))];
-    expect(folded_at_first(long, 3)).toEqual(new Set([6]));
-    expect(folded_at_first(long, 0)).toEqual(new Set([1, 2, 6]));
+    expect(foldedAtFirst(long, 3)).toEqual(new Set([6]));
+    expect(foldedAtFirst(long, 0)).toEqual(new Set([1, 2, 6]));
   });
 
   it("lead to a term from the top", () => {
-    expect(path_to(tree, 3).map(({ key }) => key)).toEqual([1, 2]);
-    expect(path_to(tree, 4).map(({ key }) => key)).toEqual([1]);
-    expect(path_to(tree, 5)).toEqual([]);
-    expect(path_to(tree, 99)).toEqual([]);
+    expect(pathTo(tree, 3).map(({ key }) => key)).toEqual([1, 2]);
+    expect(pathTo(tree, 4).map(({ key }) => key)).toEqual([1]);
+    expect(pathTo(tree, 5)).toEqual([]);
+    expect(pathTo(tree, 99)).toEqual([]);
   });
 });
 
 describe("the keys in a tree of terms", () => {
   const folded = new Set([6]);
-  const rows = rows_of(tree, folded); // 1 2 3 4 5 6
+  const rows = rowsOf(tree, folded); // 1 2 3 4 5 6
   const step = (key: string, from: number): unknown =>
-    tree_step(key, rows, keys(rows).indexOf(from), 3);
+    treeStep(key, rows, keys(rows).indexOf(from), 3);
 
   it("go up and down, as far as there are rows", () => {
     expect(step("ArrowDown", 1)).toEqual({ at: 1 });
@@ -102,9 +102,9 @@ describe("the keys in a tree of terms", () => {
     expect(step("PageUp", 2)).toEqual({ at: 0 });
   });
   it("begin at the first or the last row where none was at", () => {
-    expect(tree_step("ArrowDown", rows, -1, 3)).toEqual({ at: 0 });
-    expect(tree_step("ArrowUp", rows, -1, 3)).toEqual({ at: 5 });
-    expect(tree_step("ArrowDown", [], -1, 3)).toBeNull();
+    expect(treeStep("ArrowDown", rows, -1, 3)).toEqual({ at: 0 });
+    expect(treeStep("ArrowUp", rows, -1, 3)).toEqual({ at: 5 });
+    expect(treeStep("ArrowDown", [], -1, 3)).toBeNull();
   });
   it("unfold to the right, then go in; fold to the left, then go out", () => {
     expect(step("ArrowRight", 6)).toEqual({ fold: false });
@@ -126,7 +126,7 @@ describe("the terms of a list", () => {
   let release: (() => void)[];
   let terms: TermTree;
   const settle = (): Promise<void> => new Promise((resolve) => setTimeout(resolve));
-  const answer_all = async (): Promise<void> => {
+  const answerAll = async (): Promise<void> => {
     for (;;) {
       await settle();
       const waiting = release.splice(0);
@@ -172,7 +172,7 @@ describe("the terms of a list", () => {
     count = 1500;
     terms.want();
     terms.want();
-    await answer_all();
+    await answerAll();
     expect(asked).toEqual(["es-MX0", "es-MX1000"]);
     expect([terms.terms.length, terms.total, terms.loaded]).toEqual([1500, 1500, true]);
   });
@@ -180,16 +180,16 @@ describe("the terms of a list", () => {
   it("are the first ones of a very large list, and it tells how many there are", async () => {
     count = kMostTerms * 5;
     terms.want();
-    await answer_all();
+    await answerAll();
     expect([terms.terms.length, terms.total]).toEqual([kMostTerms, kMostTerms * 5]);
   });
 
   it("are asked for again when the list changes, once for all that changed meanwhile", async () => {
     terms.want();
-    await answer_all();
+    await answerAll();
     count = 4;
     for (let n = 0; n < 5; ++n) terms.refresh();
-    await answer_all();
+    await answerAll();
     expect(terms.terms).toHaveLength(4);
     expect(asked).toHaveLength(3);
     expect(terms.generation).toBe(2);
@@ -197,21 +197,21 @@ describe("the terms of a list", () => {
 
   it("stay with what is wrong when they cannot be read, until they can", async () => {
     terms.want();
-    await answer_all();
+    await answerAll();
     count = -1;
     terms.refresh();
-    await answer_all();
+    await answerAll();
     expect(terms.problem).toBe("It is a table of records.");
     expect(terms.terms).toHaveLength(3);
     count = 2;
     terms.refresh();
-    await answer_all();
+    await answerAll();
     expect([terms.problem, terms.terms.length]).toEqual(["", 2]);
   });
 
   it("are looked for by the server, in all of its languages", async () => {
     const found = terms.search("salt");
-    await answer_all();
+    await answerAll();
     expect((await found).total).toBe(3);
     expect(asked).toEqual(["saltes-MX0"]);
   });
@@ -229,7 +229,7 @@ describe("a tree that is looked through", () => {
     term(6, 1, "Salz"),
   ];
   const found = (words: string): unknown[] =>
-    terms_with(all, words).map(({ key, match }) => [key, match]);
+    termsWith(all, words).map(({ key, match }) => [key, match]);
 
   it("has what holds all words, whatever the accents, with what is above it", () => {
     expect(found("olf")).toEqual([
@@ -273,19 +273,19 @@ describe("terms", () => {
     text(4, "label-pt-br"),
   ];
   const name = (values: Record<string, string>, languages: string[]): string =>
-    label_of_record({ kind: "terms", columns }, { values }, languages);
+    labelOfRecord({ kind: "terms", columns }, { values }, languages);
 
   it("are called by their label in the person's language, in none, or by their code", () => {
     const salt = { code: "salt", label: "Salts", "label-es": "Sales" };
     expect(name(salt, ["es-MX", "en"])).toBe("Sales");
     expect(name(salt, ["pt-BR"])).toBe("Salts");
     expect(name({ code: "salt" }, ["es"])).toBe("salt");
-    expect(label_of_record({ kind: "records", columns }, { values: salt }, ["es"])).toBe("salt");
+    expect(labelOfRecord({ kind: "records", columns }, { values: salt }, ["es"])).toBe("salt");
   });
 
   it("are told by that name, whatever the layer's legend calls them", () => {
     const palette = {
-      ...record_palette(),
+      ...recordPalette(),
       points: [{ at: 1, color: "#000000ff", label: "Salts" }],
     };
     const layer = {
@@ -296,18 +296,18 @@ describe("terms", () => {
       palette,
       table: 3,
     } as unknown as Layer;
-    expect(describe_value(layer, 1, { label: () => "Sales", term: () => "Sales" })).toBe("Sales");
-    expect(describe_value(layer, 1, { label: () => "salt", term: () => null })).toBe("Salts");
+    expect(describeValue(layer, 1, { label: () => "Sales", term: () => "Sales" })).toBe("Sales");
+    expect(describeValue(layer, 1, { label: () => "salt", term: () => null })).toBe("Salts");
   });
 });
 
 describe("files of terms", () => {
   it("are known by their names", () => {
     for (const name of ["stone.csv", "Stone.TSV", "a.b.txt"])
-      expect(terms_type(name)).toBe("text/csv");
-    for (const name of ["aat.ttl", "aat.nt"]) expect(terms_type(name)).toBe("text/turtle");
-    for (const name of ["aat.rdf", "aat.xml"]) expect(terms_type(name)).toBe("application/rdf+xml");
-    for (const name of ["aat.json", "csv", "terms.pdf", ""]) expect(terms_type(name)).toBeNull();
-    for (const ending of kTermsEndings.split(",")) expect(terms_type(`x${ending}`)).not.toBeNull();
+      expect(termsType(name)).toBe("text/csv");
+    for (const name of ["aat.ttl", "aat.nt"]) expect(termsType(name)).toBe("text/turtle");
+    for (const name of ["aat.rdf", "aat.xml"]) expect(termsType(name)).toBe("application/rdf+xml");
+    for (const name of ["aat.json", "csv", "terms.pdf", ""]) expect(termsType(name)).toBeNull();
+    for (const ending of kTermsEndings.split(",")) expect(termsType(`x${ending}`)).not.toBeNull();
   });
 });

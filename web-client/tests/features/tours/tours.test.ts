@@ -1,25 +1,25 @@
 import fc from "fast-check";
 import { describe, expect, it } from "vitest";
 
-import { told_ago } from "../../../src/domain/times";
+import { toldAgo } from "../../../src/domain/times";
 import { Tours } from "../../../src/features/tours/tours";
 import { Api, ApiError } from "../../../src/net/api";
-import { kSilent_ms, state_of_kiosk } from "../../../src/domain/kiosks";
+import { kSilentMs, stateOfKiosk } from "../../../src/domain/kiosks";
 import type { Tour, TourEntry } from "../../../src/core/protocol.gen";
 import {
-  body_of,
+  bodyOf,
   differs,
-  draft_of,
-  empty_tour,
-  is_about,
-  language_of_field,
+  draftOf,
+  emptyTour,
+  isAbout,
+  languageOfField,
   moved,
-  new_stop,
-  place_of,
-  problem_of,
+  newStop,
+  placeOf,
+  problemOf,
   untranslated,
-  without_language,
-  writes_in,
+  withoutLanguage,
+  writesIn,
 } from "../../../src/domain/tours";
 import type { TourDraft } from "../../../src/domain/tours";
 
@@ -47,7 +47,7 @@ const tour = (more: Partial<Tour> = {}): Tour => ({
   version: 1,
   ...more,
 });
-const draft = (more: Partial<Tour> = {}): TourDraft => draft_of(tour(more));
+const draft = (more: Partial<Tour> = {}): TourDraft => draftOf(tour(more));
 
 describe("what is moved", () => {
   it("stands where it was wanted, and the others keep their order", () => {
@@ -86,9 +86,9 @@ describe("a tour that is written", () => {
         }),
       ],
     });
-    const { name, text, languages, idle_s, stops } = full;
-    expect(body_of(draft_of(full))).toEqual({ name, text, languages, idle_s, stops });
-    expect(differs(draft_of(full), draft_of(full))).toBe(false);
+    const { name, text, languages, idle_s: idleS, stops } = full;
+    expect(bodyOf(draftOf(full))).toEqual({ name, text, languages, idle_s: idleS, stops });
+    expect(differs(draftOf(full), draftOf(full))).toBe(false);
   });
 
   it("differs by what it says, not by blanks", () => {
@@ -106,12 +106,12 @@ describe("a tour that is written", () => {
 
   it("begins with a language, and stops with what their views are called", () => {
     const made = {
-      ...empty_tour("de"),
+      ...emptyTour("de"),
       name: "Rundgang",
-      stops: [new_stop({ slug: "west", name: "Westwand", text: "" }, "de")],
+      stops: [newStop({ slug: "west", name: "Westwand", text: "" }, "de")],
     };
-    expect(problem_of(made)).toBeNull();
-    expect(body_of(made).stops[0]).toMatchObject({
+    expect(problemOf(made)).toBeNull();
+    expect(bodyOf(made).stops[0]).toMatchObject({
       view: "west",
       title: { de: "Westwand" },
       text: {},
@@ -123,7 +123,7 @@ describe("a tour that is written", () => {
 
   it("sends no words that are blank, and the seconds of a cut only where they are some", () => {
     const [first] = draft().stops;
-    const sent = body_of({
+    const sent = bodyOf({
       ...draft(),
       stops: [
         { ...first!, title: { en: " The west ", es: "  " }, transition: "cut", transition_s: "x" },
@@ -135,7 +135,7 @@ describe("a tour that is written", () => {
 });
 
 describe("what is wrong with a tour", () => {
-  const of_stop = (more: object): TourDraft => ({
+  const ofStop = (more: object): TourDraft => ({
     ...draft(),
     stops: [draft().stops[0]!, { ...draft().stops[0]!, ...more }],
   });
@@ -145,25 +145,25 @@ describe("what is wrong with a tour", () => {
     ["no stop", { ...draft(), stops: [] }, "stops", "stops_missing"],
     ["too short a rest", { ...draft(), idle_s: "29" }, "idle_s", "seconds"],
     ["a rest that is not whole", { ...draft(), idle_s: "60.5" }, "idle_s", "seconds"],
-    ["a view that is gone", of_stop({ view: "" }), "stops[1].view", "view_missing"],
+    ["a view that is gone", ofStop({ view: "" }), "stops[1].view", "view_missing"],
     [
       "no title in the first language",
-      of_stop({ title: { es: "El oeste" } }),
+      ofStop({ title: { es: "El oeste" } }),
       "stops[1].title.en",
       "title_missing",
     ],
-    ["no number", of_stop({ attract_s: "a while" }), "stops[1].attract_s", "seconds"],
-    ["too long a flight", of_stop({ transition_s: "31" }), "stops[1].transition_s", "seconds"],
+    ["no number", ofStop({ attract_s: "a while" }), "stops[1].attract_s", "seconds"],
+    ["too long a flight", ofStop({ transition_s: "31" }), "stops[1].transition_s", "seconds"],
   ];
   it.each(cases)("is told at its field: %s", (_, wrong, field, what) =>
-    expect(problem_of(wrong)).toMatchObject({ field, wrong: what }),
+    expect(problemOf(wrong)).toMatchObject({ field, wrong: what }),
   );
 
   it("is not how long a cut takes", () =>
-    expect(problem_of(of_stop({ transition: "cut", transition_s: "" }))).toBeNull());
+    expect(problemOf(ofStop({ transition: "cut", transition_s: "" }))).toBeNull());
   it("is a stop of the server whose view is gone", () => {
     const { view: _, ...gone } = stop();
-    expect(problem_of(draft({ stops: [gone] }))).toMatchObject({ field: "stops[0].view" });
+    expect(problemOf(draft({ stops: [gone] }))).toMatchObject({ field: "stops[0].view" });
   });
 });
 
@@ -189,14 +189,14 @@ describe("languages of a tour", () => {
     const before = draft({
       stops: [stop({ title: { en: "West", es: "Oeste" }, text: { es: "Roto." }, records })],
     });
-    expect(writes_in(before, "es")).toBe(true);
-    const after = without_language(before, "es");
-    expect(writes_in(after, "es")).toBe(false);
-    expect([after.languages, JSON.stringify(body_of(after)).includes('"es"')]).toEqual([
+    expect(writesIn(before, "es")).toBe(true);
+    const after = withoutLanguage(before, "es");
+    expect(writesIn(after, "es")).toBe(false);
+    expect([after.languages, JSON.stringify(bodyOf(after)).includes('"es"')]).toEqual([
       ["en"],
       false,
     ]);
-    expect(body_of(after).stops[0]!.records![0]!.columns).toEqual([
+    expect(bodyOf(after).stops[0]!.records![0]!.columns).toEqual([
       { column: "state", labels: { en: "State" } },
     ]);
   });
@@ -204,14 +204,14 @@ describe("languages of a tour", () => {
 
 describe("a refusal of the server", () => {
   it("is about a field of a stop, or of the tour", () => {
-    expect(place_of("stops[12].title.fr")).toEqual({ stop: 12, within: "title.fr" });
-    expect(place_of("stops[0]")).toEqual({ stop: 0, within: "" });
-    expect(place_of("languages[1]")).toEqual({ stop: null, within: "languages[1]" });
+    expect(placeOf("stops[12].title.fr")).toEqual({ stop: 12, within: "title.fr" });
+    expect(placeOf("stops[0]")).toEqual({ stop: 0, within: "" });
+    expect(placeOf("languages[1]")).toEqual({ stop: null, within: "languages[1]" });
     expect([
-      is_about("layers[2]", "layers"),
-      is_about("title.fr", "title"),
-      is_about("text", "text"),
-      is_about("text_more", "text"),
+      isAbout("layers[2]", "layers"),
+      isAbout("title.fr", "title"),
+      isAbout("text", "text"),
+      isAbout("text_more", "text"),
     ]).toEqual([true, true, true, false]);
     expect(
       [
@@ -221,7 +221,7 @@ describe("a refusal of the server", () => {
         "attract_s",
         "records[0].table",
         "title",
-      ].map(language_of_field),
+      ].map(languageOfField),
     ).toEqual(["fr", "pt-BR", "es", null, null, null]);
   });
 });
@@ -231,7 +231,7 @@ describe("the tours of a model", () => {
     const { stops: _, idle_s: __, ...rest } = tour();
     return { ...rest, stop_count: 1, ...more };
   };
-  const made_of = (
+  const madeOf = (
     answer: (method: string, path: string, init: RequestInit) => [number, unknown],
   ): { tours: Tours; told: () => number } => {
     let told = 0;
@@ -244,7 +244,7 @@ describe("the tours of a model", () => {
 
   it("are read, changed with the version that was read, and deleted", async () => {
     const asked: string[] = [];
-    const { tours } = made_of((method, path, { headers }) => {
+    const { tours } = madeOf((method, path, { headers }) => {
       asked.push(
         `${method} ${path} ${(headers as Record<string, string>)["If-Match"] ?? ""}`.trim(),
       );
@@ -255,7 +255,7 @@ describe("the tours of a model", () => {
     });
     await tours.load();
     expect(tours.all).toEqual([entry()]);
-    await tours.change(tour(), body_of(draft()));
+    await tours.change(tour(), bodyOf(draft()));
     expect(tours.all).toEqual([entry({ name: "Again", version: 2, stop_count: 2 })]);
     await tours.remove(tours.all[0]!);
     expect(tours.all).toEqual([]);
@@ -264,7 +264,7 @@ describe("the tours of a model", () => {
 
   it("are read again where somebody changed one that was to be deleted, and are gone where it is", async () => {
     let [status, version] = [412, 2];
-    const { tours } = made_of((method) =>
+    const { tours } = madeOf((method) =>
       method === "DELETE"
         ? [status, { title: "No" }]
         : [200, { tours: [entry({ version })], total: 1 }],
@@ -279,7 +279,7 @@ describe("the tours of a model", () => {
   });
 
   it("are said to have failed, and are none then", async () => {
-    const { tours, told } = made_of(() => [500, { title: "No" }]);
+    const { tours, told } = madeOf(() => [500, { title: "No" }]);
     await tours.load();
     expect([tours.failed, tours.loaded, tours.all, told()]).toEqual([true, false, [], 1]);
   });
@@ -289,22 +289,22 @@ describe("a kiosk's link", () => {
   const now = new Date("2026-05-04T12:00:00Z");
   const ago = (ms: number): string => new Date(now.getTime() - ms).toISOString();
   it("is told to be what it is", () => {
-    expect(state_of_kiosk({}, now)).toBe("unopened");
-    expect(state_of_kiosk({ last_seen: ago(kSilent_ms) }, now)).toBe("running");
-    expect(state_of_kiosk({ last_seen: ago(kSilent_ms + 1) }, now)).toBe("silent");
-    expect(state_of_kiosk({ last_seen: ago(0), expires: ago(0) }, now)).toBe("expired");
-    expect(state_of_kiosk({ expires: ago(-1) }, now)).toBe("unopened");
-    expect(state_of_kiosk({ revoked: ago(5), expires: ago(9), last_seen: ago(0) }, now)).toBe(
+    expect(stateOfKiosk({}, now)).toBe("unopened");
+    expect(stateOfKiosk({ last_seen: ago(kSilentMs) }, now)).toBe("running");
+    expect(stateOfKiosk({ last_seen: ago(kSilentMs + 1) }, now)).toBe("silent");
+    expect(stateOfKiosk({ last_seen: ago(0), expires: ago(0) }, now)).toBe("expired");
+    expect(stateOfKiosk({ expires: ago(-1) }, now)).toBe("unopened");
+    expect(stateOfKiosk({ revoked: ago(5), expires: ago(9), last_seen: ago(0) }, now)).toBe(
       "revoked",
     );
   });
 
   it("was seen so long ago, in words", () => {
-    expect(told_ago(ago(30_000), now)).toBe("this minute");
-    expect(told_ago(ago(-30_000), now)).toBe("this minute"); // its clock and the server's differ
-    expect(told_ago(ago(5 * 60_000), now)).toBe("5 minutes ago");
-    expect(told_ago(ago(3 * 3_600_000), now)).toBe("3 hours ago");
-    expect(told_ago(ago(50 * 3_600_000), now)).toMatch(/^2 May 2026, /);
+    expect(toldAgo(ago(30_000), now)).toBe("this minute");
+    expect(toldAgo(ago(-30_000), now)).toBe("this minute"); // its clock and the server's differ
+    expect(toldAgo(ago(5 * 60_000), now)).toBe("5 minutes ago");
+    expect(toldAgo(ago(3 * 3_600_000), now)).toBe("3 hours ago");
+    expect(toldAgo(ago(50 * 3_600_000), now)).toMatch(/^2 May 2026, /);
   });
 
   it("is asked for without a key by which the server would keep the answer", async () => {
@@ -313,8 +313,8 @@ describe("a kiosk's link", () => {
       keys = [...keys, (init!.headers as Record<string, string>)["Idempotency-Key"]];
       return new Response("{}", { status: 201 });
     });
-    await api.create_kiosk("pot", "round", { name: "Hall" });
-    await api.reload_kiosk(3);
+    await api.createKiosk("pot", "round", { name: "Hall" });
+    await api.reloadKiosk(3);
     expect([keys[0], typeof keys[1]]).toEqual([undefined, "string"]);
   });
 });

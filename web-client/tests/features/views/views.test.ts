@@ -3,26 +3,26 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { OpenModelSession } from "../../../src/shell/open-model-session";
 import { notices, type Notice } from "../../../src/ui/notices";
-import { hash_of_view, view_of } from "../../../src/ui/routes";
-import { discard_unsaved } from "../../../src/session/sessions";
+import { hashOfView, viewOf } from "../../../src/ui/routes";
+import { discardUnsaved } from "../../../src/session/sessions";
 import { texts } from "../../../src/texts";
 import { Api } from "../../../src/net/api";
 import type { CameraMessage } from "../../../src/math/camera";
-import { presence_palette } from "../../../src/domain/palette";
+import { presencePalette } from "../../../src/domain/palette";
 import type { Look, Plane, Role, View, Welcome } from "../../../src/core/protocol.gen";
 import {
   kAxes,
-  no_section,
-  section_choice,
-  section_planes,
-  with_box_side,
+  noSection,
+  sectionChoice,
+  sectionPlanes,
+  withBoxSide,
   type SectionChoice,
 } from "../../../src/math/section";
 import type { Layer } from "../../../src/core/types";
 import {
-  layers_of_view,
-  layers_to_keep,
-  looks_of_view,
+  layersOfView,
+  layersToKeep,
+  looksOfView,
   type ViewContent,
 } from "../../../src/domain/views";
 import { FakeSocket, welcome } from "../../fake-socket";
@@ -53,7 +53,7 @@ const layer = (id: number, more: Partial<Layer> = {}): Layer => ({
   description: "",
   labels: {},
   descriptions: {},
-  palette: presence_palette("x", "#ff0000ff"),
+  palette: presencePalette("x", "#ff0000ff"),
   opacity: 1,
   visible: true,
   locked: false,
@@ -78,25 +78,25 @@ const look = (id: number, more: Partial<Look> = {}): Look =>
   }) as Look;
 
 const share = fc.integer({ min: 0, max: 1000 }).map((step) => step / 1000); // of the page's sliders
-const side_shares = fc
+const sideShares = fc
   .tuple(share, share)
   .map(([a, b]) => [Math.min(a, b) * 0.9, 0.05 + Math.max(a, b) * 0.95] as const);
-const a_section: fc.Arbitrary<SectionChoice> = fc.oneof(
-  fc.constant(no_section()),
+const aSection: fc.Arbitrary<SectionChoice> = fc.oneof(
+  fc.constant(noSection()),
   fc
     .record({ axis: fc.constantFrom(...kAxes), position: share, flipped: fc.boolean() })
-    .map(({ axis, ...rest }) => ({ ...no_section(), mode: axis, ...rest })),
+    .map(({ axis, ...rest }) => ({ ...noSection(), mode: axis, ...rest })),
   fc
-    .array(side_shares, { minLength: 3, maxLength: 3 })
+    .array(sideShares, { minLength: 3, maxLength: 3 })
     .map((sides) =>
       sides.reduce<SectionChoice>(
         (choice, [min, max], axis) =>
-          with_box_side(with_box_side(choice, "max", axis, max), "min", axis, min),
-        { ...no_section(), mode: "box" },
+          withBoxSide(withBoxSide(choice, "max", axis, max), "min", axis, min),
+        { ...noSection(), mode: "box" },
       ),
     ),
   fc.constant<SectionChoice>({
-    ...no_section(),
+    ...noSection(),
     mode: "planes",
     planes: [
       [0.6, 0.8, 0, -3_580_012],
@@ -105,15 +105,15 @@ const a_section: fc.Arbitrary<SectionChoice> = fc.oneof(
   }),
 );
 
-const settles_at = (choice: SectionChoice): Plane[] => section_planes(choice, bounds);
+const settlesAt = (choice: SectionChoice): Plane[] => sectionPlanes(choice, bounds);
 
 describe("the section of a view", () => {
   it("comes back as the cut, box or planes that it was", () => {
     fc.assert(
-      fc.property(a_section, (choice) => {
-        const planes = settles_at(choice);
-        const again = section_choice(planes, bounds);
-        const expected = settles_at(again);
+      fc.property(aSection, (choice) => {
+        const planes = settlesAt(choice);
+        const again = sectionChoice(planes, bounds);
+        const expected = settlesAt(again);
         expect(expected).toHaveLength(planes.length);
         planes.forEach((plane, index) =>
           plane.forEach((part, at) =>
@@ -147,13 +147,13 @@ describe("the section of a view", () => {
     ["without a direction", [[0, 0, 0, 1]]],
   ];
   it.each(kept)("that is none of the page's (%s) stays as it is", (_, planes) => {
-    const choice = section_choice(planes, bounds);
-    expect([choice.mode, settles_at(choice)]).toEqual(["planes", planes]);
+    const choice = sectionChoice(planes, bounds);
+    expect([choice.mode, settlesAt(choice)]).toEqual(["planes", planes]);
   });
 
   it("is a cut, too, where the plane is written otherwise, and where the model is flat", () => {
-    expect(section_choice([[0, 0, -2, 2 * 603]], bounds)).toEqual({
-      ...no_section(),
+    expect(sectionChoice([[0, 0, -2, 2 * 603]], bounds)).toEqual({
+      ...noSection(),
       mode: "z",
       position: 0.25,
       flipped: false,
@@ -162,15 +162,15 @@ describe("the section of a view", () => {
       min: bounds.min,
       max: [bounds.max[0], bounds.max[1], bounds.min[2]] as [number, number, number],
     };
-    expect(section_choice([[0, 0, 1, -600]], flat).mode).toBe("planes");
+    expect(sectionChoice([[0, 0, 1, -600]], flat).mode).toBe("planes");
   });
 });
 
 describe("what a view keeps", () => {
   it("says of each layer whether and how much it is seen, and palettes only where they are one's own", () => {
-    const own = presence_palette("x", "#00ff00ff");
+    const own = presencePalette("x", "#00ff00ff");
     const layers = [layer(1), layer(2, { visible: false, opacity: 0.5 })];
-    const kept = layers_to_keep(layers, ({ id }) =>
+    const kept = layersToKeep(layers, ({ id }) =>
       id === 1 ? { palette: own, highlight: { keys: [3] } } : { palette: layers[1]!.palette },
     );
     expect(kept).toEqual([
@@ -181,9 +181,9 @@ describe("what a view keeps", () => {
 
   it("means only layers and looks that are there", () => {
     expect([
-      ...layers_of_view({ layers: [{ layer: 1, opacity: 0.5 }, { layer: 9 }] }, [layer(1)]),
+      ...layersOfView({ layers: [{ layer: 1, opacity: 0.5 }, { layer: 9 }] }, [layer(1)]),
     ]).toEqual([[1, { opacity: 0.5 }]]);
-    const { settings, stack } = looks_of_view(
+    const { settings, stack } = looksOfView(
       { looks: [{ look: 2, opacity: 0.5 }, { look: 9 }, { look: 1 }] },
       [look(1), look(2), look(3)],
     );
@@ -201,11 +201,11 @@ describe("the address of a view", () => {
     fc.assert(
       fc.property(
         fc.string({ minLength: 1, maxLength: 40 }),
-        (slug) => void expect(view_of(hash_of_view(slug))).toBe(slug),
+        (slug) => void expect(viewOf(hashOfView(slug))).toBe(slug),
       ),
     );
     for (const hash of ["", "#view=", "#view=%E0%A4", "#comment=3", "#view=a&b"])
-      expect(view_of(hash)).toBeNull();
+      expect(viewOf(hash)).toBeNull();
   });
 });
 
@@ -218,14 +218,14 @@ let calls: { method: string; path: string; body: unknown; headers: Record<string
 let session: OpenModelSession;
 let told: readonly Notice[];
 let unsubscribe: () => void;
-let less_motion: boolean;
+let lessMotion: boolean;
 
 const socket = (): FakeSocket => sockets[sockets.length - 1]!;
 const settle = (): Promise<unknown> => vi.advanceTimersByTimeAsync(0);
 const path = "/api/v1/models/1/views";
 const listed = (...views: View[]): void =>
   void answers.set(`GET ${path}?limit=1000`, [200, { views, total: views.length }]);
-const view_with = (id: number, content: ViewContent, more: Partial<View> = {}): View =>
+const viewWith = (id: number, content: ViewContent, more: Partial<View> = {}): View =>
   JSON.parse(
     JSON.stringify({
       id,
@@ -247,7 +247,7 @@ async function open(
 ): Promise<void> {
   if (!session.model) {
     await session.open();
-    session.view.set_viewport(800, 600, 1);
+    session.view.setViewport(800, 600, 1);
   }
   socket().open();
   socket().receive({ ...welcome(), role, model, layers, looks });
@@ -256,10 +256,10 @@ async function open(
 
 beforeEach(() => {
   vi.useFakeTimers();
-  less_motion = true;
+  lessMotion = true;
   vi.stubGlobal("window", { location: { protocol: "http:", host: "here" }, devicePixelRatio: 1 });
   vi.stubGlobal("location", { origin: "http://here" });
-  vi.stubGlobal("matchMedia", () => ({ matches: less_motion }));
+  vi.stubGlobal("matchMedia", () => ({ matches: lessMotion }));
   vi.stubGlobal("requestAnimationFrame", (callback: () => void) => setTimeout(callback, 16));
   vi.stubGlobal("cancelAnimationFrame", (id: number) => clearTimeout(id));
   sockets = [];
@@ -290,7 +290,7 @@ beforeEach(() => {
   unsubscribe = notices.subscribe((shown) => (told = shown));
 });
 afterEach(() => {
-  discard_unsaved();
+  discardUnsaved();
   vi.advanceTimersByTime(60_000); // notices go
   unsubscribe();
   vi.unstubAllGlobals();
@@ -305,16 +305,16 @@ interface Seen {
   section: SectionChoice;
   light: "museum" | "headlight" | "raking" | "unlit";
   direction: [number, number, number];
-  layers: { visible: boolean; opacity: number; own_palette: boolean; key: number | null }[];
+  layers: { visible: boolean; opacity: number; ownPalette: boolean; key: number | null }[];
   looks: { visible: boolean; opacity: number }[];
 }
-const an_opacity = fc.double({ min: 0, max: 1, noNaN: true });
-const what_is_seen: fc.Arbitrary<Seen> = fc.record({
+const anOpacity = fc.double({ min: 0, max: 1, noNaN: true });
+const whatIsSeen: fc.Arbitrary<Seen> = fc.record({
   azimuth: fc.double({ min: -3, max: 3, noNaN: true }),
   elevation: fc.double({ min: -1.5, max: 1.5, noNaN: true }),
   zoom: fc.double({ min: 0.05, max: 5, noNaN: true }),
   perspective: fc.boolean(),
-  section: a_section,
+  section: aSection,
   light: fc.constantFrom(
     "museum" as const,
     "headlight" as const,
@@ -325,13 +325,13 @@ const what_is_seen: fc.Arbitrary<Seen> = fc.record({
   layers: fc.array(
     fc.record({
       visible: fc.boolean(),
-      opacity: an_opacity,
-      own_palette: fc.boolean(),
+      opacity: anOpacity,
+      ownPalette: fc.boolean(),
       key: fc.option(fc.nat(9)),
     }),
     { minLength: 2, maxLength: 2 },
   ),
-  looks: fc.array(fc.record({ visible: fc.boolean(), opacity: an_opacity }), {
+  looks: fc.array(fc.record({ visible: fc.boolean(), opacity: anOpacity }), {
     minLength: 3,
     maxLength: 3,
   }),
@@ -341,20 +341,20 @@ function see(seen: Seen): void {
   const { view, layers, appearance } = session;
   view.fit();
   Object.assign(view.camera, { azimuth: seen.azimuth, elevation: seen.elevation });
-  view.set_perspective(seen.perspective);
-  view.zoom_at(seen.zoom, 300, 200);
-  appearance.set_section(seen.section);
-  appearance.set_light({ mode: seen.light, direction: seen.direction });
+  view.setPerspective(seen.perspective);
+  view.zoomAt(seen.zoom, 300, 200);
+  appearance.setSection(seen.section);
+  appearance.setLight({ mode: seen.light, direction: seen.direction });
   layers.all.forEach((each, index) => {
-    const { visible, opacity, own_palette, key } = seen.layers[index]!;
-    layers.set_visible(each, visible);
-    layers.set_opacity(each, opacity);
-    layers.set_palette(each, own_palette ? presence_palette("y", "#0000ffff") : null);
-    layers.set_highlight(each.id, key === null ? null : { keys: [key] });
+    const { visible, opacity, ownPalette, key } = seen.layers[index]!;
+    layers.setVisible(each, visible);
+    layers.setOpacity(each, opacity);
+    layers.setPalette(each, ownPalette ? presencePalette("y", "#0000ffff") : null);
+    layers.setHighlight(each.id, key === null ? null : { keys: [key] });
   });
   appearance.looks.forEach((each, index) => {
-    appearance.set_visible(each, seen.looks[index]!.visible);
-    appearance.set_opacity(each, seen.looks[index]!.opacity);
+    appearance.setVisible(each, seen.looks[index]!.visible);
+    appearance.setOpacity(each, seen.looks[index]!.opacity);
   });
 }
 
@@ -370,22 +370,22 @@ function places({ view, projection }: Pick<CameraMessage, "view" | "projection">
     return [clip[0]! / clip[3]!, clip[1]! / clip[3]!, clip[2]! / clip[3]!];
   });
 }
-function expect_same({ camera, ...rest }: ViewContent, then: ViewContent | View): void {
-  const { camera: camera_then, layers, looks, light } = then;
+function expectSame({ camera, ...rest }: ViewContent, then: ViewContent | View): void {
+  const { camera: cameraThen, layers, looks, light } = then;
   expect(rest).toEqual({ layers, looks, light });
   expect([camera.width, camera.height, camera.section?.length]).toEqual([
-    camera_then.width,
-    camera_then.height,
-    camera_then.section?.length,
+    cameraThen.width,
+    cameraThen.height,
+    cameraThen.section?.length,
   ]);
   (camera.section ?? []).forEach((plane, index) =>
     plane.forEach((part, at) =>
-      expect(Math.abs(part - camera_then.section![index]![at]!)).toBeLessThan(1e-6),
+      expect(Math.abs(part - cameraThen.section![index]![at]!)).toBeLessThan(1e-6),
     ),
   );
-  const [places_now, places_then] = [places(camera), places(camera_then)];
-  places_then.forEach((place, index) =>
-    expect(Math.abs(places_now[index]! - place) / Math.max(1, Math.abs(place))).toBeLessThan(1e-6),
+  const [placesNow, placesThen] = [places(camera), places(cameraThen)];
+  placesThen.forEach((place, index) =>
+    expect(Math.abs(placesNow[index]! - place) / Math.max(1, Math.abs(place))).toBeLessThan(1e-6),
   );
 }
 /** What the server was told last. */
@@ -398,23 +398,23 @@ describe("going to a view", () => {
   it("shows what was kept, whatever was set up before, and leads back to that", async () => {
     await open();
     fc.assert(
-      fc.property(what_is_seen, what_is_seen, (kept, before) => {
+      fc.property(whatIsSeen, whatIsSeen, (kept, before) => {
         see(kept);
         const content = JSON.parse(JSON.stringify(session.views.content())) as ViewContent;
-        const view = view_with(3, content);
+        const view = viewWith(3, content);
         see(before);
         const own = session.views.content();
-        session.views.go_to(view);
-        expect_same(session.views.content(), content);
+        session.views.goTo(view);
+        expectSame(session.views.content(), content);
         expect(sent()).toEqual(content.layers);
-        session.views.go_back();
+        session.views.goBack();
         const back = session.views.content();
         // no table is open
-        expect_same(
+        expectSame(
           { ...back, layers: back.layers.map(({ highlight: _, ...rest }) => rest) },
           { ...own, layers: own.layers.map(({ highlight: _, ...rest }) => rest) },
         );
-        session.layers.all.forEach(({ id }) => session.layers.set_highlight(id, null));
+        session.layers.all.forEach(({ id }) => session.layers.setHighlight(id, null));
       }),
       { numRuns: 60 },
     );
@@ -422,17 +422,17 @@ describe("going to a view", () => {
 
   it("goes out to the server as camera, section, layers, looks and light", async () => {
     await open();
-    session.appearance.set_section({ mode: "z", position: 0.25 });
-    session.appearance.set_light({ mode: "raking", direction: [1, 0, 1] });
-    session.layers.set_visible(session.layers.all[0]!, false);
-    session.appearance.set_visible(session.appearance.looks[1]!, true);
-    const view = view_with(3, session.views.content());
+    session.appearance.setSection({ mode: "z", position: 0.25 });
+    session.appearance.setLight({ mode: "raking", direction: [1, 0, 1] });
+    session.layers.setVisible(session.layers.all[0]!, false);
+    session.appearance.setVisible(session.appearance.looks[1]!, true);
+    const view = viewWith(3, session.views.content());
     session.appearance.reset();
-    session.layers.reset_overrides();
-    session.view.standard_view("top");
+    session.layers.resetOverrides();
+    session.view.standardView("top");
     await vi.advanceTimersByTimeAsync(500);
     expect(socket().of("layers").at(-1)).toEqual({ op: "layers", layers: [] });
-    session.views.go_to(view);
+    session.views.goTo(view);
     await vi.advanceTimersByTimeAsync(500);
     const camera = socket().of("camera").at(-1)!;
     expect(places(camera)).toEqual(
@@ -455,13 +455,13 @@ describe("going to a view", () => {
 
   it("is the same when the defaults are others by then", async () => {
     await open();
-    const view = view_with(3, session.views.content());
+    const view = viewWith(3, session.views.content());
     await open(
       "owner",
       [layer(7, { visible: false, opacity: 0.2 }), layer(8)],
       [look(1, { visible: false }), look(2, { visible: true, order: 0 })],
     );
-    session.views.go_to(view);
+    session.views.goTo(view);
     expect(sent().find(({ layer }) => layer === 7)).toEqual({
       layer: 7,
       visible: true,
@@ -472,82 +472,82 @@ describe("going to a view", () => {
 
   it("keeps the order in which the looks lie, until it is left", async () => {
     await open();
-    const view = view_with(3, {
+    const view = viewWith(3, {
       ...session.views.content(),
       looks: [
         { look: 2, opacity: 1 },
         { look: 1, opacity: 1 },
       ],
     });
-    session.views.go_to(view);
+    session.views.goTo(view);
     expect(socket().of("layers").at(-1)!.looks).toEqual([
       { look: 2, opacity: 1 },
       { look: 1, opacity: 1 },
     ]);
-    expect(session.appearance.has_look_overrides).toBe(true);
+    expect(session.appearance.hasLookOverrides).toBe(true);
     session.appearance.reset();
     expect(socket().of("layers").at(-1)!.looks).toBeUndefined();
   });
 
   it("in a window of another shape shows all that was seen", async () => {
     await open();
-    session.view.zoom_at(0.4, 100, 100);
-    const view = view_with(3, session.views.content());
+    session.view.zoomAt(0.4, 100, 100);
+    const view = viewWith(3, session.views.content());
     const { camera } = session.view;
-    const corner = camera.point_on_focus_plane(0, 0);
-    session.view.set_viewport(300, 700, 1);
-    session.view.standard_view("top");
-    session.views.go_to(view);
+    const corner = camera.pointOnFocusPlane(0, 0);
+    session.view.setViewport(300, 700, 1);
+    session.view.standardView("top");
+    session.views.goTo(view);
     const at = camera.project(corner)!;
     expect(at.x).toBeCloseTo(0, 3);
     expect(at.y).toBeGreaterThan(0);
     session.view.fit();
-    expect(camera.half_field).toBeCloseTo(Math.tan((17.5 * Math.PI) / 180), 12);
+    expect(camera.halfField).toBeCloseTo(Math.tan((17.5 * Math.PI) / 180), 12);
   });
 
   it("flies there, unless less motion is wanted, and counts as there from the beginning", async () => {
-    less_motion = false;
+    lessMotion = false;
     await open();
-    const view = view_with(3, session.views.content());
+    const view = viewWith(3, session.views.content());
     listed(view);
     await session.views.load();
-    session.view.standard_view("top");
+    session.view.standardView("top");
     const start = session.view.camera.eye();
-    session.views.go_to(view);
+    session.views.goTo(view);
     expect(session.view.camera.eye()).toEqual(start);
     expect(session.views.current).toEqual(view);
     await vi.advanceTimersByTimeAsync(300);
     expect(session.view.camera.elevation).toBeGreaterThan(0.3);
     expect(session.views.current).toEqual(view);
     await vi.advanceTimersByTimeAsync(1000);
-    expect_same(session.views.content(), view);
+    expectSame(session.views.content(), view);
     expect(session.views.current).toEqual(view);
-    session.view.orbit_pixels(4, 0);
+    session.view.orbitPixels(4, 0);
     expect(session.views.current).toBeNull();
   });
 
   it("waits while one paints", async () => {
     await open();
-    const view = view_with(3, session.views.content());
-    session.view.standard_view("top");
-    session.choose_tool("brush");
-    session.gestures.tool_down({ x: 5, y: 5 });
-    session.layers.set_visible(session.layers.all[1]!, true);
+    const view = viewWith(3, session.views.content());
+    session.view.standardView("top");
+    session.chooseTool("brush");
+    session.gestures.toolDown({ x: 5, y: 5 });
+    session.layers.setVisible(session.layers.all[1]!, true);
     const before = session.views.content();
-    session.views.go_to(view);
+    session.views.goTo(view);
     expect(session.views.content()).toEqual(before);
-    session.gestures.tool_up();
-    expect_same(session.views.content(), view);
+    session.gestures.toolUp();
+    expectSame(session.views.content(), view);
   });
 
   it("from one to the next leads back to what was seen before the first, until something was changed", async () => {
     await open();
-    const first = view_with(1, session.views.content());
-    session.view.standard_view("left");
-    const second = view_with(2, session.views.content());
+    const first = viewWith(1, session.views.content());
+    session.view.standardView("left");
+    const second = viewWith(2, session.views.content());
     listed(first, second);
     await session.views.load();
-    session.view.standard_view("top");
+    session.view.standardView("top");
     const own = session.views.content();
     session.views.step(1);
     expect(session.views.current).toEqual(first);
@@ -558,36 +558,36 @@ describe("going to a view", () => {
     session.views.step(-1);
     expect(session.views.current).toEqual(second);
     expect(told.map(({ title }) => title)).toEqual([words.shown("V2")]);
-    session.views.go_back();
-    expect_same(session.views.content(), own);
-    expect([session.views.leads_back, session.views.current, told]).toEqual([false, null, []]);
+    session.views.goBack();
+    expectSame(session.views.content(), own);
+    expect([session.views.leadsBack, session.views.current, told]).toEqual([false, null, []]);
 
-    session.views.go_to(first);
-    session.appearance.next_light();
+    session.views.goTo(first);
+    session.appearance.nextLight();
     const changed = session.views.content();
-    session.views.go_to(second);
-    session.views.go_back();
-    expect_same(session.views.content(), changed);
+    session.views.goTo(second);
+    session.views.goBack();
+    expectSame(session.views.content(), changed);
   });
 
   it("leaves out on the way back what was deleted meanwhile, and shows the rows again that are chosen then", async () => {
     await open();
-    session.layers.set_opacity(session.layers.find(8)!, 0.5);
-    session.layers.set_highlight(7, { keys: [1] });
-    const view = view_with(3, {
+    session.layers.setOpacity(session.layers.find(8)!, 0.5);
+    session.layers.setHighlight(7, { keys: [1] });
+    const view = viewWith(3, {
       ...session.views.content(),
       layers: [{ layer: 7, highlight: { keys: [2], isolate: true } }],
     });
-    session.views.go_to(view);
+    session.views.goTo(view);
     expect(sent()).toEqual([{ layer: 7, highlight: { keys: [2], isolate: true } }]);
-    expect(session.layers.has_overrides).toBe(true);
-    session.layers.set_highlight(7, { keys: [5] });
+    expect(session.layers.hasOverrides).toBe(true);
+    session.layers.setHighlight(7, { keys: [5] });
     expect(sent()).toEqual([{ layer: 7, highlight: { keys: [5] } }]);
-    session.layers.set_highlight(7, null);
+    session.layers.setHighlight(7, null);
     expect(sent()).toEqual([{ layer: 7, highlight: { keys: [2], isolate: true } }]);
     socket().receive({ op: "layer", event: "deleted", layer_id: 8 });
-    session.tables.view = { layer_id: 7, highlight: { keys: [6] } } as never;
-    session.views.go_back();
+    session.tables.view = { layerId: 7, highlight: { keys: [6] } } as never;
+    session.views.goBack();
     expect(sent()).toEqual([{ layer: 7, highlight: { keys: [6] } }]);
     session.tables.view = null;
   });
@@ -602,18 +602,18 @@ describe("the list of views", () => {
       light: { mode: "museum" as const },
     };
     const names = (): string[] => session.views.all.map(({ name }) => name);
-    listed(view_with(2, content), view_with(1, content));
+    listed(viewWith(2, content), viewWith(1, content));
     await open();
     expect([session.views.loaded, names()]).toEqual([true, ["V1", "V2"]]);
-    answers.set(`GET ${path}/3`, [200, view_with(3, content)]);
+    answers.set(`GET ${path}/3`, [200, viewWith(3, content)]);
     socket().receive({ op: "view", event: "created", view: 3 });
     await settle();
-    answers.set(`GET ${path}/1`, [200, view_with(1, content, { name: "West", version: 2 })]);
+    answers.set(`GET ${path}/1`, [200, viewWith(1, content, { name: "West", version: 2 })]);
     socket().receive({ op: "view", event: "changed", view: 1 });
     await settle();
     socket().receive({ op: "view", event: "deleted", view: 2 });
     expect(names()).toEqual(["West", "V3"]);
-    answers.set(`GET ${path}/1`, [200, view_with(1, content)]); // an answer that was under way
+    answers.set(`GET ${path}/1`, [200, viewWith(1, content)]); // an answer that was under way
     socket().receive({ op: "view", event: "changed", view: 1 });
     await settle();
     answers.set(`GET ${path}/3`, [404, { title: "Not found" }]);
@@ -625,11 +625,11 @@ describe("the list of views", () => {
   it("outlives a lost connection, and what happened meanwhile is known afterwards", async () => {
     await open();
     const content = session.views.content();
-    listed(view_with(1, content), view_with(2, content));
+    listed(viewWith(1, content), viewWith(2, content));
     await session.views.load();
     socket().lose();
     expect(session.views.all).toHaveLength(2);
-    listed(view_with(2, content, { name: "New", version: 2 }));
+    listed(viewWith(2, content, { name: "New", version: 2 }));
     await vi.advanceTimersByTimeAsync(1000);
     await open();
     expect(session.views.all.map(({ name }) => name)).toEqual(["New"]);
@@ -646,15 +646,15 @@ describe("the list of views", () => {
 
   it("is followed by addresses with slug or id, and tells when there is none", async () => {
     await open();
-    const view = view_with(3, session.views.content(), { slug: "west-wall" });
+    const view = viewWith(3, session.views.content(), { slug: "west-wall" });
     listed(view);
     await session.views.load();
     for (const ref of ["west-wall", "3"]) {
-      session.view.standard_view("top");
+      session.view.standardView("top");
       session.views.follow(ref);
       expect(session.views.current).toEqual(view);
     }
-    expect(session.views.link_to(view)).toBe("http://here/models/1#view=west-wall");
+    expect(session.views.linkTo(view)).toBe("http://here/models/1#view=west-wall");
     session.views.follow("gone");
     expect(told.at(-1)!.title).toBe(words.missing);
     listed();
@@ -668,36 +668,36 @@ describe("keeping views", () => {
   it("sends what is seen, with the call's own key, and counts as being there", async () => {
     await open();
     const content = session.views.content();
-    const made = view_with(4, content);
+    const made = viewWith(4, content);
     answers.set(`POST ${path}`, [201, made]);
     await session.views.keep({ name: "V4", text: "" }, content, "key-1");
     expect(calls.at(-1)).toMatchObject({
       body: { name: "V4", text: "", ...content },
       headers: { "Idempotency-Key": "key-1" },
     });
-    expect([session.views.current, session.views.leads_back]).toEqual([made, false]);
-    const other = view_with(5, { ...content, light: { mode: "unlit" } });
-    session.views.go_to(other);
-    session.views.go_back();
-    expect_same(session.views.content(), content);
+    expect([session.views.current, session.views.leadsBack]).toEqual([made, false]);
+    const other = viewWith(5, { ...content, light: { mode: "unlit" } });
+    session.views.goTo(other);
+    session.views.goBack();
+    expectSame(session.views.content(), content);
   });
 
   it("is changed by who made them and by curators", async () => {
     await open("annotator");
     const content = session.views.content();
-    const [mine, hers] = [view_with(1, content), view_with(2, content, { user: "ada" })];
-    expect([mine, hers].map((view) => session.views.may_change(view))).toEqual([true, false]);
+    const [mine, hers] = [viewWith(1, content), viewWith(2, content, { user: "ada" })];
+    expect([mine, hers].map((view) => session.views.mayChange(view))).toEqual([true, false]);
     await open("curator");
-    expect([mine, hers].map((view) => session.views.may_change(view))).toEqual([true, true]);
+    expect([mine, hers].map((view) => session.views.mayChange(view))).toEqual([true, true]);
   });
 
   it("shows something else under a name, and takes that back", async () => {
     await open();
-    const view = view_with(1, session.views.content());
+    const view = viewWith(1, session.views.content());
     listed(view);
     await session.views.load();
-    session.appearance.set_light({ mode: "unlit" });
-    answers.set(`PATCH ${path}/1`, [200, view_with(1, session.views.content(), { version: 2 })]);
+    session.appearance.setLight({ mode: "unlit" });
+    answers.set(`PATCH ${path}/1`, [200, viewWith(1, session.views.content(), { version: 2 })]);
     await session.views.replace(view);
     expect(calls.at(-1)).toMatchObject({
       body: session.views.content(),
@@ -717,7 +717,7 @@ describe("keeping views", () => {
 
   it("of what somebody else changed since is refused, and is then as it is now", async () => {
     await open();
-    const view = view_with(1, session.views.content());
+    const view = viewWith(1, session.views.content());
     listed(view);
     await session.views.load();
     const stale: [number, unknown] = [412, { status: 412, title: "Stale" }];
@@ -728,7 +728,7 @@ describe("keeping views", () => {
       () => session.views.remove(view),
     ];
     for (const [index, attempt] of attempts.entries()) {
-      const theirs = view_with(1, session.views.content(), {
+      const theirs = viewWith(1, session.views.content(), {
         name: `Theirs ${index}`,
         version: index + 2,
       });
