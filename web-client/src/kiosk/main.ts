@@ -6,7 +6,7 @@ import { kioskFetch } from "./as-kiosk";
 import { keepOnPage, stayAwake } from "./guard";
 import "./kiosk-page";
 import { KioskSession } from "./kiosk-session";
-import { KioskStore, openBrowserShelf, startWorker } from "./store";
+import { KioskStore, openBrowserCache, startWorker } from "./store";
 
 /** Behind /kiosk/; null: there is none. */
 export const secretOf = (path: string): string | null =>
@@ -26,7 +26,7 @@ export function startKiosk(): void {
   const session = new KioskSession({
     api: new Api(kioskFetch),
     secret,
-    store: new KioskStore({ openShelf: openBrowserShelf, secret }),
+    store: new KioskStore({ openCache: openBrowserCache, secret }),
     reload: () => location.reload(),
   });
   const page = document.createElement("strata-kiosk");

@@ -8,7 +8,7 @@ import { asKiosk, patientFetch, pictureOfView } from "./as-kiosk";
 import { cardOf } from "./cards";
 
 /** As the browser has it: of CacheStorage and Cache what is used here. */
-export interface StoreShelf {
+export interface KioskCache {
   match(key: string): Promise<Response | undefined>;
   put(key: string, response: Response): Promise<void>;
   delete(key: string): Promise<unknown>;
@@ -17,7 +17,7 @@ export interface StoreShelf {
 }
 
 export interface StoreOptions {
-  openShelf: () => Promise<StoreShelf | null>;
+  openCache: () => Promise<KioskCache | null>;
   secret: string;
   fetch?: Fetch;
   /** Of the page and what it has loaded. */
@@ -41,7 +41,7 @@ export class KioskStore {
    * now.
    */
   async lastTold(now: Date = new Date()): Promise<KioskSelf | null> {
-    const found = await (await this._options.openShelf())?.match(await this.selfKey());
+    const found = await (await this._options.openCache())?.match(await this.selfKey());
     if (!found) return null;
     const self = (await found.json()) as KioskSelf;
     return self.expires && new Date(self.expires) <= now ? null : self;
@@ -50,8 +50,8 @@ export class KioskStore {
   /** The link is worthless: nothing of it stays. */
   async forget(): Promise<void> {
     this._kept = "";
-    const shelf = await this._options.openShelf();
-    for (const key of (await shelf?.keys()) ?? []) await shelf?.delete(key);
+    const cache = await this._options.openCache();
+    for (const key of (await cache?.keys()) ?? []) await cache?.delete(key);
   }
 
   /**
@@ -64,8 +64,8 @@ export class KioskStore {
     if (this._keeping || (state === this._kept && nowMs - this._keptMs < kAgainMs)) return;
     this._keeping = true;
     try {
-      const shelf = await this._options.openShelf();
-      if (shelf && (await this.keepOn(shelf, self))) {
+      const cache = await this._options.openCache();
+      if (cache && (await this.keepOn(cache, self))) {
         this._kept = state;
         this._keptMs = nowMs;
       }
@@ -74,7 +74,7 @@ export class KioskStore {
     }
   }
 
-  private async keepOn(shelf: StoreShelf, self: KioskSelf): Promise<boolean> {
+  private async keepOn(cache: KioskCache, self: KioskSelf): Promise<boolean> {
     const kept = new Set<string>();
     let complete = true;
     const put = async (key: string, ask: () => Promise<Response>): Promise<void> => {
@@ -83,7 +83,7 @@ export class KioskStore {
         const response = await ask();
         if (!response.ok) complete &&= response.status < 500;
         else {
-          await shelf.put(key, response);
+          await cache.put(key, response);
           kept.add(key);
         }
       } catch {
@@ -99,7 +99,7 @@ export class KioskStore {
     } catch {
       complete = false;
     }
-    if (complete) for (const key of await shelf.keys()) if (!kept.has(key)) await shelf.delete(key);
+    if (complete) for (const key of await cache.keys()) if (!kept.has(key)) await cache.delete(key);
     return complete;
   }
 
@@ -162,7 +162,7 @@ function filesOfPage(): string[] {
   return [...new Set([...own.map(({ pathname }) => pathname), "/favicon.svg"])];
 }
 
-export async function openBrowserShelf(): Promise<StoreShelf | null> {
+export async function openBrowserCache(): Promise<KioskCache | null> {
   if (!("caches" in globalThis) || !("subtle" in crypto)) return null;
   const cache = await caches.open(kCache);
   return {

@@ -82,8 +82,8 @@ export interface ConnectionCallbacks {
   takenUp(changes: number): void;
 }
 
-/** Where changes wait that are to outlive the page (unsaved-shelf.ts). */
-export interface Shelf {
+/** Where changes wait that are to outlive the page (offline-queue.ts). */
+export interface ChangeQueue {
   read(): Promise<ChangeMessage[]>;
   put(message: ChangeMessage): void;
   remove(ids: readonly string[]): void;
@@ -97,7 +97,7 @@ export interface ConnectionOptions {
   /**
    * Of the person who paints here; without it what is not saved lives as long as the connection.
    */
-  makeShelf?: (user: string, model: number) => Shelf;
+  makeQueue?: (user: string, model: number) => ChangeQueue;
   /** Calls back before the next picture is drawn. */
   nextFrame?: (callback: () => void) => void;
   random?: () => number;
@@ -141,8 +141,8 @@ export class Connection {
   private _resendSlice = 100; // messages a second, so that the server's limit is kept
   private _resending: ChangeMessage[] = []; // still to go out again; new changes queue behind them
 
-  private _shelf: Shelf | null = null;
-  private readonly _outbox = new Outbox((ids) => this._shelf?.remove(ids));
+  private _queue: ChangeQueue | null = null;
+  private readonly _outbox = new Outbox((ids) => this._queue?.remove(ids));
   // ids whose answers say nothing new: given up, or signs of life
   private readonly _silenced = new Set<string>();
 
@@ -201,7 +201,7 @@ export class Connection {
     this.setSilenceTimer(kOpeningMs, () => this.giveUpSocket());
   }
 
-  /** For good; what is not saved stays on the shelf. */
+  /** For good; what is not saved stays in the queue. */
   close(): void {
     this.forgetTimers();
     const socket = this._socket;
@@ -323,7 +323,7 @@ export class Connection {
   }
 
   private change(message: ChangeMessage): void {
-    this._shelf?.put(message);
+    this._queue?.put(message);
     this._outbox.add(message);
     if (this._resending.length > 0) this._resending.push(message);
     else if (this._state === "open") this.send(message);
@@ -452,15 +452,15 @@ export class Connection {
     if (this._camera) this.sendCamera();
     this.resend();
     this.reportSaving();
-    if (!this._shelf && this._options.makeShelf) {
-      this._shelf = this._options.makeShelf(message.user, message.model.id);
-      void this.takeUp(this._shelf, message.strokes);
+    if (!this._queue && this._options.makeQueue) {
+      this._queue = this._options.makeQueue(message.user, message.model.id);
+      void this.takeUp(this._queue, message.strokes);
     }
   }
 
   /** What this person's earlier pages could not have saved. */
-  private async takeUp(shelf: Shelf, known: Welcome["strokes"]): Promise<void> {
-    const messages = await shelf.read();
+  private async takeUp(queue: ChangeQueue, known: Welcome["strokes"]): Promise<void> {
+    const messages = await queue.read();
     if (this._state === "closed") return;
     const changes = this._outbox.adopt(messages);
     for (const { stroke, n } of known) this._outbox.savedThrough(stroke, n);
@@ -499,7 +499,7 @@ export class Connection {
 
   /** The model is gone, and with it what waits. */
   forget(): void {
-    this._shelf?.remove(this._outbox.messages().map((message) => message.id));
+    this._queue?.remove(this._outbox.messages().map((message) => message.id));
   }
 
   private resend(): void {

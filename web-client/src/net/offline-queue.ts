@@ -50,7 +50,7 @@ const isChange = (row: unknown): row is ChangeMessage =>
  * What one person asked for on one model. `failed` hears when the browser does not keep it; then it
  * lives as long as the page.
  */
-export class UnsavedShelf {
+export class OfflineQueue {
   private readonly _keys = new Map<string, Key>();
   private _made = 0;
 

@@ -36,7 +36,7 @@ import {
   type ModelPatch,
   type Role,
 } from "../core/types";
-import { UnsavedShelf } from "../net/offline-queue";
+import { OfflineQueue } from "../net/offline-queue";
 import { BrushTool } from "../features/painting/brush-tool";
 import { BucketTool } from "../features/painting/bucket-tool";
 import { CommentTool } from "../features/comments/comment-tool";
@@ -310,7 +310,7 @@ export class OpenModelSession implements ModelSession {
         client,
         devicePixelRatio: window.devicePixelRatio,
         ...(makeSocket ? { makeSocket } : {}),
-        makeShelf: (user, model) => new UnsavedShelf(user, model, notKept),
+        makeQueue: (user, model) => new OfflineQueue(user, model, notKept),
       },
       {
         state: (state) => this.onState(state),

@@ -6,7 +6,7 @@ import { Api, ApiError } from "../../src/net/api";
 import type { KioskSelf, View } from "../../src/core/protocol.gen";
 import { KioskSession } from "../../src/kiosk/kiosk-session";
 import { KioskLink } from "../../src/kiosk/link";
-import { KioskStore, type StoreShelf } from "../../src/kiosk/store";
+import { KioskStore, type KioskCache } from "../../src/kiosk/store";
 import { FakeSocket, welcome } from "../fake-socket";
 
 const kIdentity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -5, 1];
@@ -194,7 +194,7 @@ describe("the link of a kiosk", () => {
   });
 });
 
-class Shelf implements StoreShelf {
+class Shelf implements KioskCache {
   readonly things = new Map<string, string>();
   async match(key: string): Promise<Response | undefined> {
     const found = this.things.get(key);
@@ -212,23 +212,23 @@ class Shelf implements StoreShelf {
 }
 
 describe("what a kiosk keeps", () => {
-  const make = (secret = "SECRET", shelf = new Shelf()) => {
+  const make = (secret = "SECRET", cache = new Shelf()) => {
     const site = new Site();
     const store = new KioskStore({
-      openShelf: async () => shelf,
+      openCache: async () => cache,
       secret,
       files: () => ["/assets/main-1.js"],
       fetch: async (address, init) =>
         address.startsWith("/api") ? site.answer(address, init) : new Response(`file ${address}`),
     });
-    return { site, shelf, store };
+    return { site, cache, store };
   };
 
   it("is the page, its files, the views with their pictures, and what it was told, but not its secret", async () => {
-    const { shelf, store, site } = make();
+    const { cache, store, site } = make();
     await store.keep(site.self, "1");
     expect(await store.lastTold()).toEqual(site.self);
-    const keys = await shelf.keys();
+    const keys = await cache.keys();
     for (const key of [
       "/kiosk/",
       "/assets/main-1.js",
@@ -236,34 +236,34 @@ describe("what a kiosk keeps", () => {
       "/api/v1/models/pot/views/b/picture?as=kiosk",
     ])
       expect(keys).toContain(key);
-    expect(JSON.stringify([...shelf.things])).not.toContain("SECRET");
-    expect(await make("OTHER", shelf).store.lastTold()).toBeNull();
+    expect(JSON.stringify([...cache.things])).not.toContain("SECRET");
+    expect(await make("OTHER", cache).store.lastTold()).toBeNull();
   });
 
   it("goes when a later state does not need it, and is not read again while nothing changed", async () => {
-    const { shelf, store, site } = make();
+    const { cache, store, site } = make();
     await store.keep(site.self, "1");
     const { length } = site.asked;
     await store.keep(site.self, "1");
     expect(site.asked.length).toBe(length);
     const later = told({ stops: [stop("b"), stop("gone")], version: 2 });
     await store.keep(later, "2");
-    const keys = await shelf.keys();
+    const keys = await cache.keys();
     expect(keys.some((key) => key.includes("/views/a"))).toBe(false);
     expect(keys).toContain("/api/v1/models/pot/views/b?as=kiosk");
     await store.forget();
-    expect(await shelf.keys()).toEqual([]);
+    expect(await cache.keys()).toEqual([]);
   });
 
   it("stays as it was where it cannot be read anew, which is tried again", async () => {
-    const { shelf, store, site } = make();
+    const { cache, store, site } = make();
     await store.keep(site.self, "1");
     site.away = true;
     await store.keep(told({ stops: [stop("b")], version: 2 }), "2");
-    expect((await shelf.keys()).some((key) => key.includes("/views/a"))).toBe(true);
+    expect((await cache.keys()).some((key) => key.includes("/views/a"))).toBe(true);
     site.away = false;
     await store.keep(told({ stops: [stop("b")], version: 2 }), "2");
-    expect((await shelf.keys()).some((key) => key.includes("/views/a"))).toBe(false);
+    expect((await cache.keys()).some((key) => key.includes("/views/a"))).toBe(false);
   });
 
   it("is worth nothing after the link is over", async () => {
@@ -277,7 +277,7 @@ describe("what a kiosk keeps", () => {
   it("is nothing where the browser has no store", async () => {
     const { site } = make();
     const store = new KioskStore({
-      openShelf: async () => null,
+      openCache: async () => null,
       secret: "SECRET",
       fetch: async (address) => site.answer(address),
     });

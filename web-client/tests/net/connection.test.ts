@@ -69,7 +69,7 @@ beforeEach(() => {
         sockets.push(new FakeSocket(url, protocol));
         return socket();
       },
-      makeShelf: (user) => {
+      makeQueue: (user) => {
         expect(user).toBe("owner");
         return {
           read: async () => [...shelved],

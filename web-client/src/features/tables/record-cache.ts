@@ -6,7 +6,7 @@ import type { TableRecord } from "../../core/protocol.gen";
 
 const kMostKept = 300;
 
-export class RecordShelf {
+export class RecordCache {
   /** A symbol: it was asked for; null: there is none. */
   private readonly _kept = new Map<string, TableRecord | symbol | null>();
 

@@ -15,7 +15,7 @@ import type {
 import type { Layer } from "../../core/types";
 import { notices } from "../../ui/notices";
 import { RecordNames, type OtherNames } from "./record-names";
-import { RecordShelf } from "./record-cache";
+import { RecordCache } from "./record-cache";
 import { TableView } from "./table-view";
 import { TermTree } from "../../session/fields/term-tree";
 import { texts } from "../../texts";
@@ -38,7 +38,7 @@ export class Tables {
   private readonly _tables = new Map<number, Table | "asked">();
   private readonly _names = new Map<number, RecordNames>();
   private readonly _terms = new Map<number, TermTree>();
-  private readonly _records: RecordShelf;
+  private readonly _records: RecordCache;
 
   private readonly _others: OtherNames = {
     nameOf: (table, key) => this.label(table, key),
@@ -49,7 +49,7 @@ export class Tables {
     private readonly _api: Api,
     private readonly _host: TablesHost,
   ) {
-    this._records = new RecordShelf(_api, () => _host.changed());
+    this._records = new RecordCache(_api, () => _host.changed());
   }
 
   /** Null until it is here; it is asked for. */

@@ -1,7 +1,7 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { RecordHover, type RecordAt } from "../../../src/features/records/record-hover";
-import { RecordShelf } from "../../../src/features/tables/record-cache";
+import { RecordCache } from "../../../src/features/tables/record-cache";
 import { Api } from "../../../src/net/api";
 import { firstPicture, tellingColumns } from "../../../src/domain/cells";
 import type { Column, ColumnKind } from "../../../src/core/protocol.gen";
@@ -120,7 +120,7 @@ describe("the record that the mouse rests on", () => {
 describe("records that were looked at", () => {
   let asked: string[];
   let answers: ((status?: number) => void)[];
-  let shelf: RecordShelf;
+  let cache: RecordCache;
   const settle = (): Promise<void> => new Promise((resolve) => setTimeout(resolve));
 
   beforeEach(() => {
@@ -142,40 +142,40 @@ describe("records that were looked at", () => {
         ),
       );
     });
-    shelf = new RecordShelf(api, () => {});
+    cache = new RecordCache(api, () => {});
   });
 
   it("are asked for once, also those that are not there", async () => {
     for (let times = 0; times < 3; ++times) {
-      shelf.find(3, 7);
-      shelf.find(3, 8);
+      cache.find(3, 7);
+      cache.find(3, 8);
       if (times === 0) answers[0]!();
       if (times === 0) answers[1]!(404);
       await settle();
     }
     expect(asked).toEqual(["/tables/3/records/7", "/tables/3/records/8"]);
-    expect([shelf.find(3, 7)?.key, shelf.find(3, 8)]).toEqual([7, null]);
+    expect([cache.find(3, 7)?.key, cache.find(3, 8)]).toEqual([7, null]);
   });
 
   it("are asked for anew once they have changed, and an answer from before does not count", async () => {
-    shelf.find(3, 7);
-    shelf.forget(3, 7);
-    shelf.find(3, 7);
+    cache.find(3, 7);
+    cache.forget(3, 7);
+    cache.find(3, 7);
     answers[1]!();
     answers[0]!();
     await settle();
-    expect(shelf.find(3, 7)?.version).toBe(2);
-    shelf.forgetTable(33);
-    expect([shelf.find(3, 7)?.version, asked.length]).toEqual([2, 2]);
-    shelf.forgetTable(3);
-    expect([shelf.find(3, 7), asked.length]).toEqual([null, 3]);
+    expect(cache.find(3, 7)?.version).toBe(2);
+    cache.forgetTable(33);
+    expect([cache.find(3, 7)?.version, asked.length]).toEqual([2, 2]);
+    cache.forgetTable(3);
+    expect([cache.find(3, 7), asked.length]).toEqual([null, 3]);
   });
 
   it("make room for new ones", () => {
-    for (let key = 1; key <= 1000; ++key) shelf.find(3, key);
-    shelf.find(3, 1000);
+    for (let key = 1; key <= 1000; ++key) cache.find(3, key);
+    cache.find(3, 1000);
     expect(asked.length).toBe(1000);
-    shelf.find(3, 1);
+    cache.find(3, 1);
     expect(asked.length).toBe(1001);
   });
 });
