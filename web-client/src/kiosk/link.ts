@@ -1,7 +1,7 @@
 // The kiosk's link to its server: signs in with the link's secret, and asks from time to time
 // whether it is still good, the tour still the same, and whether the page is to be loaded anew. A
 // server that is away is asked again for ever, ever more seldom; and so is, every five minutes, one
-// that knows no such link: what was in the Bin may be restored.
+// that knows no such link: what was in the trash may be restored.
 
 import { ApiError } from "../net/api";
 import type { KioskSelf } from "../core/protocol.gen";
@@ -20,7 +20,7 @@ export interface LinkHost {
   /** No answer, or none that says anything. */
   missed(): void;
   /**
-   * It was revoked, is over, or its tour is in the Bin. Told each time. If it is good again, the
+   * It was revoked, is over, or its tour is in the trash. Told each time. If it is good again, the
    * page is loaded anew.
    */
   worthless(): void;

@@ -389,16 +389,16 @@ export class Api {
     return this.json("GET", `${projectPath(project)}/activity?${query}`);
   }
   /** What was deleted in a project and can be restored, newest first. */
-  async bin(
+  async trash(
     project: Id,
     { limit, offset }: { limit: number; offset: number },
   ): Promise<wire.BinList> {
     return this.json("GET", `${projectPath(project)}/bin?limit=${limit}&offset=${offset}`);
   }
-  async restoreFromBin(project: Id, entry: string): Promise<wire.BinRestored> {
+  async restoreFromTrash(project: Id, entry: string): Promise<wire.BinRestored> {
     return this.json("POST", `${projectPath(project)}/bin/${encodeURIComponent(entry)}/restore`);
   }
-  async eraseFromBin(project: Id, entry: string): Promise<void> {
+  async eraseFromTrash(project: Id, entry: string): Promise<void> {
     await this.request("DELETE", `${projectPath(project)}/bin/${encodeURIComponent(entry)}`);
   }
   /** Who sees the project, by name. */

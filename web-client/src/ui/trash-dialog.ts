@@ -1,5 +1,5 @@
 // <strata-bin-dialog>: what was deleted in a project, to restore or to delete for ever. Opened by
-// openBin().
+// openTrash().
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -9,7 +9,7 @@ import { formatBytes } from "../domain/measure";
 import { called } from "../domain/people";
 import type { BinEntry, BinList, Project } from "../core/protocol.gen";
 import type { Model } from "../core/types";
-import { toldRestored, type BinApi } from "./trash";
+import { toldRestored, type TrashApi } from "./trash";
 import { ask } from "./dialog";
 import { icon, type IconName } from "./icons";
 import { notices } from "./notices";
@@ -26,12 +26,12 @@ const kIcons: Record<BinEntry["kind"], IconName> = {
 };
 
 @customElement("strata-bin-dialog")
-export class StrataBinDialog extends LitElement {
-  @property({ attribute: false }) api!: BinApi;
+export class StrataTrashDialog extends LitElement {
+  @property({ attribute: false }) api!: TrashApi;
   @property({ attribute: false }) project!: Pick<Project, "slug" | "name">;
   answer: (isChanged: boolean) => void = () => {};
 
-  @state() private _bin: BinList | null = null;
+  @state() private _trash: BinList | null = null;
   @state() private _note: { kind: "error" | "done"; text: string } | null = null;
   @state() private _busy = false;
   private _changed = false;
@@ -100,13 +100,13 @@ export class StrataBinDialog extends LitElement {
   }
 
   override render(): TemplateResult {
-    const { _bin: bin, _note: note } = this;
+    const { _trash: trash, _note: note } = this;
     return html`<strata-dialog broad heading=${words.title_of(this.project.name)} way_out=${texts.close} @closed=${() => this.finish()}>
-      ${bin ? html`<p class="hint">${bin.days === 0 ? words.not_kept_lead : words.lead(bin.days)}</p>` : nothing}
+      ${trash ? html`<p class="hint">${trash.days === 0 ? words.not_kept_lead : words.lead(trash.days)}</p>` : nothing}
       <p class=${note?.kind ?? "done"} role=${note?.kind === "error" ? "alert" : "status"} tabindex="-1" ?hidden=${!note}>${note?.text}</p>
       ${
         bin
-          ? this.entries(bin)
+          ? this.entries(trash)
           : html`<p class="hint" role="status" ?hidden=${note !== null}>${texts.loading}</p>
             ${note ? html`<div><button @click=${() => void this.attempt(() => this.read())}>${texts.try_again}</button></div>` : nothing}`
       }
@@ -157,19 +157,22 @@ export class StrataBinDialog extends LitElement {
   }
 
   private async read(): Promise<void> {
-    this._bin = await this.api.bin(this.project.slug, { limit: kAtOnce, offset: 0 });
+    this._trash = await this.api.trash(this.project.slug, { limit: kAtOnce, offset: 0 });
   }
 
   private async readMore(): Promise<void> {
-    const known = this._bin?.entries ?? [];
-    const next = await this.api.bin(this.project.slug, { limit: kAtOnce, offset: known.length });
-    const ids = new Set(known.map(({ id }) => id)); // something came to the Bin meanwhile
-    this._bin = { ...next, entries: [...known, ...next.entries.filter(({ id }) => !ids.has(id))] };
+    const known = this._trash?.entries ?? [];
+    const next = await this.api.trash(this.project.slug, { limit: kAtOnce, offset: known.length });
+    const ids = new Set(known.map(({ id }) => id)); // something came to the trash meanwhile
+    this._trash = {
+      ...next,
+      entries: [...known, ...next.entries.filter(({ id }) => !ids.has(id))],
+    };
   }
 
   private restore(entry: BinEntry): Promise<void> {
     return this.attempt(async () => {
-      const restored = await this.api.restoreFromBin(this.project.slug, entry.id);
+      const restored = await this.api.restoreFromTrash(this.project.slug, entry.id);
       this.takeOut(entry, toldRestored(restored));
     });
   }
@@ -185,18 +188,18 @@ export class StrataBinDialog extends LitElement {
     )
       return;
     await this.attempt(async () => {
-      await this.api.eraseFromBin(this.project.slug, entry.id);
+      await this.api.eraseFromTrash(this.project.slug, entry.id);
       this.takeOut(entry, words.erased(entry.name));
     });
   }
 
   /** Who went through the list by keys goes on at what was done. */
   private takeOut({ id }: BinEntry, text: string): void {
-    if (this._bin)
-      this._bin = {
-        ...this._bin,
-        entries: this._bin.entries.filter((each) => each.id !== id),
-        total: this._bin.total - 1,
+    if (this._trash)
+      this._trash = {
+        ...this._trash,
+        entries: this._trash.entries.filter((each) => each.id !== id),
+        total: this._trash.total - 1,
       };
     this._changed = true;
     this._note = { kind: "done", text };
@@ -215,7 +218,7 @@ export class StrataBinDialog extends LitElement {
       if (!(error instanceof ApiError)) throw error;
       this._note = { kind: "error", text: error.message };
       // somebody else was faster
-      if (error.status === 404 && this._bin) await this.read().catch(() => {});
+      if (error.status === 404 && this._trash) await this.read().catch(() => {});
     } finally {
       this._busy = false;
     }
@@ -228,16 +231,19 @@ export class StrataBinDialog extends LitElement {
 }
 
 /** Whether something was restored or deleted for ever. */
-export function openBin(api: BinApi, project: Pick<Project, "slug" | "name">): Promise<boolean> {
+export function openTrash(
+  api: TrashApi,
+  project: Pick<Project, "slug" | "name">,
+): Promise<boolean> {
   return new Promise((resolve) => {
-    const element = new StrataBinDialog();
+    const element = new StrataTrashDialog();
     Object.assign(element, { api, project, answer: resolve });
     document.body.append(element);
   });
 }
 
 /** That of the open model's project. */
-export async function openBinOf({
+export async function openTrashOf({
   api,
   model,
 }: {
@@ -246,7 +252,7 @@ export async function openBinOf({
 }): Promise<void> {
   if (!model) return;
   try {
-    await openBin(api, (await api.project(model.project)).value);
+    await openTrash(api, (await api.project(model.project)).value);
   } catch (error) {
     notices.error(error);
   }

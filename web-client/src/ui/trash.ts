@@ -1,4 +1,4 @@
-// Deleting what goes to the Bin of a project: the question before, and the way back after.
+// Deleting what goes to the trash of a project: the question before, and the way back after.
 
 import { ApiError, type Api } from "../net/api";
 import type { BinKind, BinRestored } from "../core/protocol.gen";
@@ -6,26 +6,26 @@ import { ask } from "./dialog";
 import { notices } from "./notices";
 import { texts } from "../texts";
 
-export type BinApi = Pick<Api, "bin" | "restoreFromBin" | "eraseFromBin">;
+export type TrashApi = Pick<Api, "trash" | "restoreFromTrash" | "eraseFromTrash">;
 
 export interface Deletable {
   kind: BinKind;
-  entry: string; // its id in the Bin
+  entry: string; // its id in the trash
   name: string;
   project: string; // its slug
 }
 
 /**
- * Whether to go on, told what can be undone: for how long things stay in the Bin is the server's to
+ * Whether to go on, told what can be undone: for how long things stay in the trash is the server's to
  * say.
  */
-export async function askToBin(
-  api: BinApi,
+export async function askToTrash(
+  api: TrashApi,
   { name, project }: Deletable,
   words: { title: (name: string) => string; lead: string },
 ): Promise<boolean> {
-  const days = await api.bin(project, { limit: 1, offset: 0 }).then(
-    (bin) => bin.days,
+  const days = await api.trash(project, { limit: 1, offset: 0 }).then(
+    (trash) => trash.days,
     (error: unknown) => {
       if (!(error instanceof ApiError)) throw error;
       return null; // whoever deletes is told what is wrong
@@ -40,14 +40,14 @@ export async function askToBin(
 }
 
 /** Says that it was deleted, with a button that brings it back. `cameBack`: once it did. */
-export function tellBinned(
-  api: BinApi,
+export function tellTrashed(
+  api: TrashApi,
   gone: Deletable,
   cameBack: (restored: BinRestored) => void = () => {},
 ): void {
   const undo = async (): Promise<void> => {
     try {
-      const restored = await api.restoreFromBin(gone.project, gone.entry);
+      const restored = await api.restoreFromTrash(gone.project, gone.entry);
       notices.show("success", toldRestored(restored));
       cameBack(restored);
     } catch (error) {

@@ -156,7 +156,7 @@ describe("the link of a kiosk", () => {
     expect([count(site, "POST /auth/kiosk"), host.worthless.mock.calls.length]).toEqual([2, 0]);
   });
 
-  it("is worthless when it was revoked or its tour is in the Bin, asks seldom, and begins anew when it is good again", async () => {
+  it("is worthless when it was revoked or its tour is in the trash, asks seldom, and begins anew when it is good again", async () => {
     const { site, host, link } = make();
     await settle();
     site.revoked = true;
@@ -194,7 +194,7 @@ describe("the link of a kiosk", () => {
   });
 });
 
-class Shelf implements KioskCache {
+class FakeCache implements KioskCache {
   readonly things = new Map<string, string>();
   async match(key: string): Promise<Response | undefined> {
     const found = this.things.get(key);
@@ -212,7 +212,7 @@ class Shelf implements KioskCache {
 }
 
 describe("what a kiosk keeps", () => {
-  const make = (secret = "SECRET", cache = new Shelf()) => {
+  const make = (secret = "SECRET", cache = new FakeCache()) => {
     const site = new Site();
     const store = new KioskStore({
       openCache: async () => cache,

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
-import { tellBinned, toldRestored, type BinApi } from "../../src/ui/trash";
+import { tellTrashed, toldRestored, type TrashApi } from "../../src/ui/trash";
 import { notices, type Notice } from "../../src/ui/notices";
 import { ApiError } from "../../src/net/api";
 import type { BinRestored } from "../../src/core/protocol.gen";
@@ -19,11 +19,11 @@ describe("what was deleted", () => {
   const asked: string[] = [];
   let answer: () => Promise<BinRestored>;
   const api = {
-    restoreFromBin: (project: string, entry: string) => {
+    restoreFromTrash: (project: string, entry: string) => {
       asked.push(`${project}/${entry}`);
       return answer();
     },
-  } as unknown as BinApi;
+  } as unknown as TrashApi;
   const undo = async (): Promise<void> => {
     const link = shown[shown.length - 1]?.link;
     if (!link || !("act" in link)) throw new Error("there is no way back");
@@ -45,7 +45,7 @@ describe("what was deleted", () => {
 
   it("comes back by the notice's button, and that is said", async () => {
     const back: BinRestored[] = [];
-    tellBinned(
+    tellTrashed(
       api,
       { kind: "layer", entry: "layer-3", name: "Cracks", project: "villa" },
       (restored) => back.push(restored),
@@ -62,7 +62,7 @@ describe("what was deleted", () => {
       Promise.reject(
         new ApiError({ status: 409, title: "Cannot be restored", detail: "SU 1 is taken." }),
       );
-    tellBinned(api, { kind: "record", entry: "record-5-1", name: "SU 1", project: "villa" }, () =>
+    tellTrashed(api, { kind: "record", entry: "record-5-1", name: "SU 1", project: "villa" }, () =>
       expect.unreachable(),
     );
     await undo();

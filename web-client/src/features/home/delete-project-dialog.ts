@@ -6,7 +6,7 @@ import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError, type Api } from "../../net/api";
 import { labelOf } from "../../domain/cells";
 import type { Table } from "../../core/protocol.gen";
-import { openBin } from "../../ui/trash-dialog";
+import { openTrash } from "../../ui/trash-dialog";
 import "../../ui/dialog";
 import type { StrataDialog } from "../../ui/dialog";
 import { icon } from "../../ui/icons";
@@ -24,7 +24,7 @@ class StrataDeleteProjectDialog extends LitElement {
   answer: (isDeleted: boolean) => void = () => {};
 
   @state() private _tables: readonly Table[] | null = null;
-  @state() private _hasBinned = false; // models that lie in its Bin
+  @state() private _hasTrashed = false; // models that lie in its trash
   @state() private _typed = "";
   @state() private _problem = "";
   @state() private _busy = false;
@@ -55,8 +55,8 @@ class StrataDeleteProjectDialog extends LitElement {
     this._problem = "";
     try {
       const { slug } = this.listed.project;
-      const bin = await this.api.bin(slug, { limit: 1000, offset: 0 });
-      this._hasBinned = bin.entries.some(({ kind }) => kind === "model");
+      const trash = await this.api.trash(slug, { limit: 1000, offset: 0 });
+      this._hasTrashed = trash.entries.some(({ kind }) => kind === "model");
       this._tables = await this.api.tables(slug);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
@@ -66,18 +66,18 @@ class StrataDeleteProjectDialog extends LitElement {
 
   override render(): TemplateResult {
     const { project, models } = this.listed;
-    const { _hasBinned: hasBinned } = this;
-    const isKept = models.length > 0 || hasBinned;
-    const heading = hasBinned
+    const { _hasTrashed: hasTrashed } = this;
+    const isKept = models.length > 0 || hasTrashed;
+    const heading = hasTrashed
       ? words.kept_by_bin_title
       : isKept
         ? words.kept_title
         : words.delete_title;
     return html`<strata-dialog heading=${heading(project.name)} way_out=${isKept ? texts.close : texts.cancel} @closed=${() => this.finish()}>
       ${
-        hasBinned
+        hasTrashed
           ? html`<p>${words.kept_by_bin_lead}</p>
-            <div><button @click=${() => void this.lookIntoBin()}>${icon("trash")}${texts.bin.open}</button></div>`
+            <div><button @click=${() => void this.lookIntoTrash()}>${icon("trash")}${texts.bin.open}</button></div>`
           : isKept
             ? html`<p>${words.kept_lead(models.length)}</p>`
             : this.consequences()
@@ -115,8 +115,8 @@ class StrataDeleteProjectDialog extends LitElement {
       </label>`;
   }
 
-  private async lookIntoBin(): Promise<void> {
-    if (!(await openBin(this.api, this.listed.project))) return;
+  private async lookIntoTrash(): Promise<void> {
+    if (!(await openTrash(this.api, this.listed.project))) return;
     await this.read();
   }
 

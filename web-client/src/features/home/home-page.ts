@@ -9,8 +9,8 @@ import { formatArea, formatSize, metresPer } from "../../domain/measure";
 import type { Project } from "../../core/protocol.gen";
 import { mayAdminister, type Me, type Model } from "../../core/types";
 import { askAccount } from "../../ui/account-menu";
-import { askToBin, tellBinned } from "../../ui/trash";
-import { openBin } from "../../ui/trash-dialog";
+import { askToTrash, tellTrashed } from "../../ui/trash";
+import { openTrash } from "../../ui/trash-dialog";
 import "../../ui/status-page";
 import { askToDeleteProject } from "./delete-project-dialog";
 import { icon, logo } from "../../ui/icons";
@@ -297,7 +297,7 @@ export class StrataHomePage extends LitElement {
           ? html`<button class="quiet" role="menuitem" @click=${() => void this.describeProject(project)}>${icon("edit")}${texts.projects.describe}</button>`
           : nothing
       }
-      <button class="quiet" role="menuitem" @click=${() => void this.lookIntoBin(project)}>${icon("trash")}${texts.bin.open}</button>
+      <button class="quiet" role="menuitem" @click=${() => void this.lookIntoTrash(project)}>${icon("trash")}${texts.bin.open}</button>
       ${
         project.slug === kDefaultProject || !this.canAdminister
           ? nothing
@@ -420,8 +420,8 @@ export class StrataHomePage extends LitElement {
     this.projectsChanged("/");
   }
 
-  private async lookIntoBin(project: Project): Promise<void> {
-    if (await openBin(this.api, project)) await this.load();
+  private async lookIntoTrash(project: Project): Promise<void> {
+    if (await openTrash(this.api, project)) await this.load();
   }
 
   private async deleteModel(model: Model): Promise<void> {
@@ -432,11 +432,11 @@ export class StrataHomePage extends LitElement {
       name: model.name,
       project: model.project,
     } as const;
-    if (!(await askToBin(this.api, gone, { title: words.delete_title, lead: words.delete_lead })))
+    if (!(await askToTrash(this.api, gone, { title: words.delete_title, lead: words.delete_lead })))
       return;
     try {
       await this.api.deleteModel(model.id);
-      tellBinned(this.api, gone, () => void this.load());
+      tellTrashed(this.api, gone, () => void this.load());
     } catch (error) {
       notices.error(error);
     }

@@ -6,8 +6,8 @@ import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { descriptionIn, labelOf } from "../../domain/cells";
 import { isAsComputed, valueRange, type Layer, type LayerPatch } from "../../core/types";
-import { askToBin, tellBinned } from "../../ui/trash";
-import { openBinOf } from "../../ui/trash-dialog";
+import { askToTrash, tellTrashed } from "../../ui/trash";
+import { openTrashOf } from "../../ui/trash-dialog";
 import { ask } from "../../ui/dialog";
 import { DragOrder } from "../../ui/drag-order";
 import { followSession } from "../../session/follow-session";
@@ -220,7 +220,7 @@ export class StrataLayerPanel extends LitElement {
                   ${icon("import")}${texts.transfer.open}
                 </button>
                 <hr />
-                <button class="quiet" role="menuitem" @click=${() => void openBinOf(session)}>${icon("trash")}${texts.bin.open}</button>
+                <button class="quiet" role="menuitem" @click=${() => void openTrashOf(session)}>${icon("trash")}${texts.bin.open}</button>
               </strata-menu>`
             : nothing
         }
@@ -540,10 +540,10 @@ export class StrataLayerPanel extends LitElement {
       name: layer.name,
       project: model.project,
     } as const;
-    if (!(await askToBin(api, gone, { title: words.delete_title, lead: words.delete_lead })))
+    if (!(await askToTrash(api, gone, { title: words.delete_title, lead: words.delete_lead })))
       return;
     await layers.remove(layer).then(
-      () => tellBinned(api, gone),
+      () => tellTrashed(api, gone),
       (error: unknown) => notices.error(error),
     );
   }

@@ -4,7 +4,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { ApiError, type TexelsOfDeleted } from "../../net/api";
-import { tellBinned } from "../../ui/trash";
+import { tellTrashed } from "../../ui/trash";
 import "../../ui/dialog";
 import type { ModelSession } from "../../session/model-session";
 import { radioGroup } from "../../ui/radio-group";
@@ -96,7 +96,7 @@ export class StrataDeleteRecordDialog extends LitElement {
     try {
       await api.deleteRecord(this.table, this.key, this.texels);
       this.session.tables.view?.forget(this.key);
-      tellBinned(api, gone);
+      tellTrashed(api, gone);
       this.dispatchEvent(new CustomEvent("closed"));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;

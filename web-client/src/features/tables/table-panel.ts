@@ -11,7 +11,7 @@ import { formatArea } from "../../domain/measure";
 import { cssColor, recordColor } from "../../domain/palette";
 import type { CellValue, Column, Table, TableRecord } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
-import { openBinOf } from "../../ui/trash-dialog";
+import { openTrashOf } from "../../ui/trash-dialog";
 import type { CellEdit } from "./cell-edits";
 import "../../session/fields/cell-input";
 import { mayBeText, takesTyping, type StrataCellInput } from "../../session/fields/cell-input";
@@ -267,7 +267,7 @@ export class StrataTablePanel extends LitElement {
                   : nothing
               }
               <hr />
-              <button class="quiet" role="menuitem" @click=${() => void openBinOf(session)}>${icon("trash")}${texts.bin.open}</button>`
+              <button class="quiet" role="menuitem" @click=${() => void openTrashOf(session)}>${icon("trash")}${texts.bin.open}</button>`
             : nothing
         }
       </strata-menu>
