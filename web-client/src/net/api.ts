@@ -73,7 +73,7 @@ export interface RecordQuery {
 }
 
 /** Of a table for a spreadsheet: `lang` is the language in which terms stand in it. */
-export interface SheetQuery {
+export interface WorkbookQuery {
   f: "csv" | "xlsx";
   lang: string;
   separator: "comma" | "semicolon";
@@ -793,7 +793,7 @@ export class Api {
     return this.json("GET", `${layerPath(model, layer)}/statistics`);
   }
   /** Where the areas of a layer's classes are had as a sheet. */
-  quantitiesUrl(model: Id, layer: Id, query: SheetQuery): string {
+  quantitiesUrl(model: Id, layer: Id, query: WorkbookQuery): string {
     return `${kBase}${layerPath(model, layer)}/quantities?${new URLSearchParams({ ...query })}`;
   }
   /**
@@ -807,7 +807,7 @@ export class Api {
   async crossTable(model: Id, rows: Id, columns: Id): Promise<wire.CrossTable> {
     return this.json("POST", `/models/${encodeURIComponent(model)}/cross-table`, { rows, columns });
   }
-  async crossTableSheet(model: Id, rows: Id, columns: Id, query: SheetQuery): Promise<Blob> {
+  async crossTableWorkbook(model: Id, rows: Id, columns: Id, query: WorkbookQuery): Promise<Blob> {
     const path = `/models/${encodeURIComponent(model)}/cross-table?${new URLSearchParams({ ...query })}`;
     return (await this.request("POST", path, { rows, columns }, kAnyFile)).blob();
   }

@@ -57,7 +57,7 @@ import { texts } from "../texts";
 import "../features/presence/together-bar";
 import "./tool-rail";
 import "../features/onboarding/onboarding";
-import type { StrataTour } from "../features/onboarding/onboarding";
+import type { StrataOnboarding } from "../features/onboarding/onboarding";
 import type { TourRequest } from "../session/requests";
 import "../features/painting/value-readout";
 import { wantsLessMotion } from "../session/view-control";
@@ -96,7 +96,7 @@ export class StrataModelPage extends LitElement {
   @state() private _tableHeight = Number(localStorage.getItem(kTableKey)) || kTableHeight.first;
   @state() private _panelShown = window.innerWidth > kNarrow;
   @query("strata-stage") private _stage!: StrataStage | null;
-  @query("strata-tour") private _tour!: StrataTour | null;
+  @query("strata-tour") private _tour!: StrataOnboarding | null;
   @query(".options") private _options!: HTMLElement | null;
   private _session: OpenModelSession | null = null;
   private _askedScale = false;

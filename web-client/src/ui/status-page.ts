@@ -6,7 +6,7 @@ import { logo } from "./icons";
 import { sharedStyles } from "./styles";
 
 @customElement("strata-blank")
-export class StrataBlank extends LitElement {
+export class StrataStatusPage extends LitElement {
   @property() heading = "";
   @property() lead = "";
 

@@ -3,13 +3,13 @@
 
 import { html, type TemplateResult } from "lit";
 import { csvSeparator, pageLocale } from "../core/locale";
-import type { SheetQuery } from "../net/api";
+import type { WorkbookQuery } from "../net/api";
 import { copyText } from "./copy-field";
 import { icon } from "./icons";
 import { notices } from "./notices";
 import { texts } from "../texts";
 
-export const sheetQuery = (f: SheetQuery["f"]): SheetQuery => ({
+export const workbookQuery = (f: WorkbookQuery["f"]): WorkbookQuery => ({
   f,
   lang: pageLocale(),
   separator: csvSeparator(),
@@ -36,13 +36,13 @@ async function copy(rows: readonly (readonly string[])[], holder: HTMLElement): 
   );
 }
 
-export function sheetButtons(of: {
+export function workbookButtons(of: {
   what: string;
   rows: () => readonly (readonly string[])[];
-  save: (f: SheetQuery["f"]) => void;
+  save: (f: WorkbookQuery["f"]) => void;
 }): TemplateResult {
   const words = texts.statistics;
-  const files: SheetQuery["f"][] = ["csv", "xlsx"];
+  const files: WorkbookQuery["f"][] = ["csv", "xlsx"];
   return html`<button type="button" aria-label="${words.copy}: ${of.what}" @click=${(event: Event) => void copy(of.rows(), event.currentTarget as HTMLElement)}>${icon("copy")}${words.copy}</button>
     ${files.map((f) => html`<button type="button" aria-label="${f.toUpperCase()}: ${of.what}" title=${words.save[f]} @click=${() => of.save(f)}>${icon("import")}${f.toUpperCase()}</button>`)}`;
 }

@@ -3,7 +3,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { ApiError, type SheetQuery } from "../../net/api";
+import { ApiError, type WorkbookQuery } from "../../net/api";
 import { labelOf } from "../../domain/cells";
 import { formatArea } from "../../domain/measure";
 import type { CrossTable } from "../../core/protocol.gen";
@@ -12,7 +12,7 @@ import { describeValue } from "../../session/layer-values";
 import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
 import { saveBlob } from "../../ui/save-from";
-import { sheetButtons, sheetQuery } from "../../ui/workbook-buttons";
+import { workbookButtons, workbookQuery } from "../../ui/workbook-buttons";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
@@ -171,7 +171,7 @@ export class StrataCrossTable extends LitElement {
         : [...list];
     const [head, ...lines] = cut(all).map(cut);
     return html`<div class="row" role="group" aria-label=${what}>
-        ${sheetButtons({ what, rows: () => all, save: (f) => void this.save(other, f) })}
+        ${workbookButtons({ what, rows: () => all, save: (f) => void this.save(other, f) })}
       </div>
       <div class="scroller" tabindex="0" role="region" aria-label=${what}>
         <table class="numeric">
@@ -189,14 +189,14 @@ export class StrataCrossTable extends LitElement {
       ${all.length > kMostShown || all[0]!.length > kMostShown ? html`<p class="hint">${words.cut(kMostShown)}</p>` : nothing}`;
   }
 
-  private async save(other: Layer, f: SheetQuery["f"]): Promise<void> {
+  private async save(other: Layer, f: WorkbookQuery["f"]): Promise<void> {
     this._problem = "";
     try {
-      const sheet = await this.session.api.crossTableSheet(
+      const sheet = await this.session.api.crossTableWorkbook(
         this.session.modelId,
         this.layer.id,
         other.id,
-        sheetQuery(f),
+        workbookQuery(f),
       );
       saveBlob(sheet, `${this.layer.slug}-${other.slug}.${f}`);
     } catch (error) {

@@ -4,7 +4,7 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { formatArea, formatNumber } from "../../domain/measure";
 import { colorOf, cssColor, withRange } from "../../domain/palette";
-import type { SheetQuery } from "../../net/api";
+import type { WorkbookQuery } from "../../net/api";
 import type { KeyStatistics, Layer, Palette, Statistics } from "../../core/types";
 import { labelOf } from "../../domain/cells";
 import { describeValue } from "../../session/layer-values";
@@ -14,7 +14,7 @@ import "../../ui/dialog";
 import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
 import { saveFrom } from "../../ui/save-from";
-import { sheetButtons, sheetQuery } from "../../ui/workbook-buttons";
+import { workbookButtons, workbookQuery } from "../../ui/workbook-buttons";
 import { styled } from "../../ui/styled";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
@@ -192,7 +192,7 @@ export class StrataStatisticsDialog extends LitElement {
         ${share ? html`<span class="hint">${words.of_surface(share)}</span>` : nothing}
       </div>
       <div class="row" role="group" aria-label=${words.title(labelOf(this.layer))}>
-        ${sheetButtons({ what: words.title(labelOf(this.layer)), rows: () => this.rows(statistics), save: (f) => this.save(f) })}
+        ${workbookButtons({ what: words.title(labelOf(this.layer)), rows: () => this.rows(statistics), save: (f) => this.save(f) })}
       </div>
       ${this.layer.palette.mode === "categorical" ? this.keys(statistics) : this.spread(statistics)}`;
   }
@@ -232,9 +232,9 @@ export class StrataStatisticsDialog extends LitElement {
     ];
   }
 
-  private save(f: SheetQuery["f"]): void {
+  private save(f: WorkbookQuery["f"]): void {
     saveFrom(
-      this.session.api.quantitiesUrl(this.session.modelId, this.layer.id, sheetQuery(f)),
+      this.session.api.quantitiesUrl(this.session.modelId, this.layer.id, workbookQuery(f)),
       `${this.layer.slug}-quantities.${f}`,
     );
   }

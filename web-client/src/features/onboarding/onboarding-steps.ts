@@ -24,7 +24,7 @@ export function nearestStep(name: StepName, there: readonly StepName[]): StepNam
 /**
  * What a step speaks of, and the bar that it stands in. `isRoom`: there is no one thing to mark.
  */
-export interface TourThing {
+export interface OnboardingTarget {
   element: Element;
   bar: Element;
   isRoom?: boolean;
@@ -33,21 +33,21 @@ export interface TourThing {
 }
 
 /** Where it is on the page; null: nowhere, or not to be seen. */
-export function thingOf(name: StepName, page: ParentNode): TourThing | null {
+export function thingOf(name: StepName, page: ParentNode): OnboardingTarget | null {
   const found = find(name, page);
   return found && found.element.checkVisibility() && found.element.getClientRects().length > 0
     ? found
     : null;
 }
 
-function find(name: StepName, page: ParentNode): TourThing | null {
+function find(name: StepName, page: ParentNode): OnboardingTarget | null {
   const rail = page.querySelector("strata-tool-rail");
   const head = page.querySelector("header");
   const within = (
     bar: Element | null,
     root: ParentNode | null | undefined,
     what: string,
-  ): TourThing | null => {
+  ): OnboardingTarget | null => {
     const element = root?.querySelector(what);
     return bar && element ? { element, bar } : null;
   };
@@ -71,7 +71,7 @@ function find(name: StepName, page: ParentNode): TourThing | null {
 }
 
 /** The part of an element that lies in its bar and in the window. */
-export function seenBox({ element, bar, isRoom }: TourThing): Box {
+export function seenBox({ element, bar, isRoom }: OnboardingTarget): Box {
   const [own, outer] = [element.getBoundingClientRect(), bar.getBoundingClientRect()];
   if (isRoom) return middleOf(own);
   const left = Math.max(own.left, outer.left, 0);

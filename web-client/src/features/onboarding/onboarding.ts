@@ -20,7 +20,7 @@ import {
   stepsFor,
   thingOf,
   type StepName,
-  type TourThing,
+  type OnboardingTarget,
 } from "./onboarding-steps";
 
 const words = texts.tour;
@@ -29,7 +29,7 @@ const kLargePx = 100; // things that get room within their ring
 const kNarrow = "(max-width: 820px)"; // as in modelStyles
 
 @customElement("strata-tour")
-export class StrataTour extends LitElement {
+export class StrataOnboarding extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   /** The page asks something else now: the tour does not begin by itself. */
   @property({ type: Boolean }) held = false;
@@ -168,7 +168,7 @@ export class StrataTour extends LitElement {
     );
   }
 
-  private thing(name: StepName): TourThing | null {
+  private thing(name: StepName): OnboardingTarget | null {
     return thingOf(name, this.getRootNode() as ShadowRoot);
   }
   private there(): StepName[] {
@@ -202,7 +202,7 @@ export class StrataTour extends LitElement {
     step: StepName,
     text: string,
     there: readonly StepName[],
-    thing: TourThing,
+    thing: OnboardingTarget,
   ): TemplateResult {
     const at = there.indexOf(step);
     const last = at === there.length - 1;
@@ -221,7 +221,7 @@ export class StrataTour extends LitElement {
       </section>`;
   }
 
-  private text(step: StepName, { isWay }: TourThing): string {
+  private text(step: StepName, { isWay }: OnboardingTarget): string {
     const hand = hasFingersOnly() ? "touch" : "mouse";
     switch (step) {
       case "layers": {
@@ -278,7 +278,7 @@ export class StrataTour extends LitElement {
 }
 
 /** What was scrolled out of it, or is hardly seen at its end. */
-function bringIntoBar(thing: TourThing): void {
+function bringIntoBar(thing: OnboardingTarget): void {
   const enough = Math.min(thing.element.clientHeight, 0.8 * thing.bar.clientHeight);
   thing.element.scrollIntoView({
     block: seenBox(thing).height >= enough ? "nearest" : "start",
@@ -290,7 +290,11 @@ function bringIntoBar(thing: TourThing): void {
  * Beside the bar of the thing; of the model at the upper edge of its stage (on phones the lower
  * one, which is nearer to the hand), where that leaves it the middle.
  */
-function placeOf({ bar, isRoom }: TourThing, thing: Box, card: Size): ReturnType<typeof besideBar> {
+function placeOf(
+  { bar, isRoom }: OnboardingTarget,
+  thing: Box,
+  card: Size,
+): ReturnType<typeof besideBar> {
   const outer = bar.getBoundingClientRect();
   const free = outer.height - card.height - 2 * kGapPx;
   if (!isRoom || free < outer.height / 2)

@@ -240,8 +240,8 @@ export class StrataTablePanel extends LitElement {
         this.isNarrow
           ? nothing
           : html`<span class="files">
-            <button title=${words.save_xlsx} aria-label=${words.save_xlsx} @click=${() => this.saveSheet(table, "xlsx")}>XLSX</button>
-            <button title=${words.save_csv} aria-label=${words.save_csv} @click=${() => this.saveSheet(table, "csv")}>CSV</button>
+            <button title=${words.save_xlsx} aria-label=${words.save_xlsx} @click=${() => this.saveWorkbook(table, "xlsx")}>XLSX</button>
+            <button title=${words.save_csv} aria-label=${words.save_csv} @click=${() => this.saveWorkbook(table, "csv")}>CSV</button>
           </span>`
       }
       <strata-menu label=${words.more}>
@@ -254,9 +254,9 @@ export class StrataTablePanel extends LitElement {
               <hr />`
             : nothing
         }
-        <button class="quiet" role="menuitem" @click=${() => this.saveSheet(table, "xlsx")}>${icon("import")}${words.save_xlsx}</button>
-        <button class="quiet" role="menuitem" @click=${() => this.saveSheet(table, "csv")}>${icon("import")}${words.save_csv}</button>
-        <button class="quiet" role="menuitem" @click=${() => this.saveSheet(table, "csv", { separator: "semicolon" })}>${icon("import")}${words.save_csv_semicolon}</button>
+        <button class="quiet" role="menuitem" @click=${() => this.saveWorkbook(table, "xlsx")}>${icon("import")}${words.save_xlsx}</button>
+        <button class="quiet" role="menuitem" @click=${() => this.saveWorkbook(table, "csv")}>${icon("import")}${words.save_csv}</button>
+        <button class="quiet" role="menuitem" @click=${() => this.saveWorkbook(table, "csv", { separator: "semicolon" })}>${icon("import")}${words.save_csv_semicolon}</button>
         ${table.kind === "terms" ? this.termsMenu(table) : nothing}
         ${
           this.canWrite
@@ -1013,7 +1013,11 @@ export class StrataTablePanel extends LitElement {
   }
 
   /** Of the rows that the filter finds, in their order. */
-  private saveSheet(table: Table, format: "csv" | "xlsx", more: Record<string, string> = {}): void {
+  private saveWorkbook(
+    table: Table,
+    format: "csv" | "xlsx",
+    more: Record<string, string> = {},
+  ): void {
     const { sortby, filter } = this.view.rows;
     const query = {
       f: format,

@@ -1,7 +1,7 @@
-// Two sheets that only tell: help, and what is known about the model.
+// <strata-about-sheet>: what is known about the model, its files, and who may download them.
 
-import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property, query, state } from "lit/decorators.js";
+import { html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
 import { upName } from "../math/camera";
 import { formatCount } from "../core/locale";
 import {
@@ -12,128 +12,22 @@ import {
   formatSize,
   metresPer,
 } from "../domain/measure";
-import type { ServerVersion } from "../core/protocol.gen";
 import { mayDownload, type Model, type Role } from "../core/types";
 import "../ui/dialog";
-import type { StrataDialog } from "../ui/dialog";
-import { hasFingersOnly } from "../ui/pointers";
 import { sharedStyles } from "../ui/styles";
 import { texts } from "../texts";
-
-const sheetStyles = css`
-  h3 {
-    margin: 2px 0 -0.5rem;
-    font: 600 1rem var(--serif);
-  }
-  dl {
-    display: grid;
-    grid-template-columns: minmax(9.375rem, auto) 1fr;
-    gap: 0.4375rem 1.125rem;
-    margin: 0;
-  }
-  dt {
-    color: var(--ink-soft);
-  }
-  dd {
-    margin: 0;
-    overflow-wrap: anywhere;
-  }
-  .parts section + section {
-    margin-top: 1rem;
-  }
-  .parts h3 {
-    margin: 2px 0 0.5rem;
-    break-after: avoid;
-  }
-  dl.keys {
-    display: block;
-  }
-  .keys > div {
-    display: grid;
-    grid-template-columns: minmax(6.875rem, 44%) 1fr;
-    gap: 1.125rem;
-    padding-bottom: 0.4375rem;
-    break-inside: avoid;
-  }
-  .version {
-    margin: 1.25rem 0 0;
-    color: var(--ink-soft);
-  }
-  .keys dt {
-    color: var(--ink);
-    font-weight: 600;
-  }
-  @media (min-width: 2560px) {
-    .parts {
-      columns: 2;
-      column-gap: 3rem;
-    }
-  }
-  @media (max-width: 560px) {
-    dl,
-    .keys > div {
-      grid-template-columns: minmax(6.875rem, 40%) 1fr;
-    }
-  }
-`;
-
-@customElement("strata-help-sheet")
-export class StrataHelpSheet extends LitElement {
-  @query("strata-dialog") private _dialog!: StrataDialog;
-
-  static override styles = [sharedStyles, sheetStyles];
-
-  /** Of the server, which brings the page. Empty until it has answered. */
-  @state() private _version = "";
-
-  override connectedCallback(): void {
-    super.connectedCallback();
-    void this.readVersion();
-  }
-
-  private async readVersion(): Promise<void> {
-    try {
-      const answer = await fetch("/api/v1/version");
-      if (answer.ok) this._version = ((await answer.json()) as ServerVersion).version;
-    } catch {
-      // The help is useful without it.
-    }
-  }
-
-  override render(): TemplateResult {
-    const words = texts.help;
-    const part = (title: string, rows: readonly (readonly [string, string])[]): TemplateResult =>
-      html`<section>
-        <h3>${title}</h3>
-        <dl class="keys">${rows.map(([keys, does]) => html`<div><dt>${keys}</dt><dd>${does}</dd></div>`)}</dl>
-      </section>`;
-    return html`<strata-dialog wide prose long heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
-      <div class="parts">
-        ${hasFingersOnly() ? nothing : part(words.mouse, words.mouse_rows)} ${part(words.touch, words.touch_rows)} ${part(words.keys, words.key_rows)}
-        ${part(words.brush, words.brush_rows)} ${part(words.terms, words.terms_rows)} ${part(words.table, words.table_rows)} ${part(words.layers, words.layer_rows)}
-      </div>
-      ${this._version ? html`<p class="version">Strata ${this._version}</p>` : nothing}
-      <button slot="actions" @click=${this.showTour}>${texts.tour.again}</button>
-    </strata-dialog>`;
-  }
-
-  /** Closed first: the tour gives the keyboard back to what opened the help. */
-  private showTour(): void {
-    this._dialog.close();
-    this.dispatchEvent(new CustomEvent("tour"));
-  }
-}
+import { detailStyles } from "./detail-styles";
 
 const kDownloaders = ["viewer", "annotator", "curator"] as const;
 
 @customElement("strata-about-sheet")
-export class StrataAboutSheet extends LitElement {
+export class StrataModelDetails extends LitElement {
   @property({ attribute: false }) model!: Model;
   @property() viewer: Role = "guest"; // what this person may do
   /** This person may correct the model's unit and up direction, and say who gets its files. */
   @property({ type: Boolean }) correctable = false;
 
-  static override styles = [sharedStyles, sheetStyles];
+  static override styles = [sharedStyles, detailStyles];
 
   override render(): TemplateResult {
     const { model } = this;
