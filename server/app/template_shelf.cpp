@@ -8,6 +8,7 @@
 #include "core/slug.h"
 #include "core/term_list.h"
 #include "protocol/parse.h"
+#include "store/tables.h"
 
 namespace strata::app {
 namespace {
@@ -148,10 +149,10 @@ Labels labels_with(const std::string& name, const std::optional<protocol::Labels
   return all;
 }
 
-Result<std::vector<store::Store::NewTable>> new_tables(const protocol::Template& of,
-                                                       std::int64_t project_id,
-                                                       const std::optional<std::string>& language) {
-  std::vector<store::Store::NewTable> tables;
+Result<std::vector<store::NewTable>> new_tables(const protocol::Template& of,
+                                                std::int64_t project_id,
+                                                const std::optional<std::string>& language) {
+  std::vector<store::NewTable> tables;
   for (const protocol::TemplateTable& told : of.tables) {
     const auto refuse = [&](const Error& problem) {
       return fail(problem.code, problem.title, told.slug + ": " + problem.detail, problem.field);
@@ -159,7 +160,7 @@ Result<std::vector<store::Store::NewTable>> new_tables(const protocol::Template&
     if (told.terms.has_value() == told.columns.has_value())
       return refuse({ErrorCode::invalid, "Terms or columns",
                      "A table has either `terms` or `columns`.", "tables"});
-    store::Store::NewTable made;
+    store::NewTable made;
     made.table.project_id = project_id;
     made.table.name = name_in(told.name, told.labels, language);
     made.table.slug = told.slug;

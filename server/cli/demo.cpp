@@ -4,6 +4,8 @@
 #include "cli/open_database.h"
 #include "cli/progress_line.h"
 #include "jobs/import_job.h"
+#include "store/models.h"
+#include "store/projects.h"
 
 namespace strata::cli {
 
@@ -18,7 +20,7 @@ Command add_demo(CLI::App& app) {
     auto database = open_database(*options);
     if (!database) return report(database.error());
     if (*if_empty) {
-      auto models = (*database)->store->models();
+      auto models = (*database)->store->models().all();
       if (!models) return report(models.error());
       if (!models->empty()) return 0;
     }
@@ -28,7 +30,7 @@ Command add_demo(CLI::App& app) {
       return jobs::make_demo(*(*database)->store, progress);
     }();
     if (!model) return report(model.error());
-    auto projects = (*database)->store->project(std::to_string(model->project_id));
+    auto projects = (*database)->store->projects().find(std::to_string(model->project_id));
     std::cout << to_json(*model, projects ? projects->slug : "").dump(2) << std::endl;
     return 0;
   };

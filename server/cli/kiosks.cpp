@@ -5,6 +5,7 @@
 
 #include "cli/subcommands.h"
 #include "store/kiosks.h"
+#include "store/models.h"
 #include "store/named_parts.h"
 
 namespace strata::cli {
@@ -22,7 +23,7 @@ Result<void> create(store::Store& store, const KioskOptions& options) {
   if (slash == std::string::npos)
     return fail(ErrorCode::malformed, "No tour",
                 "A tour is named with its model: MODEL/TOUR, as in its address.", "tour");
-  const auto model = STRATA_TRY(store.model(options.tour.substr(0, slash)));
+  const auto model = STRATA_TRY(store.models().find(options.tour.substr(0, slash)));
   const auto tour = STRATA_TRY(store.tours().find(model.id, options.tour.substr(slash + 1)));
   std::optional<std::chrono::seconds> lifetime;
   if (options.days > 0) lifetime = std::chrono::hours(24 * options.days);

@@ -5,8 +5,12 @@
 #include <iterator>
 
 #include "cli/subcommands.h"
+#include "store/accounts.h"
 #include "store/groups.h"
+#include "store/members.h"
 #include "store/password.h"
+#include "store/projects.h"
+#include "store/tokens.h"
 
 namespace strata::cli {
 namespace {
@@ -51,10 +55,11 @@ Result<void> let_in(store::Store& store, const PeopleOptions& options, const sto
                     const std::optional<std::string>& password) {
   if (password) {
     const auto hash = store::hash_password(*password);
-    return hash ? store.set_password(person.name, *hash, {}) : tl::unexpected(hash.error());
+    return hash ? store.accounts().set_password(person.name, *hash, {})
+                : tl::unexpected(hash.error());
   }
   const auto link =
-      store.create_link(TokenKind::invitation, person.name, store::kInvitationLifetime);
+      store.tokens().create_link(TokenKind::invitation, person.name, store::kInvitationLifetime);
   if (!link) return tl::unexpected(link.error());
   std::cout << "For " << person.name << ", to choose a password within 7 days:\n"
             << options.url << "/join#" << link->secret << std::endl;
@@ -64,7 +69,7 @@ Result<void> let_in(store::Store& store, const PeopleOptions& options, const sto
 Result<void> add_person(store::Store& store, const PeopleOptions& options) {
   // before there is anybody who would be left without
   const auto password = STRATA_TRY(given_password(options, options.name));
-  const auto person = STRATA_TRY(store.create_person(
+  const auto person = STRATA_TRY(store.accounts().create(
       options.name, options.full_name, parse_role(options.role).value_or(Role::annotator)));
   return let_in(store, options, person, password);
 }
@@ -86,8 +91,8 @@ void print(const store::Person& person, Role role) {
 
 Result<void> list_people(store::Store& store, const PeopleOptions& options) {
   if (!options.project.empty()) {
-    const auto project = STRATA_TRY(store.project(options.project));
-    const auto members = STRATA_TRY(store.members(project.id));
+    const auto project = STRATA_TRY(store.projects().find(options.project));
+    const auto members = STRATA_TRY(store.members().of_project(project.id));
     for (const store::Membership& member : members) print(member.person, member.role);
     const auto groups = STRATA_TRY(store.groups().of_project(project.id));
     for (const store::ProjectGroup& group : groups)
@@ -95,7 +100,7 @@ Result<void> list_people(store::Store& store, const PeopleOptions& options) {
                 << name(group.role) << group.group.people << " people\n";
     return {};
   }
-  const auto people = STRATA_TRY(store.people());
+  const auto people = STRATA_TRY(store.accounts().all());
   for (const store::Person& person : people) print(person, person.role);
   return {};
 }
@@ -105,7 +110,7 @@ Work<PeopleOptions> changing(
     std::function<Result<void>(store::Store&, const PeopleOptions&, const store::Person&)> change) {
   return [change = std::move(change)](store::Store& store,
                                       const PeopleOptions& options) -> Result<void> {
-    const auto person = STRATA_TRY(store.person(options.name));
+    const auto person = STRATA_TRY(store.accounts().find(options.name));
     return change(store, options, person);
   };
 }
@@ -115,16 +120,16 @@ Result<void> change(store::Store& store, const store::Person& person,
   if (person.role == Role::owner)
     return fail(ErrorCode::conflict, "The owner",
                 "The owner stays the owner, and may always come in.");
-  STRATA_TRY(store.change_person(person.id, change));
+  STRATA_TRY(store.accounts().update(person.id, change));
   return {};
 }
 
 Result<void> set_role_in_project(store::Store& store, const PeopleOptions& options,
                                  const store::Person& person) {
-  const auto project = STRATA_TRY(store.project(options.project));
-  if (options.role == "none") return store.remove_member(project.id, person.name);
+  const auto project = STRATA_TRY(store.projects().find(options.project));
+  if (options.role == "none") return store.members().remove(project.id, person.name);
   const auto put =
-      store.put_member(project.id, person.name, parse_role(options.role).value_or(Role::guest));
+      store.members().put(project.id, person.name, parse_role(options.role).value_or(Role::guest));
   if (!put) return tl::unexpected(put.error());
   return {};
 }
@@ -147,13 +152,13 @@ Work<PeopleOptions> disabling(bool disabled) {
 
 Result<void> remove_person(store::Store& store, const PeopleOptions&, const store::Person& person) {
   STRATA_TRY(change(store, person, {.full_name = {}, .role = {}, .disabled = true}));
-  return store.delete_person(person.name);
+  return store.accounts().remove(person.name);
 }
 
 // What somebody may do in a project: by their own role, by one there, and by those of their groups.
 Result<Role> role_there(store::Store& store, const store::Person& person, std::int64_t project) {
   Role role = person.role;
-  const auto members = STRATA_TRY(store.members(project));
+  const auto members = STRATA_TRY(store.members().of_project(project));
   for (const store::Membership& member : members)
     if (member.person.name == person.name) role = std::max(role, member.role);
   const auto given = STRATA_TRY(store.groups().roles_of(person.name));
@@ -163,11 +168,11 @@ Result<Role> role_there(store::Store& store, const store::Person& person, std::i
 }
 
 Result<void> add_token_of(store::Store& store, const PeopleOptions& options) {
-  const auto person = STRATA_TRY(store.person(options.user));
+  const auto person = STRATA_TRY(store.accounts().find(options.user));
   Role own = person.role, usual = own;
   std::optional<std::int64_t> only;
   if (!options.project.empty()) {
-    const auto project = STRATA_TRY(store.project(options.project));
+    const auto project = STRATA_TRY(store.projects().find(options.project));
     only = project.id;
     const auto there = STRATA_TRY(role_there(store, person, project.id));
     own = there;
@@ -180,16 +185,16 @@ Result<void> add_token_of(store::Store& store, const PeopleOptions& options) {
                     ": a token can do no more.",
                 "--role");
   const auto made =
-      store.create_token(TokenKind::script, person.name, role,
-                         std::chrono::hours(24 * options.days), options.name, {}, only);
+      store.tokens().create(TokenKind::script, person.name, role,
+                            std::chrono::hours(24 * options.days), options.name, {}, only);
   if (!made) return tl::unexpected(made.error());
   std::cout << made->secret << std::endl;
   return {};
 }
 
 Result<void> list_tokens(store::Store& store, const PeopleOptions& options) {
-  const auto person = STRATA_TRY(store.person(options.user));
-  const auto tokens = STRATA_TRY(store.tokens(person.name, TokenKind::script));
+  const auto person = STRATA_TRY(store.accounts().find(options.user));
+  const auto tokens = STRATA_TRY(store.tokens().of_user(person.name, TokenKind::script));
   for (const store::Token& token : tokens)
     std::cout << std::left << std::setw(8) << token.id << std::setw(15) << name(token.role)
               << "until " << std::setw(12) << day_of(token.expires) << "last used " << std::setw(12)
@@ -199,8 +204,8 @@ Result<void> list_tokens(store::Store& store, const PeopleOptions& options) {
 }
 
 Result<void> revoke_token(store::Store& store, const PeopleOptions& options) {
-  const auto person = STRATA_TRY(store.person(options.user));
-  return store.revoke_token(person.name, TokenKind::script, options.id);
+  const auto person = STRATA_TRY(store.accounts().find(options.user));
+  return store.tokens().revoke(person.name, TokenKind::script, options.id);
 }
 
 }  // namespace

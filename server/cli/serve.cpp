@@ -14,6 +14,9 @@
 #include "net/transport/server.h"
 #include "render/renderer.h"
 #include "room/room.h"
+#include "store/accounts.h"
+#include "store/attachments.h"
+#include "store/tokens.h"
 #include "stream/jpeg_pool.h"
 
 namespace strata::cli {
@@ -63,7 +66,7 @@ Result<Address> parse_listen(const std::string& text) { return parse_address(tex
 // A server that others can reach is protected by its accounts alone.
 Result<void> check_reach(store::Store& store, const Address& address, bool has_tls) {
   if (is_loopback(address.host)) return {};
-  const auto has_account = STRATA_TRY(store.administrator_has_password());
+  const auto has_account = STRATA_TRY(store.accounts().administrator_has_password());
   if (has_account) {
     if (!has_tls)
       log::warning(
@@ -155,7 +158,7 @@ int run(ServeOptions options) {
   store::Store& store = *(*database)->store;
   if (auto safe = check_reach(store, *address, !options.tls_cert.empty()); !safe)
     return report(safe.error());
-  auto orphans = store.drop_orphans();
+  auto orphans = store.attachments().drop_orphans();
   if (!orphans) return report(orphans.error());
   if (*orphans > 0) log::info("dropped " + std::to_string(*orphans) + " files that nothing uses");
 
@@ -193,7 +196,7 @@ int run(ServeOptions options) {
                           (address->host == "::1" ? "[::1]" : address->host) + ":" +
                           std::to_string((*server)->port());
   std::cout << "listening on " << url << std::endl;
-  const auto owner = store.person("owner");
+  const auto owner = store.accounts().find("owner");
   if (!owner) return report(owner.error());
   if (options.data.sql)
     std::cout << "SQL on " << options.data.sql->host << ":" << options.data.sql->port
@@ -203,8 +206,8 @@ int run(ServeOptions options) {
   if (owner->has_password) {
     std::cout << "sign in at: " << url << "/" << std::endl;
   } else {
-    auto link =
-        store.create_link(store::TokenKind::owner_link, owner->name, std::chrono::hours(24));
+    auto link = store.tokens().create_link(store::TokenKind::owner_link, owner->name,
+                                           std::chrono::hours(24));
     if (!link) return report(link.error());
     std::cout << "owner link: " << url << "/login?link=" << link->secret << std::endl;
   }

@@ -11,7 +11,11 @@
 #include "mesh/demo_pot.h"
 #include "mesh/geometry.h"
 #include "mesh/surface_map.h"
+#include "store/journal_reads.h"
 #include "store/journal_writer.h"
+#include "store/layers.h"
+#include "store/models.h"
+#include "store/projects.h"
 
 namespace strata::jobs {
 namespace {
@@ -53,13 +57,13 @@ Layer cracks_layer() {
 }
 
 Result<Project> demo_project(store::Store& store) {
-  auto project = store.project(kProject);
+  auto project = store.projects().find(kProject);
   if (project || project.error().code != ErrorCode::not_found) return project;
   Project fresh;
   fresh.name = "Demo";
   fresh.slug = kProject;
   fresh.description = "A made-up pot to try things on.";
-  return store.create_project(fresh);
+  return store.projects().create(fresh);
 }
 
 Result<Model> create_pot(store::Store& store, const Project& project, double detail,
@@ -71,7 +75,7 @@ Result<Model> create_pot(store::Store& store, const Project& project, double det
   auto atlas = STRATA_TRY(mesh::make_atlas(pot, kResolution, progress));
   const mesh::Geometry geometry = mesh::build_geometry(pot, atlas);
 
-  store::Store::NewModel fresh;
+  store::NewModel fresh;
   Model& model = fresh.model;
   model.project_id = project.id;
   model.name = kModel;
@@ -86,24 +90,24 @@ Result<Model> create_pot(store::Store& store, const Project& project, double det
   progress.begin_stage(0.5, 0.6);
   progress.report(0, "Saving the pot");
   STRATA_TRY(put_geometry(geometry, progress, fresh));
-  return store.create_model(fresh, [&progress] { return progress.cancelled(); });
+  return store.models().create(fresh, [&progress] { return progress.cancelled(); });
 }
 
 Result<Model> find_or_create_pot(store::Store& store, double detail, Progress& progress) {
   const auto project = STRATA_TRY(demo_project(store));
-  const auto models = STRATA_TRY(store.models(project.id));
+  const auto models = STRATA_TRY(store.models().all(project.id));
   const auto pot = std::find_if(models.begin(), models.end(),
                                 [](const Model& model) { return model.name == kModel; });
   return pot != models.end() ? *pot : create_pot(store, project, detail, progress);
 }
 
 Result<Layer> find_or_create_layer(store::Store& store, const Model& model, Layer wanted) {
-  auto layer = store.layer(model.id, wanted.slug, Role::owner);
+  auto layer = store.layers().find(model.id, wanted.slug, Role::owner);
   if (layer || layer.error().code != ErrorCode::not_found) return layer;
   wanted.model_id = model.id;
   wanted.type = ValueType::u8;
   wanted.resolution = kResolution;
-  return store.create_layer(wanted);
+  return store.layers().create(wanted);
 }
 
 // One fill: every texel that the rule gives a value gets it. Tiles come in the order of their
@@ -151,7 +155,7 @@ store::JournalEntry fill_by_rule(const mesh::SurfaceMap& map, const Layer& layer
 
 Result<void> write_entry(store::Store& store, const Model& model, const Layer& layer,
                          const char* rule, store::JournalEntry entry) {
-  const auto last = STRATA_TRY(store.last_sequence(model.id));
+  const auto last = STRATA_TRY(store.journal().last_sequence(model.id));
   entry.model_id = model.id;
   entry.layer_id = layer.id;
   entry.sequence = last + 1;
@@ -178,7 +182,7 @@ Result<Model> make_demo(store::Store& store, Progress& progress, double detail) 
   const auto cracks = STRATA_TRY(find_or_create_layer(store, pot, cracks_layer()));
   // A layer that someone has painted on, or emptied, stays as it is.
   if (pieces.sequence == 0 || cracks.sequence == 0) {
-    const auto stored = STRATA_TRY(store.geometry(pot.id));
+    const auto stored = STRATA_TRY(store.models().geometry(pot.id));
     const auto geometry = STRATA_TRY(mesh::decode_geometry(stored));
     progress.begin_stage(0.6, 0.75);
     progress.report(0, "Mapping the surface");
@@ -210,7 +214,7 @@ Result<Model> make_demo(store::Store& store, Progress& progress, double detail) 
   }
   progress.begin_stage(0, 1);
   progress.report(1, "Done");
-  return store.model(std::to_string(pot.id));
+  return store.models().find(std::to_string(pot.id));
 }
 
 }  // namespace strata::jobs

@@ -15,6 +15,8 @@
 #include "mesh/geometry.h"
 #include "mesh/load.h"
 #include "mesh/scale_proposal.h"
+#include "store/models.h"
+#include "store/projects.h"
 
 namespace strata::jobs {
 namespace {
@@ -47,8 +49,8 @@ std::vector<std::string> names_of(std::span<const ImportFile> files) {
 }
 
 // Under their last names; where folders held files of the same name, the later ones are numbered.
-std::vector<store::Store::NewModel::Source> sources_of(std::span<const ImportFile> files) {
-  std::vector<store::Store::NewModel::Source> sources;
+std::vector<store::NewModel::Source> sources_of(std::span<const ImportFile> files) {
+  std::vector<store::NewModel::Source> sources;
   std::set<std::string> taken;
   for (const ImportFile& file : files) {
     const std::string base = base_filename(file.filename);
@@ -114,7 +116,7 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
                            const store::FirstAnswer<Model>& answer, MemoryLedger* memory) {
   STRATA_TRY(check(request));
   const ImportFile& scan = request.files[*mesh::pick_scan(names_of(request.files))];
-  const auto project = STRATA_TRY(store.project(request.project));
+  const auto project = STRATA_TRY(store.projects().find(request.project));
 
   progress.begin_stage(0, kRead);
   progress.report(0, "Reading the file");
@@ -138,7 +140,7 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
   auto atlas = STRATA_TRY(atlas_for(loaded.mesh, loaded.repairs, progress));
 
   progress.begin_stage(kUnfolded, kPainted);
-  store::Store::NewModel fresh;
+  store::NewModel fresh;
   auto base_color =
       STRATA_TRY(mesh::bake_base_color(loaded.mesh, atlas, loaded.repairs, progress, memory));
   if (auto& color = base_color)
@@ -175,7 +177,7 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
   progress.report(0, "Saving");
   fresh.sources = sources_of(request.files);
   progress.report(0.5, "Saving");
-  auto created = store.create_model(
+  auto created = store.models().create(
       fresh, [&progress] { return progress.cancelled(); }, answer);
   if (created) progress.report(1, "Done");
   return created;

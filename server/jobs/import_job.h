@@ -5,8 +5,10 @@
 #include <string_view>
 
 #include "core/memory_ledger.h"
+#include "core/model.h"
 #include "core/progress.h"
 #include "mesh/input_files.h"
+#include "store/first_answer.h"
 #include "store/store.h"
 
 namespace strata::jobs {

@@ -1,11 +1,12 @@
 #include "jobs/model_geometry.h"
 
 #include "mesh/detail_levels.h"
+#include "store/models.h"
 
 namespace strata::jobs {
 
 Result<void> put_geometry(const mesh::Geometry& geometry, Progress& progress,
-                          store::Store::NewModel& fresh) {
+                          store::NewModel& fresh) {
   Model& model = fresh.model;
   model.origin = geometry.origin;
   model.triangles = geometry.triangle_count();

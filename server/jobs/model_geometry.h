@@ -2,6 +2,7 @@
 
 #include "core/progress.h"
 #include "mesh/geometry.h"
+#include "store/models.h"
 #include "store/store.h"
 
 namespace strata::jobs {
@@ -9,6 +10,6 @@ namespace strata::jobs {
 // Puts a geometry into a new model, with what follows from it: its stored form and that of its
 // coarser copies, counts, box and area. Refused only when cancelled.
 Result<void> put_geometry(const mesh::Geometry& geometry, Progress& progress,
-                          store::Store::NewModel& fresh);
+                          store::NewModel& fresh);
 
 }  // namespace strata::jobs

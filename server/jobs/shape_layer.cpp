@@ -14,6 +14,7 @@
 #include "mesh/sampled_field.h"
 #include "mesh/texel_owners.h"
 #include "mesh/vertex_properties.h"
+#include "store/models.h"
 
 namespace strata::jobs {
 namespace {
@@ -179,7 +180,7 @@ class Measure {
   }
 
   Result<SurfaceValue> to_model() {
-    auto other = store_.model(recipe_.model);
+    auto other = store_.models().find(recipe_.model);
     if (!other) return refuse_model(other.error());
     if (other->id == model_.id)
       return fail(ErrorCode::invalid, "The same model",
@@ -191,7 +192,7 @@ class Measure {
                   "compute.model");
     other_model_ = other->name;
     progress_.report(0, "Reading the other model");
-    auto bytes = store_.geometry(other->id);
+    auto bytes = store_.models().geometry(other->id);
     if (!bytes) return refuse_model(bytes.error());
     auto there = STRATA_TRY(mesh::decode_geometry(*bytes));
     const mesh::ModelDistance distance(geometry_->origin, model_.metres(),
@@ -211,11 +212,11 @@ class Measure {
     for (const SourceFile& source : model_.source_files) {
       if (!recipe_.source.empty() && source.name != recipe_.source) continue;
       std::vector<std::uint8_t> beginning;
-      auto read =
-          store_.read_source(model_.id, source.name, [&](std::span<const std::uint8_t> chunk) {
-            beginning.assign(chunk.begin(), chunk.end());
-            return false;
-          });
+      auto read = store_.models().read_source(model_.id, source.name,
+                                              [&](std::span<const std::uint8_t> chunk) {
+                                                beginning.assign(chunk.begin(), chunk.end());
+                                                return false;
+                                              });
       if (!read) return tl::unexpected(read.error());
       const auto names = mesh::vertex_property_names(beginning);
       if (std::find(names.begin(), names.end(), recipe_.property) != names.end())
@@ -299,7 +300,7 @@ Result<TileMap> paint(const mesh::Geometry& geometry, const SurfaceValue& value,
 Result<std::vector<std::uint8_t>> read_source(store::Store& store, const Model& model,
                                               const std::string& source, Progress& progress) {
   std::vector<std::uint8_t> file;
-  STRATA_TRY(store.read_source(model.id, source, [&](std::span<const std::uint8_t> chunk) {
+  STRATA_TRY(store.models().read_source(model.id, source, [&](std::span<const std::uint8_t> chunk) {
     file.insert(file.end(), chunk.begin(), chunk.end());
     return !progress.cancelled();
   }));

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "core/model.h"
 #include "core/progress.h"
 #include "core/tile_mirror.h"
 #include "jobs/shape_recipe.h"

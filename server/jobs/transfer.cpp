@@ -9,6 +9,8 @@
 #include "core/texel_lookup.h"
 #include "mesh/surface_normals.h"
 #include "mesh/texel_owners.h"
+#include "store/journal_reads.h"
+#include "store/models.h"
 
 namespace strata::jobs {
 namespace {
@@ -183,7 +185,7 @@ Result<TransferSummary> transfer_layers(store::Store& store, const TransferTarge
                                         const TransferRequest& request, const Deliver& deliver,
                                         Progress& progress) {
   progress.report(0, "Reading the other model");
-  auto bytes = STRATA_TRY(store.geometry(request.source.id));
+  auto bytes = STRATA_TRY(store.models().geometry(request.source.id));
   auto decoded = STRATA_TRY(mesh::decode_geometry(bytes));
   bytes.clear();
   const auto source = std::make_shared<const mesh::Geometry>(std::move(decoded));
@@ -204,7 +206,7 @@ Result<TransferSummary> transfer_layers(store::Store& store, const TransferTarge
     STRATA_TRY(group.match(start, start + 0.5 * share));
     std::vector<TileMap> contents;
     for (const Layer* layer : layers) {
-      auto tiles = STRATA_TRY(store.load_tiles(*layer));
+      auto tiles = STRATA_TRY(store.journal().load_tiles(*layer));
       contents.push_back(std::move(tiles.tiles));
     }
     auto balances = STRATA_TRY(group.balance(contents, start + 0.5 * share, start + 0.8 * share));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/layer.h"
+#include "core/model.h"
 #include "core/progress.h"
 #include "core/tile_mirror.h"
 #include "mesh/search_tree.h"

@@ -8,6 +8,7 @@
 #include "mesh/parallel.h"
 #include "room/expression_binding.h"
 #include "room/tile_past.h"
+#include "store/journal_reads.h"
 
 namespace strata::room {
 namespace {
@@ -18,7 +19,7 @@ struct Turn {
   std::optional<bool> in_force, provisional;
 };
 
-Result<TileChange> turn_in_tile(const store::Store::WrittenTiles& written, const Turn& turn,
+Result<TileChange> turn_in_tile(const store::WrittenTiles& written, const Turn& turn,
                                 const Layer& layer, const TileMap& tiles, store::Store& store) {
   auto before = tile_or_empty(tiles, written.tile, layer.type);
   TileResolver resolver(*before, written.written);
@@ -36,7 +37,7 @@ Result<TileChange> turn_in_tile(const store::Store::WrittenTiles& written, const
 
 Result<ComputedEdit> compute_turn(const Turn& turn, const Layer& layer, const TileMap& tiles,
                                   store::Store& store) {
-  auto written = STRATA_TRY(store.written_by(layer, turn.edits));
+  auto written = STRATA_TRY(store.journal().written_by(layer, turn.edits));
   ComputedEdit computed;
   for (const auto& tile : written) {
     auto change = STRATA_TRY(turn_in_tile(tile, turn, layer, tiles, store));
@@ -50,8 +51,9 @@ Result<ComputedEdit> compute_undo(const EditRequest& request, const Layer& layer
                                   const TileMap& tiles, store::Store& store, bool redo) {
   // What was accepted stays until a curator changes it.
   const bool pending_only = layer.review && request.author.role < Role::curator;
-  auto sequences = STRATA_TRY(redo ? store.redoable(layer.id, request.author.user, pending_only)
-                                   : store.undoable(layer.id, request.author.user, pending_only));
+  auto sequences =
+      STRATA_TRY(redo ? store.journal().redoable(layer.id, request.author.user, pending_only)
+                      : store.journal().undoable(layer.id, request.author.user, pending_only));
   if (sequences.empty() && pending_only)
     return fail(
         ErrorCode::conflict, redo ? "Nothing to redo" : "Nothing to undo",
@@ -69,7 +71,8 @@ Result<ComputedEdit> compute_undo(const EditRequest& request, const Layer& layer
 
 Result<ComputedEdit> compute_review(const ReviewEdit& review, const Layer& layer,
                                     const TileMap& tiles, store::Store& store) {
-  const auto found = STRATA_TRY(store.under_review(layer.id, review.decision, review.which));
+  const auto found =
+      STRATA_TRY(store.journal().under_review(layer.id, review.decision, review.which));
   const bool reopens = review.decision == Decision::reopen;
   Turn turn;
   std::set<std::string> authors;
@@ -137,7 +140,7 @@ Result<ComputedEdit> compute_edit(const EditRequest& request, const Layer& layer
             return only_changes(replace_content(tiles, content, layer.type, context.map));
           },
           [&](const RestoreEdit& restore) -> Result<ComputedEdit> {
-            auto past = STRATA_TRY(store.load_tiles(layer, restore.sequence));
+            auto past = STRATA_TRY(store.journal().load_tiles(layer, restore.sequence));
             return only_changes(replace_content(tiles, past.tiles, layer.type, context.map));
           },
           [&](const UndoEdit&) { return compute_undo(request, layer, tiles, store, false); },

@@ -7,6 +7,9 @@
 #include "room/await.h"
 #include "room/provisional.h"
 #include "room/tile_changes.h"
+#include "store/journal_reads.h"
+#include "store/layers.h"
+#include "store/models.h"
 
 namespace strata::room {
 
@@ -20,7 +23,7 @@ LayerState new_state(Layer layer) {
 }
 
 Result<LayerState> read_layer_state(store::Store& store, Layer layer) {
-  auto tiles = STRATA_TRY(store.load_tiles(layer));
+  auto tiles = STRATA_TRY(store.journal().load_tiles(layer));
   auto provisional = STRATA_TRY(read_provisional(store, layer));
   LayerState state = new_state(std::move(layer));
   state.mirror->put(tiles.tiles, tiles.sequence);
@@ -33,9 +36,9 @@ Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id,
   JournalContents contents;
   // Before the tiles: were they to hold more, the next commit would find out and have everything
   // read again.
-  auto last = STRATA_TRY(store.last_sequence(model_id));
+  auto last = STRATA_TRY(store.journal().last_sequence(model_id));
   contents.last_sequence = last;
-  auto layers = STRATA_TRY(store.layers(model_id, Role::owner));
+  auto layers = STRATA_TRY(store.layers().of_model(model_id, Role::owner));
   for (Layer& layer : layers) {
     auto state = STRATA_TRY(read_layer_state(store, std::move(layer)));
     for (const LayerState& old : held) {
@@ -62,7 +65,7 @@ Result<Level> decode(std::span<const std::uint8_t> bytes) {
 }
 
 Result<std::vector<Level>> read_coarser_levels(store::Store& store, std::int64_t model_id) {
-  auto stored = STRATA_TRY(store.detail_levels(model_id));
+  auto stored = STRATA_TRY(store.models().detail_levels(model_id));
   std::vector<Level> levels;
   for (auto& bytes : stored) {
     auto level = STRATA_TRY(decode(bytes));
@@ -78,7 +81,7 @@ Result<render::ModelGeometry> read_geometry(store::Store& store, std::int64_t mo
   // Together the coarser levels are about as much work as the full one.
   auto coarser_later =
       std::async(std::launch::async, [&] { return read_coarser_levels(store, model_id); });
-  auto bytes = STRATA_TRY(store.geometry(model_id));
+  auto bytes = STRATA_TRY(store.models().geometry(model_id));
   auto full = STRATA_TRY(decode(bytes));
   auto coarser = STRATA_TRY(coarser_later.get());
   return render::ModelGeometry{std::move(full), std::move(coarser)};

@@ -4,6 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include "core/layer.h"
+#include "core/tile_mirror.h"
 #include "mesh/geometry.h"
 #include "room/layer_state.h"
 #include "store/store.h"

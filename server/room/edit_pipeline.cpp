@@ -11,6 +11,7 @@
 #include "core/overloaded.h"
 #include "room/gpu_problem.h"
 #include "room/provisional.h"
+#include "store/journal_reads.h"
 
 namespace strata::room {
 namespace {
@@ -148,7 +149,7 @@ void EditPipeline::ask_journal() {
   }
   if (ids.empty() && !verifying) return;
   asking_ = true;
-  using State = Result<store::Store::JournalState>;
+  using State = Result<store::JournalState>;
   boost::asio::post(parts_.readers, [&store = parts_.store, model_id = host_->pipeline_model().id,
                                      ids = std::move(ids), was_away = journal_away_,
                                      done = then([this, verifying](const State& state) {
@@ -160,11 +161,11 @@ void EditPipeline::ask_journal() {
       return done(State(fail(
           ErrorCode::unavailable, "Database unavailable",
           "The database does not answer, so nothing can be saved. Viewing goes on; try again shortly.")));
-    done(store.journal_state(model_id, ids));
+    done(store.journal().state(model_id, ids));
   });
 }
 
-void EditPipeline::on_journal(bool verifying, const Result<store::Store::JournalState>& state) {
+void EditPipeline::on_journal(bool verifying, const Result<store::JournalState>& state) {
   asking_ = false;
   if (closed_) return;
   journal_away_ = !state;

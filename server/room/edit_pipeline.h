@@ -17,6 +17,7 @@
 #include "room/room.h"
 #include "room/surface_maps.h"
 #include "room/tile_changes.h"
+#include "store/journal_reads.h"
 #include "store/journal_writer.h"
 
 namespace strata::room {
@@ -134,7 +135,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
 
   // Looking up
   void ask_journal();
-  void on_journal(bool verifying, const Result<store::Store::JournalState>& state);
+  void on_journal(bool verifying, const Result<store::JournalState>& state);
   void on_known(const std::vector<store::JournalRow>& known);
   // Starting
   void step();

@@ -1,4 +1,6 @@
 #include "room/expression_binding.h"
+#include "store/records.h"
+#include "store/tables.h"
 
 #include <algorithm>
 
@@ -90,11 +92,11 @@ Result<query::BoundExpression> bind_expression(const Expression& expression,
           character, field));
     std::optional<std::int64_t> then;
     if (at) {
-      auto sequence = STRATA_TRY(store.table_sequence_when(*layer.table, layer.model_id, *at));
+      auto sequence = STRATA_TRY(store.tables().sequence_when(*layer.table, layer.model_id, *at));
       then = sequence;
     }
     auto numbers =
-        STRATA_TRY(store.record_numbers(*layer.table, seen_by, part.expression, then, field));
+        STRATA_TRY(store.records().numbers(*layer.table, seen_by, part.expression, then, field));
     bound.records.emplace_back(numbers);
   }
   return bound;

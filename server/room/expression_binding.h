@@ -6,6 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/expression.h"
+#include "core/role.h"
+#include "core/visibility.h"
 #include "query/expression_evaluator.h"
 #include "store/store.h"
 

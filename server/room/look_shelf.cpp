@@ -8,6 +8,7 @@
 #include "core/picture.h"
 #include "core/slug.h"
 #include "room/await.h"
+#include "store/looks.h"
 
 namespace strata::room {
 namespace {
@@ -162,7 +163,7 @@ Result<LookShelf::Bytes> LookShelf::encoded_bytes(std::int64_t id) {
     if (const auto found = slots_.find(id); found != slots_.end() && found->second.encoded)
       return found->second.encoded;
   }
-  auto bytes = STRATA_TRY(store_.look_picture(id));
+  auto bytes = STRATA_TRY(store_.looks().picture(id));
   auto encoded = std::make_shared<const std::vector<std::uint8_t>>(std::move(bytes));
   std::lock_guard lock(mutex_);
   if (const auto found = slots_.find(id); found != slots_.end()) found->second.encoded = encoded;

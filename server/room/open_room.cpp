@@ -12,6 +12,9 @@
 #include "room/gpu_problem.h"
 #include "room/seen_room.h"
 #include "room/tile_changes.h"
+#include "store/layers.h"
+#include "store/looks.h"
+#include "store/models.h"
 
 namespace strata::room {
 namespace {
@@ -67,7 +70,7 @@ OpenRoom::~OpenRoom() = default;
 
 Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomParts& parts,
                                                  const std::string& model_ref) {
-  auto model = STRATA_TRY(parts.store.model(model_ref));
+  auto model = STRATA_TRY(parts.store.models().find(model_ref));
   auto geometry = STRATA_TRY(read_geometry(parts.store, model.id));
   std::uint64_t bytes = geometry.full->bytes();
   for (const auto& level : geometry.coarser) bytes += level->bytes();
@@ -76,7 +79,7 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomParts& parts,
   room->geometry_share_ = std::move(share);
   auto journal = read_journal(parts.store, room->model_id_, {});
   if (!journal) return tl::unexpected(journal.error());
-  auto looks = STRATA_TRY(parts.store.looks(room->model_id_));
+  auto looks = STRATA_TRY(parts.store.looks().of_model(room->model_id_));
   for (LayerState& state : journal->layers) {
     const std::int64_t id = state.layer.id;
     room->layers_.emplace(id, std::move(state));
@@ -202,7 +205,7 @@ Result<Layer> OpenRoom::create_layer(Layer layer, const store::FirstAnswer<Layer
     LayerState state = new_state(layer);
     auto handles = add_layer(parts_.renderer, model_handle(), state);
     if (!handles) return tl::unexpected(gpu_problem(handles.error()));
-    auto made = parts_.store.create_layer(layer, answer, columns);
+    auto made = parts_.store.layers().create(layer, answer, columns);
     if (!made) {
       remove_layer(parts_.renderer, *handles);
       return made;
@@ -226,7 +229,7 @@ Result<Layer> OpenRoom::create_layer(Layer layer, const store::FirstAnswer<Layer
 
 Result<Layer> OpenRoom::update_layer(Layer layer, const store::FirstAnswer<Layer>& answer) {
   STRATA_TRY(check_layer(layer, model()));
-  auto updated = STRATA_TRY(parts_.store.update_layer(std::move(layer), answer));
+  auto updated = STRATA_TRY(parts_.store.layers().update(std::move(layer), answer));
   bool lock_falls = false;
   const Layer now = on_strand([&] {
     const LayerState* before = find_layer(updated.id);
@@ -264,7 +267,7 @@ Layer OpenRoom::replace_layer(const Layer& stored) {
 Result<Layer> OpenRoom::layer_computed(std::int64_t id, const std::string& expression,
                                        std::int64_t sequence,
                                        const std::map<std::int64_t, std::int64_t>& tables) {
-  auto stored = STRATA_TRY(parts_.store.layer_computed(id, expression, sequence, tables));
+  auto stored = STRATA_TRY(parts_.store.layers().set_computed(id, expression, sequence, tables));
   return on_strand([&] { return replace_layer(stored); });
 }
 
@@ -289,7 +292,7 @@ void OpenRoom::records_changed(std::int64_t table_id) {
   for (const Layer& layer : layers()) {
     if (!layer.palette_of_terms || layer.table != table_id) continue;
     // One that is gone meanwhile, or cannot be read now, keeps the colours that it has.
-    if (auto stored = parts_.store.layer(model_id_, std::to_string(layer.id), Role::owner))
+    if (auto stored = parts_.store.layers().find(model_id_, std::to_string(layer.id), Role::owner))
       on_strand([&] { return replace_layer(*stored); });
   }
   on_strand([&] {
@@ -331,7 +334,7 @@ Result<Layer> OpenRoom::widen_layer(const Layer& layer, ValueType type,
     mirror->assign(std::move(content.tiles), content.sequence);
     auto handle = add_layer(parts_.renderer, model_handle(), mirror);
     if (!handle) return tl::unexpected(gpu_problem(handle.error()));
-    auto stored = parts_.store.widen_layer(layer, type, answer);
+    auto stored = parts_.store.layers().widen(layer, type, answer);
     if (!stored) {
       parts_.renderer.remove_layer(*handle);
       return stored;
@@ -356,7 +359,8 @@ Result<Layer> OpenRoom::widen_layer(const Layer& layer, ValueType type,
 }
 
 Result<void> OpenRoom::delete_layer(std::int64_t id, const store::FirstAnswer<>& answer) {
-  return let_go_of_layer(id, [this, id, answer] { return parts_.store.delete_layer(id, answer); });
+  return let_go_of_layer(id,
+                         [this, id, answer] { return parts_.store.layers().remove(id, answer); });
 }
 Result<void> OpenRoom::bin_layer(std::int64_t id, const store::FirstAnswer<>& answer) {
   return let_go_of_layer(id,
@@ -410,7 +414,7 @@ Result<store::BinRestored> OpenRoom::restore_layer(
 }
 
 Result<void> OpenRoom::take_up_layer(std::int64_t id) {
-  auto layer = STRATA_TRY(parts_.store.layer(model_id_, std::to_string(id), Role::owner));
+  auto layer = STRATA_TRY(parts_.store.layers().find(model_id_, std::to_string(id), Role::owner));
   auto state = STRATA_TRY(read_layer_state(parts_.store, std::move(layer)));
   auto handles = add_layer(parts_.renderer, model_handle(), state);
   if (!handles) return tl::unexpected(gpu_problem(handles.error()));
@@ -431,14 +435,14 @@ Result<void> OpenRoom::take_up_layer(std::int64_t id) {
           return input.layer == id;
         }))
       continue;
-    if (auto stored = parts_.store.layer(model_id_, std::to_string(other.id), Role::owner))
+    if (auto stored = parts_.store.layers().find(model_id_, std::to_string(other.id), Role::owner))
       on_strand([&] { replace_layer(*stored); });
   }
   return {};
 }
 
 Result<Model> OpenRoom::update_model(Model model, const store::FirstAnswer<Model>& answer) {
-  auto updated = STRATA_TRY(parts_.store.update_model(std::move(model), answer));
+  auto updated = STRATA_TRY(parts_.store.models().update(std::move(model), answer));
   on_strand([&] {
     {
       std::lock_guard lock(mutex_);
@@ -458,14 +462,14 @@ Result<Look> OpenRoom::look(const std::string& ref) const {
 Result<Look> OpenRoom::create_look(Look look, std::span<const std::uint8_t> picture,
                                    const store::FirstAnswer<Look>& answer) {
   look.model_id = model_id_;
-  auto created = STRATA_TRY(parts_.store.create_look(look, picture, answer));
+  auto created = STRATA_TRY(parts_.store.looks().create(look, picture, answer));
   look_shelf_->put(created);
   tell_look(Listener::LayerChange::created, created);
   return created;
 }
 
 Result<Look> OpenRoom::update_look(const Look& look, const store::FirstAnswer<Look>& answer) {
-  auto updated = STRATA_TRY(parts_.store.update_look(look, answer));
+  auto updated = STRATA_TRY(parts_.store.looks().update(look, answer));
   look_shelf_->put(updated);
   tell_look(Listener::LayerChange::changed, updated);
   return updated;
@@ -473,7 +477,7 @@ Result<Look> OpenRoom::update_look(const Look& look, const store::FirstAnswer<Lo
 
 Result<void> OpenRoom::delete_look(std::int64_t id, const store::FirstAnswer<>& answer) {
   const auto known = look_shelf_->find(std::to_string(id));
-  STRATA_TRY(parts_.store.delete_look(id, answer));
+  STRATA_TRY(parts_.store.looks().remove(id, answer));
   look_shelf_->drop(id);
   if (known) tell_look(Listener::LayerChange::deleted, *known);
   return {};
@@ -798,7 +802,7 @@ Result<void> OpenRoom::sum_layer(std::int64_t layer_id) {
   return exclusively<void>(
       [this, layer = found.layer, mirror = found.mirror, map = *map]() -> Result<void> {
         const auto snapshot = mirror->snapshot();
-        return parts_.store.keep_sums(
+        return parts_.store.layers().keep_sums(
             layer.id, sum_tiles(layer, *map, {snapshot.tiles.begin(), snapshot.tiles.end()}));
       });
 }

@@ -6,6 +6,14 @@
 #include <memory>
 #include <mutex>
 
+#include "core/expression.h"
+#include "core/layer.h"
+#include "core/look.h"
+#include "core/model.h"
+#include "core/role.h"
+#include "core/table.h"
+#include "core/tile_mirror.h"
+#include "core/visibility.h"
 #include "room/contents.h"
 #include "room/edit_pipeline.h"
 #include "room/followers.h"
@@ -15,6 +23,7 @@
 #include "room/record_marks.h"
 #include "room/retired_keys.h"
 #include "room/room.h"
+#include "store/first_answer.h"
 
 namespace strata::room {
 

@@ -9,6 +9,7 @@
 #include "room/gpu_problem.h"
 #include "room/open_room.h"
 #include "room/provisional.h"
+#include "store/journal_reads.h"
 
 namespace strata::room {
 namespace {
@@ -109,7 +110,7 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
                              static_cast<float>(item.layer.opacity)};
     std::optional<render::LayerHandle> waiting = item.waiting();
     if (asked.at) {
-      auto past = STRATA_TRY(parts_.store.load_tiles(item.layer, asked.at));
+      auto past = STRATA_TRY(parts_.store.journal().load_tiles(item.layer, asked.at));
       auto content =
           STRATA_TRY(borrow(item.layer.type, item.layer.resolution, std::move(past.tiles)));
       style.layer = content;

@@ -2,15 +2,16 @@
 
 #include "core/mask_texels.h"
 #include "room/tile_past.h"
+#include "store/journal_reads.h"
 
 namespace strata::room {
 
 Result<TileMap> read_provisional(store::Store& store, const Layer& layer) {
-  const auto waiting = STRATA_TRY(store.under_review(layer.id, Decision::accept, {}));
+  const auto waiting = STRATA_TRY(store.journal().under_review(layer.id, Decision::accept, {}));
   if (waiting.empty()) return TileMap{};
   std::vector<std::int64_t> sequences;
   for (const auto& edit : waiting) sequences.push_back(edit.sequence);
-  const auto written = STRATA_TRY(store.written_by(layer, sequences));
+  const auto written = STRATA_TRY(store.journal().written_by(layer, sequences));
   TileMap tiles;
   for (const auto& [tile, texels] : written) {
     // what the texels hold does not matter here

@@ -4,7 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/layer.h"
 #include "core/palette.h"
+#include "core/tile_mirror.h"
 #include "render/renderer.h"
 #include "room/tile_changes.h"
 #include "store/store.h"

@@ -14,6 +14,7 @@
 #include "room/expression_binding.h"
 #include "room/open_room.h"
 #include "room/region.h"
+#include "store/journal_reads.h"
 
 namespace strata::room {
 namespace {
@@ -54,7 +55,7 @@ Result<TileMirror::Snapshot> OpenRoom::tiles_at(const LayerState& state, At at) 
   if (*at > durable_)
     return fail(ErrorCode::invalid, "Sequence not reached",
                 "The newest durable edit of this model is " + std::to_string(durable_) + ".", "at");
-  return parts_.store.load_tiles(state.layer, at);
+  return parts_.store.journal().load_tiles(state.layer, at);
 }
 
 Result<TileMirror::Snapshot> OpenRoom::tiles(const std::string& layer, At at) {

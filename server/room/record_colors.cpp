@@ -4,6 +4,8 @@
 #include <boost/asio/post.hpp>
 
 #include "core/key_colors.h"
+#include "store/records.h"
+#include "store/tables.h"
 
 namespace strata::room {
 namespace {
@@ -21,7 +23,7 @@ bool holds_numbers(ColumnKind kind) {
 
 Result<Palette> by_column(store::Store& store, std::int64_t table_id, Role seen_by,
                           const Palette& palette) {
-  auto table = STRATA_TRY(store.table(std::to_string(table_id), seen_by));
+  auto table = STRATA_TRY(store.tables().find(std::to_string(table_id), seen_by));
   const Column* column = find_column(table.columns, palette.column);
   if (!column)
     return fail(ErrorCode::invalid, "No such column",
@@ -29,8 +31,8 @@ Result<Palette> by_column(store::Store& store, std::int64_t table_id, Role seen_
                     table.name + "' no longer has. Choose another one.",
                 "palette.column");
   if (holds_numbers(column->kind)) {
-    auto numbers = store.record_numbers(table_id, seen_by, column_of(column->slug), std::nullopt,
-                                        "palette.column");
+    auto numbers = store.records().numbers(table_id, seen_by, column_of(column->slug), std::nullopt,
+                                           "palette.column");
     if (!numbers) return tl::unexpected(numbers.error());
     return colors_of_numbers(palette, *numbers);
   }
@@ -39,7 +41,7 @@ Result<Palette> by_column(store::Store& store, std::int64_t table_id, Role seen_
         ErrorCode::invalid, "Column holds no numbers",
         "'" + column->name + "' holds no numbers: only a categorical palette can colour by it.",
         "palette.column");
-  auto texts = store.record_texts(table_id, seen_by, column->slug, "palette.column");
+  auto texts = store.records().texts(table_id, seen_by, column->slug, "palette.column");
   if (!texts) return tl::unexpected(texts.error());
   return colors_of_texts(palette, *texts);
 }
@@ -50,7 +52,7 @@ Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, std::in
                                                     Role seen_by, const Highlight& highlight,
                                                     const std::string& field) {
   if (const auto* keys = std::get_if<std::vector<std::uint32_t>>(&highlight.records)) return *keys;
-  auto truths = STRATA_TRY(store.record_numbers(
+  auto truths = STRATA_TRY(store.records().numbers(
       table_id, seen_by, std::get<Expression>(highlight.records), std::nullopt, field));
   std::vector<std::uint32_t> keys;
   for (const KeyNumber& truth : truths)

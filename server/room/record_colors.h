@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "core/palette.h"
+#include "core/role.h"
+#include "core/visibility.h"
 #include "room/room.h"
 #include "store/store.h"
 

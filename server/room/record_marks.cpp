@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "core/log.h"
+#include "store/records.h"
+#include "store/tables.h"
 
 namespace strata::room {
 
@@ -21,13 +23,14 @@ RecordMarks::RecordMarks(store::Store& store, boost::asio::thread_pool& workers,
 
 Result<RecordMarks::Marks> RecordMarks::read(const Wanted& wanted,
                                              std::optional<std::int64_t> at) const {
-  auto marks = STRATA_TRY(store_.marks(wanted.first, least_role(wanted.second), model_id_, at));
+  auto marks =
+      STRATA_TRY(store_.records().marks(wanted.first, least_role(wanted.second), model_id_, at));
   return marks.empty() ? nullptr : std::make_shared<const std::vector<KeyMark>>(std::move(marks));
 }
 
 Result<RecordMarks::Marks> RecordMarks::when(std::int64_t table_id, Visibility sight,
                                              std::int64_t sequence) const {
-  const auto at = STRATA_TRY(store_.table_sequence_when(table_id, model_id_, sequence));
+  const auto at = STRATA_TRY(store_.tables().sequence_when(table_id, model_id_, sequence));
   return read({table_id, sight}, at);
 }
 

@@ -7,7 +7,9 @@
 #include <mutex>
 #include <vector>
 
+#include "core/mark.h"
 #include "core/palette.h"
+#include "core/visibility.h"
 #include "render/renderer.h"
 #include "store/store.h"
 

@@ -2,6 +2,9 @@
 
 #include <vector>
 
+#include "core/role.h"
+#include "core/tile_mirror.h"
+#include "core/visibility.h"
 #include "query/values.h"
 #include "room/edit.h"
 #include "room/seen_texels.h"

@@ -10,9 +10,17 @@
 #include <variant>
 #include <vector>
 
+#include "core/expression.h"
+#include "core/layer.h"
+#include "core/look.h"
 #include "core/memory_ledger.h"
+#include "core/model.h"
 #include "core/person_color.h"
 #include "core/picture.h"
+#include "core/role.h"
+#include "core/table.h"
+#include "core/tile_mirror.h"
+#include "core/visibility.h"
 #include "query/cross_table.h"
 #include "query/key_areas.h"
 #include "query/perimeter.h"
@@ -24,6 +32,7 @@
 #include "query/values.h"
 #include "room/edit.h"
 #include "store/bin.h"
+#include "store/first_answer.h"
 #include "store/store.h"
 #include "stream/viewer.h"
 
@@ -347,7 +356,8 @@ class Room {
                                   const ValueAt& value_at) = 0;
   virtual Result<std::map<std::int64_t, query::KeyArea>> key_areas(
       const std::string& layer) = 0;  // of a database layer
-  // Counts all tiles of a layer for the journal's sums (Store::keep_sums). Edits wait meanwhile.
+  // Counts all tiles of a layer for the journal's sums (store::Layers::keep_sums). Edits wait
+  // meanwhile.
   virtual Result<void> sum_layer(std::int64_t layer_id) = 0;
   virtual Result<TileMirror::Snapshot> tiles(const std::string& layer,
                                              std::optional<std::int64_t> at) = 0;

@@ -14,6 +14,7 @@
 #include "core/slug.h"
 #include "room/open_room.h"
 #include "room/seen_room.h"
+#include "store/models.h"
 
 namespace strata::room {
 namespace {
@@ -198,7 +199,7 @@ Result<std::shared_ptr<Room>> Rooms::open(const std::string& model_ref, Role see
 Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref) {
   // An open room is found without the database, so that viewing goes on when that is away.
   if (auto room = find(model_ref)) return room;
-  auto model = STRATA_TRY(parts.store.model(model_ref));
+  auto model = STRATA_TRY(parts.store.models().find(model_ref));
   const int losses_before = context_losses;
   {
     std::unique_lock lock(mutex);

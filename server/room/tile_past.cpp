@@ -1,4 +1,5 @@
 #include "room/tile_past.h"
+#include "store/journal_reads.h"
 
 #include <limits>
 
@@ -9,7 +10,8 @@ constexpr int kRevisionsAtOnce = 32;  // no more of a tile's history are in memo
 Result<void> walk_back(TileResolver& resolver, const Layer& layer, TileAddress tile,
                        store::Store& store, const std::function<void(PastRevision&)>& turn) {
   for (std::int64_t newest = std::numeric_limits<std::int64_t>::max(); resolver.is_open();) {
-    auto revisions = STRATA_TRY(store.tile_history(layer, tile, newest, kRevisionsAtOnce));
+    auto revisions =
+        STRATA_TRY(store.journal().tile_history(layer, tile, newest, kRevisionsAtOnce));
     if (revisions.empty()) break;
     for (auto& revision : revisions) {
       turn(revision);

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "core/history.h"
+#include "core/layer.h"
 #include "store/store.h"
 
 namespace strata::room {

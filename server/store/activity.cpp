@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "store/projects.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
@@ -75,9 +76,9 @@ Activity read_line(const PgResult& rows, int i) {
 
 }  // namespace
 
-Result<ActivityPage> Store::activity(std::int64_t project_id, Role seen_by,
-                                     const ActivityQuery& query) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<ActivityPage> {
+Result<ActivityPage> Projects::activity(std::int64_t project_id, Role seen_by,
+                                        const ActivityQuery& query) {
+  return pool_.read([&](PgConnection& connection) -> Result<ActivityPage> {
     const ActivityPlace before = query.before.value_or(kAfterAll);
     const int limit = std::max(query.limit, 1);
     Params params;

@@ -1,3 +1,4 @@
+#include "store/answers.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
@@ -12,9 +13,9 @@ Result<void> check_key(const std::string& key) {
 
 }  // namespace
 
-Result<std::optional<nlohmann::json>> Store::find_answer(const std::string& key) {
+Result<std::optional<nlohmann::json>> Answers::find(const std::string& key) {
   STRATA_TRY(check_key(key));
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::optional<nlohmann::json>> {
+  return pool_.read([&](PgConnection& connection) -> Result<std::optional<nlohmann::json>> {
     auto row = STRATA_TRY(connection.query(
         "SELECT answer FROM answers WHERE key = $1 AND time > now() - interval '7 days'",
         Params().text(key)));

@@ -2,6 +2,7 @@
 
 #include "core/column_value.h"
 #include "core/media_type.h"
+#include "store/attachments.h"
 #include "store/blobs.h"
 #include "store/store_impl.h"
 #include "store/table_rows.h"
@@ -48,7 +49,7 @@ Result<std::vector<Attachment>> rows_of_ids(PgConnection& connection, std::int64
 
 // Where the files go: as wished, or the first column that takes them all.
 Result<const Column*> column_for(const Table& table, std::optional<std::int64_t> wished,
-                                 const std::vector<Store::NewAttachment>& files) {
+                                 const std::vector<NewAttachment>& files) {
   const auto is_picture = [](const auto& file) { return is_raster_picture(file.media_type); };
   const bool all_pictures = std::all_of(files.begin(), files.end(), is_picture);
   const Column *pictures = nullptr, *documents = nullptr;
@@ -91,7 +92,7 @@ nlohmann::json cell_of(const Record& record, const Column& column) {
 }
 
 Result<Attachment> insert_attachment(PgConnection& connection, std::int64_t table_id,
-                                     const Store::NewAttachment& file, const Sha256& hash,
+                                     const NewAttachment& file, const Sha256& hash,
                                      const std::string& user) {
   const auto side = [](std::optional<int> value) {
     return value ? std::optional<std::int64_t>(*value) : std::nullopt;
@@ -119,11 +120,11 @@ Result<TableChange> without_problems(Result<TableChange> change) {
 
 }  // namespace
 
-Result<Store::Attached> Store::attach(std::int64_t table_id, std::int64_t key,
-                                      std::optional<std::int64_t> column_id,
-                                      const std::vector<NewAttachment>& files,
-                                      std::optional<std::int64_t> version, const Author& who,
-                                      const FirstAnswer<Attached>& answer) {
+Result<Attached> Attachments::attach(std::int64_t table_id, std::int64_t key,
+                                     std::optional<std::int64_t> column_id,
+                                     const std::vector<NewAttachment>& files,
+                                     std::optional<std::int64_t> version, const Author& who,
+                                     const FirstAnswer<Attached>& answer) {
   STRATA_TRY(check_text(who.user, "user"));
   std::vector<Content> contents;
   for (const NewAttachment& file : files) {
@@ -138,7 +139,7 @@ Result<Store::Attached> Store::attach(std::int64_t table_id, std::int64_t key,
   // What cannot be is told before gigabytes are kept for it; said for certain once the table is
   // locked, which others wait for. Not in one transaction: having read the rows it would keep them
   // from who deletes the table, and waits for them with the table locked.
-  auto may = impl_->pool.read([&](PgConnection& connection) -> Result<void> {
+  auto may = pool_.read([&](PgConnection& connection) -> Result<void> {
     auto open = STRATA_TRY(read_table(connection, table_id, who.role));
     if (auto there = record_of(connection, open, key, version); !there) {
       // Deleted between the two looks.
@@ -175,13 +176,13 @@ Result<Store::Attached> Store::attach(std::int64_t table_id, std::int64_t key,
     attached.change = std::move(change);
     return attached;
   };
-  return impl_->change(answer, work, kBulkLimits);
+  return change(pool_, answer, work, kBulkLimits);
 }
 
-Result<TableChange> Store::detach(std::int64_t attachment_id, const std::string& user,
-                                  const FirstAnswer<TableChange>& answer) {
+Result<TableChange> Attachments::detach(std::int64_t attachment_id, const std::string& user,
+                                        const FirstAnswer<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
-  return impl_->change(answer, [&](PgConnection& connection) -> Result<TableChange> {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<TableChange> {
     auto owner = STRATA_TRY(connection.query("SELECT table_id FROM attachments WHERE id = $1",
                                              Params().integer(attachment_id)));
     if (owner.rows() == 0) return no_such("attachment", std::to_string(attachment_id));
@@ -212,8 +213,8 @@ Result<TableChange> Store::detach(std::int64_t attachment_id, const std::string&
   });
 }
 
-Result<Attachment> Store::attachment(std::int64_t id, const Author& seen_by) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<Attachment> {
+Result<Attachment> Attachments::find(std::int64_t id, const Author& seen_by) {
+  return pool_.read([&](PgConnection& connection) -> Result<Attachment> {
     auto row = STRATA_TRY(
         connection.query("SELECT " STRATA_ATTACHMENT_COLUMNS
                          " FROM attachments a JOIN blobs b USING (sha256) WHERE a.id = $1",
@@ -225,18 +226,18 @@ Result<Attachment> Store::attachment(std::int64_t id, const Author& seen_by) {
   });
 }
 
-Result<std::vector<Attachment>> Store::attachments(std::int64_t table_id, const Author& seen_by,
-                                                   std::span<const std::int64_t> ids) {
-  auto found = impl_->pool.read(
-      [&](PgConnection& connection) { return rows_of_ids(connection, table_id, ids); });
+Result<std::vector<Attachment>> Attachments::of_table(std::int64_t table_id, const Author& seen_by,
+                                                      std::span<const std::int64_t> ids) {
+  auto found =
+      pool_.read([&](PgConnection& connection) { return rows_of_ids(connection, table_id, ids); });
   if (found)
     std::erase_if(*found, [&](const Attachment& attachment) { return !sees(seen_by, attachment); });
   return found;
 }
 
-Result<Attachment> Store::show_attachment(std::int64_t id, Visibility visibility,
-                                          const FirstAnswer<Attachment>& answer) {
-  return impl_->change(answer, [&](PgConnection& connection) -> Result<Attachment> {
+Result<Attachment> Attachments::show(std::int64_t id, Visibility visibility,
+                                     const FirstAnswer<Attachment>& answer) {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Attachment> {
     auto row = STRATA_TRY(connection.query(
         "WITH a AS (UPDATE attachments SET visibility = $2 WHERE id = $1 RETURNING *) SELECT " STRATA_ATTACHMENT_COLUMNS
         " FROM a JOIN blobs b USING (sha256)",
@@ -246,23 +247,22 @@ Result<Attachment> Store::show_attachment(std::int64_t id, Visibility visibility
   });
 }
 
-Result<void> Store::read_attachment(
-    const Attachment& attachment, std::uint64_t begin, std::uint64_t end,
-    const std::function<bool(std::span<const std::uint8_t>)>& sink) {
-  auto row = STRATA_TRY(impl_->pool.read([&](PgConnection& connection) {
+Result<void> Attachments::read(const Attachment& attachment, std::uint64_t begin, std::uint64_t end,
+                               const std::function<bool(std::span<const std::uint8_t>)>& sink) {
+  auto row = STRATA_TRY(pool_.read([&](PgConnection& connection) {
     return connection.query("SELECT sha256 FROM attachments WHERE id = $1",
                             Params().integer(attachment.id));
   }));
   if (row.rows() == 0) return no_such("attachment", std::to_string(attachment.id));
   const Bytes hash = row.bytes(0, 0);
-  return stream_blob(impl_->pool, {hash.begin(), hash.end()}, begin,
-                     std::min(end, attachment.bytes), sink);
+  return stream_blob(pool_, {hash.begin(), hash.end()}, begin, std::min(end, attachment.bytes),
+                     sink);
 }
 
-Result<std::optional<std::vector<std::uint8_t>>> Store::thumbnail(const Attachment& attachment,
-                                                                  int side) {
+Result<std::optional<std::vector<std::uint8_t>>> Attachments::thumbnail(
+    const Attachment& attachment, int side) {
   using Found = std::optional<std::vector<std::uint8_t>>;
-  return impl_->pool.read([&](PgConnection& connection) -> Result<Found> {
+  return pool_.read([&](PgConnection& connection) -> Result<Found> {
     auto row = STRATA_TRY(connection.query(
         "SELECT picture FROM thumbnails WHERE sha256 = decode($1, 'hex') AND side = $2",
         Params().text(attachment.sha256).integer(side)));
@@ -272,9 +272,9 @@ Result<std::optional<std::vector<std::uint8_t>>> Store::thumbnail(const Attachme
   });
 }
 
-Result<void> Store::keep_thumbnail(const Attachment& attachment, int side,
-                                   std::span<const std::uint8_t> picture) {
-  return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
+Result<void> Attachments::keep_thumbnail(const Attachment& attachment, int side,
+                                         std::span<const std::uint8_t> picture) {
+  return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto kept = connection.query(
         "INSERT INTO thumbnails (sha256, side, picture) SELECT sha256, $2, $3 FROM attachments WHERE id = $1 "
         "ON CONFLICT DO NOTHING",
@@ -283,9 +283,9 @@ Result<void> Store::keep_thumbnail(const Attachment& attachment, int side,
   });
 }
 
-Result<std::int64_t> Store::drop_orphans() {
-  return impl_->pool.write_within(
-      kBulkLimits, [](PgConnection& connection) { return drop_all_unused(connection); });
+Result<std::int64_t> Attachments::drop_orphans() {
+  return pool_.write_within(kBulkLimits,
+                            [](PgConnection& connection) { return drop_all_unused(connection); });
 }
 
 }  // namespace strata::store

@@ -1,3 +1,4 @@
+#include "store/journal_reads.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
@@ -28,9 +29,9 @@ Result<std::vector<std::int64_t>> sequences(PgConnection& connection, const char
 
 }  // namespace
 
-Result<Store::HistoryPage> Store::history(std::int64_t layer_id, int limit, int offset,
-                                          std::optional<std::int64_t> before) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<HistoryPage> {
+Result<HistoryPage> Journal::history(std::int64_t layer_id, int limit, int offset,
+                                     std::optional<std::int64_t> before) {
+  return pool_.read([&](PgConnection& connection) -> Result<HistoryPage> {
     auto total = STRATA_TRY(connection.query(
         "SELECT (SELECT count(*) FROM edits WHERE layer_id = l.id) FROM layers l WHERE id = $1",
         Params().integer(layer_id)));
@@ -50,10 +51,10 @@ Result<Store::HistoryPage> Store::history(std::int64_t layer_id, int limit, int 
   });
 }
 
-Result<Store::JournalState> Store::journal_state(std::int64_t model_id, std::span<const Uuid> ids) {
+Result<JournalState> Journal::state(std::int64_t model_id, std::span<const Uuid> ids) {
   PgArray wanted(oid::kUuid);
   for (const Uuid& id : ids) wanted.add(id);
-  return impl_->pool.read([&](PgConnection& connection) -> Result<JournalState> {
+  return pool_.read([&](PgConnection& connection) -> Result<JournalState> {
     auto model =
         connection.query("SELECT sequence FROM models WHERE id = $1", Params().integer(model_id));
     if (!model) return tl::unexpected(model.error());
@@ -69,10 +70,10 @@ Result<Store::JournalState> Store::journal_state(std::int64_t model_id, std::spa
   });
 }
 
-Result<std::vector<std::int64_t>> Store::undoable(std::int64_t layer_id, const std::string& user,
-                                                  bool pending_only) {
+Result<std::vector<std::int64_t>> Journal::undoable(std::int64_t layer_id, const std::string& user,
+                                                    bool pending_only) {
   STRATA_TRY(check_text(user, "user"));
-  return impl_->pool.read([&](PgConnection& connection) {
+  return pool_.read([&](PgConnection& connection) {
     return sequences(
         connection,
         "SELECT sequence FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer AND in_force "
@@ -86,10 +87,10 @@ Result<std::vector<std::int64_t>> Store::undoable(std::int64_t layer_id, const s
 // The batches that the newest undo took, unless paint made after that undo is in force. (Strokes
 // that redo brought back are older than it, so that undo, undo, redo, redo works.) What was
 // rejected only a curator brings back.
-Result<std::vector<std::int64_t>> Store::redoable(std::int64_t layer_id, const std::string& user,
-                                                  bool pending_only) {
+Result<std::vector<std::int64_t>> Journal::redoable(std::int64_t layer_id, const std::string& user,
+                                                    bool pending_only) {
   STRATA_TRY(check_text(user, "user"));
-  return impl_->pool.read([&](PgConnection& connection) {
+  return pool_.read([&](PgConnection& connection) {
     return sequences(
         connection,
         "WITH undone AS (SELECT stroke, undone_by FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer "
@@ -103,8 +104,8 @@ Result<std::vector<std::int64_t>> Store::redoable(std::int64_t layer_id, const s
   });
 }
 
-Result<std::int64_t> Store::sequence_at(std::int64_t model_id, const std::string& utc) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::int64_t> {
+Result<std::int64_t> Journal::sequence_at(std::int64_t model_id, const std::string& utc) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
     // Times are told in milliseconds: one that was read counts its own edit.
     auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(max(sequence), 0) FROM edits "
@@ -114,8 +115,8 @@ Result<std::int64_t> Store::sequence_at(std::int64_t model_id, const std::string
   });
 }
 
-Result<std::int64_t> Store::last_sequence(std::int64_t model_id) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::int64_t> {
+Result<std::int64_t> Journal::last_sequence(std::int64_t model_id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
     auto row =
         connection.query("SELECT sequence FROM models WHERE id = $1", Params().integer(model_id));
     if (!row) return tl::unexpected(row.error());

@@ -49,7 +49,7 @@ struct JournalEntry {
   };
   std::vector<Revision> revisions;
   // What the tiles of the revisions hold after the edit; asked for on the writer's thread, at each
-  // try. Empty: it is not known, and the layer is to be counted anew (Store::layers_to_sum).
+  // try. Empty: it is not known, and the layer is to be counted anew (Layers::to_sum).
   std::function<std::vector<TileKeys>()> sum_tiles;
   // undo, redo, reviews: the sequences whose `in_force` becomes false / true with this entry
   std::vector<std::int64_t> disable, enable;

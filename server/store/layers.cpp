@@ -1,3 +1,5 @@
+#include "store/layers.h"
+#include "core/revision.h"
 #include "core/term_list.h"
 #include "store/store_impl.h"
 #include "store/table_writer.h"
@@ -186,8 +188,8 @@ Result<void> find_table(PgConnection& connection, Layer& layer, std::int64_t pro
 
 }  // namespace
 
-Result<std::vector<Layer>> Store::layers(std::int64_t model_id, Role seen_by) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Layer>> {
+Result<std::vector<Layer>> Layers::of_model(std::int64_t model_id, Role seen_by) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<Layer>> {
     auto known = STRATA_TRY(
         connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(model_id)));
     if (known.rows() == 0) return no_such("model", std::to_string(model_id));
@@ -203,9 +205,9 @@ Result<std::vector<Layer>> Store::layers(std::int64_t model_id, Role seen_by) {
   });
 }
 
-Result<Layer> Store::layer(std::int64_t model_id, const std::string& ref, Role seen_by) {
+Result<Layer> Layers::find(std::int64_t model_id, const std::string& ref, Role seen_by) {
   if (!check_text(ref, "layer")) return no_such("layer", ref);
-  return impl_->pool.read([&](PgConnection& connection) -> Result<Layer> {
+  return pool_.read([&](PgConnection& connection) -> Result<Layer> {
     const auto id = id_of(ref);
     auto rows = STRATA_TRY(id ? connection.query("SELECT " STRATA_LAYER_COLUMNS
                                                  " FROM layers WHERE model_id = $1 AND id = $2",
@@ -220,10 +222,10 @@ Result<Layer> Store::layer(std::int64_t model_id, const std::string& ref, Role s
   });
 }
 
-Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer,
-                                  std::vector<Column> columns) {
+Result<Layer> Layers::create(Layer layer, const FirstAnswer<Layer>& answer,
+                             std::vector<Column> columns) {
   STRATA_TRY(check(layer));
-  return impl_->change(answer, [&](PgConnection& connection) -> Result<Layer> {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Layer> {
     auto model =
         STRATA_TRY(connection.query("SELECT project_id FROM models WHERE id = $1 FOR KEY SHARE",
                                     Params().integer(layer.model_id)));
@@ -268,9 +270,9 @@ Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer,
   });
 }
 
-Result<Layer> Store::update_layer(Layer layer, const FirstAnswer<Layer>& answer) {
+Result<Layer> Layers::update(Layer layer, const FirstAnswer<Layer>& answer) {
   STRATA_TRY(check(layer));
-  return impl_->change(answer, [&](PgConnection& connection) -> Result<Layer> {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Layer> {
     auto row = STRATA_TRY(connection.query(
         "UPDATE layers SET name = $3, slug = $4, unit = $5, description = $6, palette = $7, opacity = $8, visible = $9, "
         "draw_order = $10, locked = $11, visibility = $12, review = $13, labels = $14, descriptions = $15, version = version + 1 WHERE id = $1 AND version = $2 "
@@ -309,9 +311,8 @@ Result<Layer> Store::update_layer(Layer layer, const FirstAnswer<Layer>& answer)
   });
 }
 
-Result<std::map<std::int64_t, std::int64_t>> Store::table_sequences_of(std::int64_t layer_id) {
-  return impl_->pool.read([&](PgConnection& connection)
-                              -> Result<std::map<std::int64_t, std::int64_t>> {
+Result<std::map<std::int64_t, std::int64_t>> Layers::table_sequences_of(std::int64_t layer_id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::map<std::int64_t, std::int64_t>> {
     auto rows = STRATA_TRY(connection.query(
         "SELECT t.id, t.sequence FROM layer_inputs i JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = $1",
         Params().integer(layer_id)));
@@ -321,10 +322,10 @@ Result<std::map<std::int64_t, std::int64_t>> Store::table_sequences_of(std::int6
   });
 }
 
-Result<Layer> Store::layer_computed(std::int64_t layer_id, const std::string& expression,
-                                    std::int64_t sequence,
-                                    const std::map<std::int64_t, std::int64_t>& tables) {
-  return impl_->pool.write([&](PgConnection& connection) -> Result<Layer> {
+Result<Layer> Layers::set_computed(std::int64_t layer_id, const std::string& expression,
+                                   std::int64_t sequence,
+                                   const std::map<std::int64_t, std::int64_t>& tables) {
+  return pool_.write([&](PgConnection& connection) -> Result<Layer> {
     STRATA_TRY(connection.query(
         "UPDATE layers SET computed_sequence = $3 WHERE id = $1 AND expression = $2",
         Params().integer(layer_id).text(expression).integer(sequence)));
@@ -346,8 +347,8 @@ Result<Layer> Store::layer_computed(std::int64_t layer_id, const std::string& ex
   });
 }
 
-Result<std::vector<Layer>> Store::layers_to_recompute() {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Layer>> {
+Result<std::vector<Layer>> Layers::to_recompute() {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<Layer>> {
     auto rows = STRATA_TRY(connection.query(
         "SELECT " STRATA_LAYER_COLUMNS
         " FROM layers WHERE automatic AND NOT EXISTS (SELECT 1 FROM layer_origins o WHERE "
@@ -410,9 +411,8 @@ Result<void> widen_revisions(PgConnection& connection, const Layer& layer, Value
 
 }  // namespace
 
-Result<Layer> Store::widen_layer(const Layer& layer, ValueType type,
-                                 const FirstAnswer<Layer>& answer) {
-  return impl_->change(answer, [&](PgConnection& connection) -> Result<Layer> {
+Result<Layer> Layers::widen(const Layer& layer, ValueType type, const FirstAnswer<Layer>& answer) {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Layer> {
     auto row = STRATA_TRY(connection.query(
         "UPDATE layers SET type = $3, version = version + 1 WHERE id = $1 AND version = $2 AND type = $4 RETURNING id",
         Params().integer(layer.id).integer(layer.version).text(name(type)).text(name(layer.type))));
@@ -425,13 +425,13 @@ Result<Layer> Store::widen_layer(const Layer& layer, ValueType type,
   });
 }
 
-Result<void> Store::delete_layer(std::int64_t id, const FirstAnswer<>& answer) {
+Result<void> Layers::remove(std::int64_t id, const FirstAnswer<>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<void> {
     auto known =
         STRATA_TRY(connection.query("SELECT 1 FROM layers WHERE id = $1", Params().integer(id)));
     return known.rows() > 0 ? erase_layer(connection, id) : no_such("layer", std::to_string(id));
   };
-  return impl_->change(answer, work, kBulkLimits);
+  return change(pool_, answer, work, kBulkLimits);
 }
 
 }  // namespace strata::store

@@ -1,6 +1,7 @@
 #include "store/looks.h"
 
 #include "store/blobs.h"
+#include "store/look_rows.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
@@ -70,8 +71,8 @@ Result<Look> insert_look(PgConnection& connection, const Look& look, const Sha25
   return read_look(row, 0);
 }
 
-Result<std::vector<Look>> Store::looks(std::int64_t model_id) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Look>> {
+Result<std::vector<Look>> Looks::of_model(std::int64_t model_id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<Look>> {
     auto known = STRATA_TRY(
         connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(model_id)));
     if (known.rows() == 0) return no_such("model", std::to_string(model_id));
@@ -84,9 +85,9 @@ Result<std::vector<Look>> Store::looks(std::int64_t model_id) {
   });
 }
 
-Result<Look> Store::look(std::int64_t model_id, const std::string& ref) {
+Result<Look> Looks::find(std::int64_t model_id, const std::string& ref) {
   if (!check_text(ref, "look")) return no_such("look", ref);
-  return impl_->pool.read([&](PgConnection& connection) -> Result<Look> {
+  return pool_.read([&](PgConnection& connection) -> Result<Look> {
     const auto id = id_of(ref);
     auto rows = STRATA_TRY(id ? connection.query("SELECT " STRATA_LOOK_COLUMNS
                                                  " FROM looks WHERE model_id = $1 AND id = $2",
@@ -99,8 +100,8 @@ Result<Look> Store::look(std::int64_t model_id, const std::string& ref) {
   });
 }
 
-Result<Look> Store::create_look(const Look& look, std::span<const std::uint8_t> picture,
-                                const FirstAnswer<Look>& answer) {
+Result<Look> Looks::create(const Look& look, std::span<const std::uint8_t> picture,
+                           const FirstAnswer<Look>& answer) {
   STRATA_TRY(check_look(look));
   const Content content = content_of(picture);
   const auto work = [&](PgConnection& connection) -> Result<Look> {
@@ -117,12 +118,12 @@ Result<Look> Store::create_look(const Look& look, std::span<const std::uint8_t> 
     STRATA_TRY(keep_blob(connection, content, {}));
     return insert_look(connection, look, content.hash);
   };
-  return impl_->change(answer, work, kBulkLimits);
+  return change(pool_, answer, work, kBulkLimits);
 }
 
-Result<Look> Store::update_look(const Look& look, const FirstAnswer<Look>& answer) {
+Result<Look> Looks::update(const Look& look, const FirstAnswer<Look>& answer) {
   STRATA_TRY(check_look(look));
-  return impl_->change(answer, [&](PgConnection& connection) -> Result<Look> {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Look> {
     auto row = STRATA_TRY(connection.query(
         "UPDATE looks SET name = $3, slug = $4, description = $5, opacity = $6, visible = $7, draw_order = $8, "
         "version = version + 1 WHERE id = $1 AND version = $2 RETURNING " STRATA_LOOK_COLUMNS,
@@ -143,7 +144,7 @@ Result<Look> Store::update_look(const Look& look, const FirstAnswer<Look>& answe
   });
 }
 
-Result<void> Store::delete_look(std::int64_t id, const FirstAnswer<>& answer) {
+Result<void> Looks::remove(std::int64_t id, const FirstAnswer<>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<void> {
     auto done =
         connection.query("DELETE FROM looks WHERE id = $1 RETURNING picture", Params().integer(id));
@@ -152,11 +153,11 @@ Result<void> Store::delete_look(std::int64_t id, const FirstAnswer<>& answer) {
     const Bytes hash = done->bytes(0, 0);
     return drop_unused(connection, {{hash.begin(), hash.end()}});
   };
-  return impl_->change(answer, work, kBulkLimits);
+  return change(pool_, answer, work, kBulkLimits);
 }
 
-Result<std::vector<std::uint8_t>> Store::look_picture(std::int64_t id) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<std::uint8_t>> {
+Result<std::vector<std::uint8_t>> Looks::picture(std::int64_t id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<std::uint8_t>> {
     auto row = STRATA_TRY(connection.query(
         "SELECT b.sha256, b.bytes FROM looks l JOIN blobs b ON b.sha256 = l.picture WHERE l.id = $1",
         Params().integer(id)));

@@ -3,7 +3,9 @@
 #include "core/progress.h"
 #include "core/up.h"
 #include "store/blobs.h"
+#include "store/look_rows.h"
 #include "store/looks.h"
+#include "store/models.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
@@ -140,7 +142,7 @@ Result<PgResult> insert_model(PgConnection& connection, const Model& m, const st
       params);
 }
 
-Look look_of(const Store::NewModel::NewLook& fresh, std::size_t position) {
+Look look_of(const NewModel::NewLook& fresh, std::size_t position) {
   Look look;
   look.name = fresh.name;
   look.media_type = fresh.media_type;
@@ -160,8 +162,8 @@ Result<Model> model_by_id(PgConnection& connection, std::int64_t id) {
 
 }  // namespace
 
-Result<Model> Store::create_model(const NewModel& fresh, const std::function<bool()>& cancelled,
-                                  const FirstAnswer<Model>& answer) {
+Result<Model> Models::create(const NewModel& fresh, const std::function<bool()>& cancelled,
+                             const FirstAnswer<Model>& answer) {
   STRATA_TRY(check(fresh.model));
   for (const auto& source : fresh.sources) {
     if (source.name.empty() || source.name.size() > kLongestName)
@@ -169,9 +171,9 @@ Result<Model> Store::create_model(const NewModel& fresh, const std::function<boo
                   "source_files");
     STRATA_TRY(check_text(source.name, "source_files"));
   }
-  if (fresh.looks.size() > kMostLooks)
+  if (fresh.looks.size() > Looks::kMostLooks)
     return fail(ErrorCode::invalid, "Too many looks",
-                "A model holds at most " + std::to_string(kMostLooks) + " looks.", "looks");
+                "A model holds at most " + std::to_string(Looks::kMostLooks) + " looks.", "looks");
   for (std::size_t i = 0; i < fresh.looks.size(); ++i)
     STRATA_TRY(check_look(look_of(fresh.looks[i], i)));
   // The geometry, its coarser copies, the looks, the source files.
@@ -219,13 +221,13 @@ Result<Model> Store::create_model(const NewModel& fresh, const std::function<boo
     if (cancelled && cancelled()) return cancelled_problem();
     return model_by_id(connection, id);
   };
-  return impl_->change(answer, work, kBulkLimits);
+  return change(pool_, answer, work, kBulkLimits);
 }
 
-Result<std::vector<Model>> Store::models(std::optional<std::int64_t> project_id) {
+Result<std::vector<Model>> Models::all(std::optional<std::int64_t> project_id) {
   static const std::string sql =
       std::string(kSelectModels) + "WHERE $1 IS NULL OR m.project_id = $1 ORDER BY m.id";
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Model>> {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<Model>> {
     auto rows = STRATA_TRY(connection.query(sql.c_str(), Params().optional_integer(project_id)));
     std::vector<Model> models;
     for (int i = 0; i < rows.rows(); ++i) models.push_back(read_model(rows, i));
@@ -233,10 +235,10 @@ Result<std::vector<Model>> Store::models(std::optional<std::int64_t> project_id)
   });
 }
 
-Result<Model> Store::model(const std::string& ref) {
+Result<Model> Models::find(const std::string& ref) {
   if (!check_text(ref, "model")) return no_such("model", ref);
   static const std::string by_slug = std::string(kSelectModels) + "WHERE m.slug = $1";
-  return impl_->pool.read([&](PgConnection& connection) -> Result<Model> {
+  return pool_.read([&](PgConnection& connection) -> Result<Model> {
     if (const auto id = id_of(ref)) return model_by_id(connection, *id);
     auto rows = STRATA_TRY(connection.query(by_slug.c_str(), Params().text(ref)));
     if (rows.rows() == 0) return no_such("model", ref);
@@ -244,9 +246,9 @@ Result<Model> Store::model(const std::string& ref) {
   });
 }
 
-Result<Model> Store::update_model(Model m, const FirstAnswer<Model>& answer) {
+Result<Model> Models::update(Model m, const FirstAnswer<Model>& answer) {
   STRATA_TRY(check(m));
-  return impl_->change(answer, [&](PgConnection& connection) -> Result<Model> {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Model> {
     auto row = STRATA_TRY(connection.query(
         "UPDATE models SET name = $1, slug = $2, project_id = $3, unit = $4, unit_assumed = $5, scale_verified = $6, up = $7, "
         "north = $8, crs = $9, default_resolution = $10, inventory_number = $11, owner = $12, creator = $13, captured = $14, "
@@ -268,17 +270,17 @@ Result<Model> Store::update_model(Model m, const FirstAnswer<Model>& answer) {
   });
 }
 
-Result<void> Store::delete_model(std::int64_t id, const FirstAnswer<>& answer) {
+Result<void> Models::remove(std::int64_t id, const FirstAnswer<>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<void> {
     auto known =
         STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(id)));
     return known.rows() > 0 ? erase_model(connection, id) : no_such("model", std::to_string(id));
   };
-  return impl_->change(answer, work, kBulkLimits);
+  return change(pool_, answer, work, kBulkLimits);
 }
 
-Result<std::vector<std::uint8_t>> Store::geometry(std::int64_t model_id) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<std::uint8_t>> {
+Result<std::vector<std::uint8_t>> Models::geometry(std::int64_t model_id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<std::uint8_t>> {
     auto row = STRATA_TRY(connection.query(
         "SELECT b.sha256, b.bytes FROM models m JOIN blobs b ON b.sha256 = m.geometry WHERE m.id = $1",
         Params().integer(model_id)));
@@ -287,9 +289,9 @@ Result<std::vector<std::uint8_t>> Store::geometry(std::int64_t model_id) {
   });
 }
 
-Result<std::vector<std::vector<std::uint8_t>>> Store::detail_levels(std::int64_t model_id) {
+Result<std::vector<std::vector<std::uint8_t>>> Models::detail_levels(std::int64_t model_id) {
   using Levels = std::vector<std::vector<std::uint8_t>>;
-  return impl_->pool.read([&](PgConnection& connection) -> Result<Levels> {
+  return pool_.read([&](PgConnection& connection) -> Result<Levels> {
     auto rows = STRATA_TRY(connection.query(
         "SELECT b.sha256, b.bytes FROM detail_levels d JOIN blobs b ON b.sha256 = d.geometry WHERE d.model_id = $1 "
         "ORDER BY d.level",
@@ -303,11 +305,11 @@ Result<std::vector<std::vector<std::uint8_t>>> Store::detail_levels(std::int64_t
   });
 }
 
-Result<SourceFile> Store::read_source(
+Result<SourceFile> Models::read_source(
     std::int64_t model_id, const std::string& file,
     const std::function<bool(std::span<const std::uint8_t>)>& sink) {
   if (!check_text(file, "name")) return no_such("source file", file);
-  auto known = STRATA_TRY(impl_->pool.read([&](PgConnection& connection) {
+  auto known = STRATA_TRY(pool_.read([&](PgConnection& connection) {
     return connection.query(
         "SELECT b.sha256, b.bytes FROM model_sources s JOIN blobs b USING (sha256) "
         "WHERE s.model_id = $1 AND s.name = $2",
@@ -317,7 +319,7 @@ Result<SourceFile> Store::read_source(
   const SourceFile source{file, to_hex(known.bytes(0, 0)),
                           static_cast<std::uint64_t>(known.integer(0, 1))};
   const Bytes hash = known.bytes(0, 0);
-  auto sent = stream_blob(impl_->pool, {hash.begin(), hash.end()}, 0, source.bytes, sink);
+  auto sent = stream_blob(pool_, {hash.begin(), hash.end()}, 0, source.bytes, sink);
   if (!sent) return tl::unexpected(sent.error());
   return source;
 }

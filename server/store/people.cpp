@@ -2,8 +2,11 @@
 
 #include <algorithm>
 
+#include "store/accounts.h"
 #include "store/hash.h"
+#include "store/members.h"
 #include "store/store_impl.h"
+#include "store/tokens.h"
 
 // Who is changed, or gets or loses a secret, is locked first (`lock_person`): what is said of them
 // in that moment holds until it is written.
@@ -66,8 +69,8 @@ Result<void> run(PgConnection& connection, const char* sql, const Params& params
   return done ? Result<void>() : tl::unexpected(done.error());
 }
 
-Result<void> revoke_all(PgConnection& connection, const std::string& user, TokenKind kind,
-                        std::optional<std::int64_t> kept) {
+Result<void> revoke_tokens(PgConnection& connection, const std::string& user, TokenKind kind,
+                           std::optional<std::int64_t> kept) {
   return run(
       connection,
       "UPDATE tokens SET revoked = now() WHERE user_name = $1 AND kind = $2 AND revoked IS NULL AND "
@@ -144,7 +147,7 @@ struct Found {
   Principal principal;
   bool is_fresh = false;  // it was used a moment ago, and that is written
 };
-Result<std::optional<Found>> find(PgConnection& connection, const std::string& secret) {
+Result<std::optional<Found>> find_secret(PgConnection& connection, const std::string& secret) {
   auto row = STRATA_TRY(connection.query(
       "SELECT u.name, u.role, t.role, t.kind, t.id, u.id, coalesce(t.last_used > now() - interval '5 minutes', false), "
       "t.project_id "
@@ -180,9 +183,9 @@ Result<void> put_password(PgConnection& connection, const std::string& user,
                           const std::string& hash, std::optional<std::int64_t> kept) {
   STRATA_TRY(run(connection, "UPDATE users SET password = $2 WHERE name = $1",
                  Params().text(user).text(hash)));
-  STRATA_TRY(revoke_all(connection, user, TokenKind::session, kept));
+  STRATA_TRY(revoke_tokens(connection, user, TokenKind::session, kept));
   for (const TokenKind link : {TokenKind::invitation, TokenKind::owner_link})
-    STRATA_TRY(revoke_all(connection, user, link, {}));
+    STRATA_TRY(revoke_tokens(connection, user, link, {}));
   return {};
 }
 
@@ -192,8 +195,8 @@ Result<Person> lock_person(PgConnection& connection, const std::string& name) {
   return load_person(connection, name, true);
 }
 
-Result<std::vector<Person>> Store::people() {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Person>> {
+Result<std::vector<Person>> Accounts::all() {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<Person>> {
     auto rows = STRATA_TRY(connection.query(
         "SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE deleted IS NULL ORDER BY lower(name)"));
     std::vector<Person> people;
@@ -202,16 +205,15 @@ Result<std::vector<Person>> Store::people() {
   });
 }
 
-Result<Person> Store::person(const std::string& name) {
-  return impl_->pool.read(
-      [&](PgConnection& connection) { return load_person(connection, name, false); });
+Result<Person> Accounts::find(const std::string& name) {
+  return pool_.read([&](PgConnection& connection) { return load_person(connection, name, false); });
 }
 
-Result<std::vector<Person>> Store::people_called(const std::vector<std::string>& names) {
+Result<std::vector<Person>> Accounts::called(const std::vector<std::string>& names) {
   PgArray asked(oid::kText);
   for (const std::string& name : names)
     if (check_text(name, "user")) asked.add(std::string_view(name));
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Person>> {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<Person>> {
     auto rows = STRATA_TRY(connection.query(
         "SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE name = any($1)", Params().array(asked)));
     std::vector<Person> people;
@@ -220,9 +222,8 @@ Result<std::vector<Person>> Store::people_called(const std::vector<std::string>&
   });
 }
 
-Result<Person> Store::create_person(const std::string& name, const std::string& full_name,
-                                    Role role, const std::vector<std::int64_t>& groups,
-                                    const std::string& by) {
+Result<Person> Accounts::create(const std::string& name, const std::string& full_name, Role role,
+                                const std::vector<std::int64_t>& groups, const std::string& by) {
   const auto is_plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
   };
@@ -243,7 +244,7 @@ Result<Person> Store::create_person(const std::string& name, const std::string& 
                 "Names that begin with `former-` are kept for who is deleted. Choose another name.",
                 "user");
   STRATA_TRY(check_texts({{&full_name, "full_name"}}));
-  return impl_->pool.write([&](PgConnection& connection) -> Result<Person> {
+  return pool_.write([&](PgConnection& connection) -> Result<Person> {
     auto made = STRATA_TRY(connection.query(
         "INSERT INTO users (name, full_name, role) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING "
         "RETURNING " STRATA_PERSON_COLUMNS,
@@ -258,9 +259,9 @@ Result<Person> Store::create_person(const std::string& name, const std::string& 
   });
 }
 
-Result<Person> Store::change_person(std::int64_t id, const PersonChange& change) {
+Result<Person> Accounts::update(std::int64_t id, const PersonChange& change) {
   if (change.full_name) STRATA_TRY(check_texts({{&*change.full_name, "full_name"}}));
-  return impl_->pool.write([&](PgConnection& connection) -> Result<Person> {
+  return pool_.write([&](PgConnection& connection) -> Result<Person> {
     auto rows = STRATA_TRY(connection.query(
         "SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE id = $1 AND deleted IS NULL FOR UPDATE",
         Params().integer(id)));
@@ -280,13 +281,13 @@ Result<Person> Store::change_person(std::int64_t id, const PersonChange& change)
             .boolean(person.disabled)));
     if (person.disabled)
       for (const TokenKind kind : {TokenKind::session, TokenKind::invitation})
-        STRATA_TRY(revoke_all(connection, person.name, kind, {}));
+        STRATA_TRY(revoke_tokens(connection, person.name, kind, {}));
     return person;
   });
 }
 
-Result<void> Store::delete_person(const std::string& name) {
-  return impl_->pool.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<void> {
+Result<void> Accounts::remove(const std::string& name) {
+  return pool_.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<void> {
     auto person = STRATA_TRY(lock_person(connection, name));
     auto ended =
         run(connection, "DELETE FROM tokens WHERE user_name = $1", Params().text(person.name));
@@ -321,8 +322,8 @@ Result<void> Store::delete_person(const std::string& name) {
   });
 }
 
-Result<std::vector<Membership>> Store::members(std::int64_t project_id) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Membership>> {
+Result<std::vector<Membership>> Members::of_project(std::int64_t project_id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<Membership>> {
     auto rows =
         STRATA_TRY(connection.query(
             "SELECT " STRATA_PERSON_COLUMNS ", in_project FROM users JOIN "
@@ -351,10 +352,10 @@ Result<void> lock_project(PgConnection& connection, std::int64_t id) {
   return {};
 }
 
-Result<Membership> Store::put_member(std::int64_t project_id, const std::string& user, Role role,
-                                     const std::string& by) {
+Result<Membership> Members::put(std::int64_t project_id, const std::string& user, Role role,
+                                const std::string& by) {
   STRATA_TRY(check_project_role(role));
-  return impl_->pool.write([&](PgConnection& connection) -> Result<Membership> {
+  return pool_.write([&](PgConnection& connection) -> Result<Membership> {
     auto person = STRATA_TRY(lock_person(connection, user));
     STRATA_TRY(lock_project(connection, project_id));
     STRATA_TRY(act_as(connection, by));
@@ -366,9 +367,9 @@ Result<Membership> Store::put_member(std::int64_t project_id, const std::string&
   });
 }
 
-Result<void> Store::remove_member(std::int64_t project_id, const std::string& user,
-                                  const std::string& by) {
-  return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
+Result<void> Members::remove(std::int64_t project_id, const std::string& user,
+                             const std::string& by) {
+  return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto person = STRATA_TRY(lock_person(connection, user));
     STRATA_TRY(act_as(connection, by));
     auto gone = STRATA_TRY(connection.query(
@@ -379,17 +380,17 @@ Result<void> Store::remove_member(std::int64_t project_id, const std::string& us
   });
 }
 
-Result<bool> Store::administrator_has_password() {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<bool> {
+Result<bool> Accounts::administrator_has_password() {
+  return pool_.read([&](PgConnection& connection) -> Result<bool> {
     auto rows = STRATA_TRY(connection.query(
         "SELECT 1 FROM users WHERE password IS NOT NULL AND disabled IS NULL AND deleted IS NULL AND role IN ('administrator', 'owner') LIMIT 1"));
     return rows.rows() > 0;
   });
 }
 
-Result<std::string> Store::password_of(const std::string& name) {
+Result<std::string> Accounts::password_of(const std::string& name) {
   if (!is_ascii(name) || !check_text(name, "user")) return std::string();
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::string> {
+  return pool_.read([&](PgConnection& connection) -> Result<std::string> {
     auto rows = STRATA_TRY(connection.query(
         "SELECT password FROM users WHERE lower(name) = lower($1) AND disabled IS NULL AND deleted IS NULL AND "
         "password IS NOT NULL",
@@ -398,21 +399,20 @@ Result<std::string> Store::password_of(const std::string& name) {
   });
 }
 
-Result<void> Store::set_password(const std::string& name, const std::string& hash,
-                                 std::optional<std::int64_t> kept) {
-  return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
+Result<void> Accounts::set_password(const std::string& name, const std::string& hash,
+                                    std::optional<std::int64_t> kept) {
+  return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto person = STRATA_TRY(lock_person(connection, name));
     return put_password(connection, person.name, hash, kept);
   });
 }
 
-Result<NewToken> Store::create_token(TokenKind kind, const std::string& user, Role role,
-                                     std::optional<std::chrono::seconds> lifetime,
-                                     const std::string& label,
-                                     const std::optional<std::string>& hash,
-                                     std::optional<std::int64_t> project) {
+Result<NewToken> Tokens::create(TokenKind kind, const std::string& user, Role role,
+                                std::optional<std::chrono::seconds> lifetime,
+                                const std::string& label, const std::optional<std::string>& hash,
+                                std::optional<std::int64_t> project) {
   STRATA_TRY(check_texts({{&label, "name"}}));
-  return impl_->pool.write([&](PgConnection& connection) -> Result<NewToken> {
+  return pool_.write([&](PgConnection& connection) -> Result<NewToken> {
     auto person = STRATA_TRY(lock_person(connection, user));
     if (person.disabled) return no_such("person", user);
     if (hash) {
@@ -436,25 +436,25 @@ Result<NewToken> Store::create_token(TokenKind kind, const std::string& user, Ro
   });
 }
 
-Result<NewToken> Store::create_link(TokenKind kind, const std::string& user,
-                                    std::chrono::seconds lifetime) {
-  return impl_->pool.write([&](PgConnection& connection) -> Result<NewToken> {
+Result<NewToken> Tokens::create_link(TokenKind kind, const std::string& user,
+                                     std::chrono::seconds lifetime) {
+  return pool_.write([&](PgConnection& connection) -> Result<NewToken> {
     auto person = STRATA_TRY(lock_person(connection, user));
     if (person.disabled) return no_such("person", user);
-    STRATA_TRY(revoke_all(connection, person.name, kind, {}));
+    STRATA_TRY(revoke_tokens(connection, person.name, kind, {}));
     return insert_token(connection, kind, person.name, person.role, lifetime, {});
   });
 }
 
-Result<std::optional<Principal>> Store::find_token(const std::string& secret) {
+Result<std::optional<Principal>> Tokens::find(const std::string& secret) {
   auto found = STRATA_TRY(
-      impl_->pool.read([&](PgConnection& connection) { return find(connection, secret); }));
+      pool_.read([&](PgConnection& connection) { return find_secret(connection, secret); }));
   if (!found) return std::optional<Principal>();
   const Principal& principal = found->principal;
   // That it was used is only remembered: whoever asks is let in also where nothing can be written.
   if (!found->is_fresh &&
       (principal.kind == TokenKind::session || principal.kind == TokenKind::script))
-    (void)impl_->pool.write([&](PgConnection& connection) {
+    (void)pool_.write([&](PgConnection& connection) {
       return run(
           connection,
           "WITH used AS (UPDATE tokens SET last_used = now() WHERE id = $1 RETURNING user_name) "
@@ -464,8 +464,8 @@ Result<std::optional<Principal>> Store::find_token(const std::string& secret) {
   return principal;
 }
 
-Result<std::vector<Token>> Store::tokens(const std::string& user, TokenKind kind) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Token>> {
+Result<std::vector<Token>> Tokens::of_user(const std::string& user, TokenKind kind) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<Token>> {
     auto rows = STRATA_TRY(connection.query("SELECT " STRATA_TOKEN_COLUMNS
                                             " FROM tokens WHERE user_name = $1 AND kind = $2 "
                                             "AND " STRATA_GOOD_TOKEN " ORDER BY id DESC",
@@ -476,11 +476,11 @@ Result<std::vector<Token>> Store::tokens(const std::string& user, TokenKind kind
   });
 }
 
-Result<std::optional<std::string>> Store::redeem_owner_link(const std::string& link,
-                                                            std::chrono::seconds lifetime,
-                                                            const std::string& label) {
-  return impl_->pool.write([&](PgConnection& connection) -> Result<std::optional<std::string>> {
-    auto owner = STRATA_TRY(find(connection, link));
+Result<std::optional<std::string>> Tokens::redeem_owner_link(const std::string& link,
+                                                             std::chrono::seconds lifetime,
+                                                             const std::string& label) {
+  return pool_.write([&](PgConnection& connection) -> Result<std::optional<std::string>> {
+    auto owner = STRATA_TRY(find_secret(connection, link));
     if (!owner || owner->principal.kind != TokenKind::owner_link)
       return std::optional<std::string>();
     auto person = STRATA_TRY(lock_person(connection, owner->principal.user));
@@ -489,21 +489,21 @@ Result<std::optional<std::string>> Store::redeem_owner_link(const std::string& l
   });
 }
 
-Result<std::optional<std::string>> Store::accept_invitation(
+Result<std::optional<std::string>> Accounts::accept_invitation(
     const std::string& invitation, const std::string& hash,
     const std::optional<std::string>& full_name, std::chrono::seconds lifetime,
     const std::string& label) {
   if (full_name) STRATA_TRY(check_texts({{&*full_name, "full_name"}}));
-  return impl_->pool.write([&](PgConnection& connection) -> Result<std::optional<std::string>> {
+  return pool_.write([&](PgConnection& connection) -> Result<std::optional<std::string>> {
     const auto is_good = [](const auto& found) {
       return found && found->principal.kind == TokenKind::invitation;
     };
-    auto invited = STRATA_TRY(find(connection, invitation));
+    auto invited = STRATA_TRY(find_secret(connection, invitation));
     if (!is_good(invited)) return std::optional<std::string>();
     auto person = STRATA_TRY(lock_person(connection, invited->principal.user));
     // Of two who use it at once, one came first; and the person may have been disabled before the
     // lock was had.
-    auto still = STRATA_TRY(find(connection, invitation));
+    auto still = STRATA_TRY(find_secret(connection, invitation));
     if (!is_good(still)) return std::optional<std::string>();
     STRATA_TRY(put_password(connection, person.name, hash, {}));
     if (full_name) {
@@ -515,15 +515,15 @@ Result<std::optional<std::string>> Store::accept_invitation(
   });
 }
 
-Result<void> Store::revoke_token(const std::string& secret) {
-  return impl_->pool.write([&](PgConnection& connection) {
+Result<void> Tokens::revoke(const std::string& secret) {
+  return pool_.write([&](PgConnection& connection) {
     return run(connection, "UPDATE tokens SET revoked = now() WHERE hash = $1 AND revoked IS NULL",
                Params().bytes(sha256(secret)));
   });
 }
 
-Result<void> Store::revoke_token(const std::string& user, TokenKind kind, std::int64_t id) {
-  return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
+Result<void> Tokens::revoke(const std::string& user, TokenKind kind, std::int64_t id) {
+  return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto done = STRATA_TRY(connection.query(
         "UPDATE tokens SET revoked = now() WHERE user_name = $1 AND kind = $2 AND id = $3 AND " STRATA_GOOD_TOKEN
         " RETURNING id",
@@ -534,10 +534,10 @@ Result<void> Store::revoke_token(const std::string& user, TokenKind kind, std::i
   });
 }
 
-Result<void> Store::revoke_tokens(const std::string& user, TokenKind kind,
-                                  std::optional<std::int64_t> kept) {
-  return impl_->pool.write(
-      [&](PgConnection& connection) { return revoke_all(connection, user, kind, kept); });
+Result<void> Tokens::revoke_all(const std::string& user, TokenKind kind,
+                                std::optional<std::int64_t> kept) {
+  return pool_.write(
+      [&](PgConnection& connection) { return revoke_tokens(connection, user, kind, kept); });
 }
 
 }  // namespace strata::store

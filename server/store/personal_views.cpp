@@ -1,3 +1,4 @@
+#include "store/personal_views.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
@@ -7,8 +8,8 @@ constexpr std::size_t kMostBytes = 1 << 20;  // as the table has it
 
 }  // namespace
 
-Result<nlohmann::json> Store::personal_view(const std::string& user, std::int64_t model_id) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<nlohmann::json> {
+Result<nlohmann::json> PersonalViews::find(const std::string& user, std::int64_t model_id) {
+  return pool_.read([&](PgConnection& connection) -> Result<nlohmann::json> {
     auto rows = STRATA_TRY(connection.query(
         "SELECT v.content FROM personal_views v JOIN users u ON u.id = v.user_id WHERE u.name = $1 AND v.model_id = $2",
         Params().text(user).integer(model_id)));
@@ -16,15 +17,15 @@ Result<nlohmann::json> Store::personal_view(const std::string& user, std::int64_
   });
 }
 
-Result<void> Store::keep_personal_view(const std::string& user, std::int64_t model_id,
-                                       const nlohmann::json& layers) {
+Result<void> PersonalViews::keep(const std::string& user, std::int64_t model_id,
+                                 const nlohmann::json& layers) {
   STRATA_TRY(check_json(layers, "layers"));
   // PostgreSQL writes a blank behind every comma and colon: half of the room is enough for any of
   // them.
   if (layers.dump().size() > kMostBytes / 2)
     return fail(ErrorCode::too_large, "Too much to keep",
                 "What is kept of a model for a person has at most 512 KiB.", "layers");
-  return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
+  return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto done =
         layers.empty()
             ? connection.query(
@@ -40,10 +41,10 @@ Result<void> Store::keep_personal_view(const std::string& user, std::int64_t mod
   });
 }
 
-Result<void> Store::show_layer_to(const std::string& user, std::int64_t model_id,
-                                  std::int64_t layer_id) {
+Result<void> PersonalViews::show_layer_to(const std::string& user, std::int64_t model_id,
+                                          std::int64_t layer_id) {
   const nlohmann::json shown = nlohmann::json::array({{{"layer", layer_id}, {"visible", true}}});
-  return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
+  return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto done = connection.query(
         "INSERT INTO personal_views (user_id, model_id, content) SELECT id, $2, $3 FROM users "
         "WHERE name = $1 AND deleted IS NULL ON CONFLICT (user_id, model_id) "

@@ -1,3 +1,4 @@
+#include "store/projects.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
@@ -23,8 +24,8 @@ Result<void> erase_models_of(PgConnection& connection, std::int64_t project_id) 
 
 }  // namespace
 
-Result<std::vector<Project>> Store::projects() {
-  return impl_->pool.read([](PgConnection& connection) -> Result<std::vector<Project>> {
+Result<std::vector<Project>> Projects::all() {
+  return pool_.read([](PgConnection& connection) -> Result<std::vector<Project>> {
     auto rows = STRATA_TRY(connection.query(
         "SELECT id, name, slug::text, description, version, require_if_match FROM projects ORDER BY id"));
     std::vector<Project> projects;
@@ -33,9 +34,9 @@ Result<std::vector<Project>> Store::projects() {
   });
 }
 
-Result<Project> Store::project(const std::string& ref) {
+Result<Project> Projects::find(const std::string& ref) {
   if (!check_text(ref, "project")) return no_such("project", ref);
-  return impl_->pool.read([&](PgConnection& connection) -> Result<Project> {
+  return pool_.read([&](PgConnection& connection) -> Result<Project> {
     const auto id = id_of(ref);
     auto rows =
         id ? connection.query(
@@ -50,14 +51,14 @@ Result<Project> Store::project(const std::string& ref) {
   });
 }
 
-Result<std::size_t> Store::names_until(const NamedId& place, std::span<const NamedId> sorted) {
+Result<std::size_t> Projects::names_until(const NamedId& place, std::span<const NamedId> sorted) {
   STRATA_TRY(check_text(place.name, "after"));
   PgArray names(oid::kText), ids(oid::kInt8);
   for (const NamedId& each : sorted) {
     names.add(std::string_view(each.name));
     ids.add(each.id);
   }
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::size_t> {
+  return pool_.read([&](PgConnection& connection) -> Result<std::size_t> {
     auto row = STRATA_TRY(
         connection.query("SELECT count(*) FROM unnest($3::text[], $4::bigint[]) AS e (name, id) "
                          "WHERE (lower(e.name), e.id) <= (lower($1), $2)",
@@ -66,8 +67,8 @@ Result<std::size_t> Store::names_until(const NamedId& place, std::span<const Nam
   });
 }
 
-Result<std::string> Store::project_state(std::int64_t id) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::string> {
+Result<std::string> Projects::state(std::int64_t id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::string> {
     // Ids and versions of the rows of a part, whose FROM clause follows.
     const auto versions = [](const std::string& part) {
       return "coalesce((SELECT string_agg(concat_ws('.', p.id, p.version), ',' ORDER BY p.id) FROM " +
@@ -85,9 +86,9 @@ Result<std::string> Store::project_state(std::int64_t id) {
   });
 }
 
-Result<Project> Store::create_project(Project project, const FirstAnswer<Project>& answer) {
+Result<Project> Projects::create(Project project, const FirstAnswer<Project>& answer) {
   STRATA_TRY(check(project));
-  return impl_->change(answer, [&](PgConnection& connection) -> Result<Project> {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Project> {
     auto row = STRATA_TRY(insert_with_slug(
         connection, "SELECT slug::text FROM projects WHERE slug LIKE $1", {},
         project.slug.empty() ? project.name : project.slug, [&](const std::string& slug) {
@@ -100,9 +101,9 @@ Result<Project> Store::create_project(Project project, const FirstAnswer<Project
   });
 }
 
-Result<Project> Store::update_project(Project project, const FirstAnswer<Project>& answer) {
+Result<Project> Projects::update(Project project, const FirstAnswer<Project>& answer) {
   STRATA_TRY(check(project));
-  return impl_->change(answer, [&](PgConnection& connection) -> Result<Project> {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Project> {
     auto row = STRATA_TRY(connection.query(
         "UPDATE projects SET name = $3, slug = $4, description = $5, require_if_match = $6, version = version + 1 "
         "WHERE id = $1 AND version = $2 RETURNING id, name, slug::text, description, version, require_if_match",
@@ -122,8 +123,8 @@ Result<Project> Store::update_project(Project project, const FirstAnswer<Project
   });
 }
 
-Result<void> Store::delete_project(std::int64_t id, const FirstAnswer<>& answer) {
-  return impl_->change(answer, [&](PgConnection& connection) -> Result<void> {
+Result<void> Projects::remove(std::int64_t id, const FirstAnswer<>& answer) {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<void> {
     auto row = STRATA_TRY(connection.query(
         "SELECT slug::text, (SELECT count(*) FROM models WHERE project_id = p.id), "
         "(SELECT count(*) FROM record_tables WHERE project_id = p.id), "

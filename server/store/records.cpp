@@ -4,10 +4,12 @@
 
 #include "core/column_value.h"
 #include "store/record_sql.h"
+#include "store/records.h"
 #include "store/store_impl.h"
 #include "store/table_past.h"
 #include "store/table_rows.h"
 #include "store/table_writer.h"
+#include "store/tables.h"
 
 namespace strata::store {
 namespace {
@@ -140,8 +142,8 @@ class Intake {
   std::vector<RowError> problems_;
 };
 
-Result<TableChange> write(PgConnection& connection, std::int64_t table_id,
-                          const WriteRecords& asked, const std::string& user) {
+Result<TableChange> write_all(PgConnection& connection, std::int64_t table_id,
+                              const WriteRecords& asked, const std::string& user) {
   auto open = STRATA_TRY(lock_table(connection, table_id));
   Intake intake(connection, open, asked);
   auto edit = STRATA_TRY(intake.read(user));
@@ -170,19 +172,19 @@ Result<std::optional<std::vector<Record>>> rows_if_past(PgConnection& connection
 
 }  // namespace
 
-Result<TableChange> Store::write_records(std::int64_t table_id, const WriteRecords& asked,
-                                         const std::string& user,
-                                         const FirstAnswer<TableChange>& answer) {
+Result<TableChange> Records::write(std::int64_t table_id, const WriteRecords& asked,
+                                   const std::string& user,
+                                   const FirstAnswer<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
   if (asked.records.size() > kMostRecordsAtOnce)
     return fail(ErrorCode::too_large, "Too many records",
                 "At most " + std::to_string(kMostRecordsAtOnce) + " records go in one call.");
   // What is only tried, and what has problems, is rolled back, and told all the same.
   std::optional<TableChange> told;
-  auto done = impl_->change(
-      answer,
+  auto done = change(
+      pool_, answer,
       [&](PgConnection& connection) -> Result<TableChange> {
-        auto change = write(connection, table_id, asked, user);
+        auto change = write_all(connection, table_id, asked, user);
         if (!change || (change->problems.empty() && !asked.dry_run)) return change;
         told = std::move(*change);
         return fail(ErrorCode::conflict, "Not kept", "Nothing was written.");
@@ -192,13 +194,12 @@ Result<TableChange> Store::write_records(std::int64_t table_id, const WriteRecor
   return done;
 }
 
-Result<TableChange> Store::delete_record(std::int64_t table_id, std::int64_t key,
-                                         std::optional<std::int64_t> version,
-                                         const std::string& user, bool dry_run,
-                                         const FirstAnswer<TableChange>& answer) {
+Result<TableChange> Records::remove(std::int64_t table_id, std::int64_t key,
+                                    std::optional<std::int64_t> version, const std::string& user,
+                                    bool dry_run, const FirstAnswer<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
   std::optional<TableChange> told;
-  auto done = impl_->change(answer, [&](PgConnection& connection) -> Result<TableChange> {
+  auto done = change(pool_, answer, [&](PgConnection& connection) -> Result<TableChange> {
     auto open = STRATA_TRY(lock_table(connection, table_id));
     auto rows = STRATA_TRY(load_rows(connection, table_id, open.all, std::vector{key}));
     if (rows.empty()) return no_such("record", std::to_string(key));
@@ -219,11 +220,11 @@ Result<TableChange> Store::delete_record(std::int64_t table_id, std::int64_t key
   return done;
 }
 
-Result<std::vector<KeyNumber>> Store::record_numbers(std::int64_t table_id, Role seen_by,
-                                                     const Expression& expression,
-                                                     std::optional<std::int64_t> at,
-                                                     const std::string& field) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<KeyNumber>> {
+Result<std::vector<KeyNumber>> Records::numbers(std::int64_t table_id, Role seen_by,
+                                                const Expression& expression,
+                                                std::optional<std::int64_t> at,
+                                                const std::string& field) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<KeyNumber>> {
     auto transaction = STRATA_TRY(Transaction::begin_reading(connection));
     auto open = STRATA_TRY(read_table(connection, table_id, seen_by));
     auto past = STRATA_TRY(rows_if_past(connection, open, at));
@@ -240,9 +241,9 @@ Result<std::vector<KeyNumber>> Store::record_numbers(std::int64_t table_id, Role
   });
 }
 
-Result<std::vector<KeyText>> Store::record_texts(std::int64_t table_id, Role seen_by,
-                                                 const std::string& ref, const std::string& field) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<KeyText>> {
+Result<std::vector<KeyText>> Records::texts(std::int64_t table_id, Role seen_by,
+                                            const std::string& ref, const std::string& field) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<KeyText>> {
     auto open = STRATA_TRY(read_table(connection, table_id, seen_by));
     const Column* column = find_column(open.table.columns, ref);
     if (!column)
@@ -262,9 +263,9 @@ Result<std::vector<KeyText>> Store::record_texts(std::int64_t table_id, Role see
   });
 }
 
-Result<std::vector<KeyMark>> Store::marks(std::int64_t table_id, Role seen_by,
-                                          std::int64_t model_id, std::optional<std::int64_t> at) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<KeyMark>> {
+Result<std::vector<KeyMark>> Records::marks(std::int64_t table_id, Role seen_by,
+                                            std::int64_t model_id, std::optional<std::int64_t> at) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<KeyMark>> {
     auto transaction = STRATA_TRY(Transaction::begin_reading(connection));
     auto open = STRATA_TRY(read_table(connection, table_id, seen_by));
     auto past = STRATA_TRY(rows_if_past(connection, open, at));
@@ -285,9 +286,8 @@ Result<std::vector<KeyMark>> Store::marks(std::int64_t table_id, Role seen_by,
   });
 }
 
-Result<Store::RecordPage> Store::records(std::int64_t table_id, Role seen_by,
-                                         const RecordQuery& query) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<RecordPage> {
+Result<RecordPage> Records::page(std::int64_t table_id, Role seen_by, const RecordQuery& query) {
+  return pool_.read([&](PgConnection& connection) -> Result<RecordPage> {
     auto transaction = STRATA_TRY(Transaction::begin_reading(connection));
     auto open = STRATA_TRY(read_table(connection, table_id, seen_by));
     RecordPage page;
@@ -343,14 +343,14 @@ Result<Store::RecordPage> Store::records(std::int64_t table_id, Role seen_by,
   });
 }
 
-Result<std::vector<std::int64_t>> Store::missing_records(std::int64_t table_id,
-                                                         std::span<const std::int64_t> keys) {
-  return impl_->pool.read(
+Result<std::vector<std::int64_t>> Records::missing(std::int64_t table_id,
+                                                   std::span<const std::int64_t> keys) {
+  return pool_.read(
       [&](PgConnection& connection) { return missing_rows(connection, table_id, keys); });
 }
 
-Result<std::int64_t> Store::table_sequence_at(std::int64_t table_id, const std::string& utc) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::int64_t> {
+Result<std::int64_t> Tables::sequence_at(std::int64_t table_id, const std::string& utc) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
     // As for a model: a time that was read, in milliseconds, counts its own edit.
     auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(max(sequence), 0) FROM table_edits "
@@ -360,9 +360,9 @@ Result<std::int64_t> Store::table_sequence_at(std::int64_t table_id, const std::
   });
 }
 
-Result<std::int64_t> Store::table_sequence_when(std::int64_t table_id, std::int64_t model_id,
-                                                std::int64_t sequence) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::int64_t> {
+Result<std::int64_t> Tables::sequence_when(std::int64_t table_id, std::int64_t model_id,
+                                           std::int64_t sequence) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
     auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(max(sequence), 0) FROM table_edits WHERE table_id = $1 AND "
         "time <= (SELECT max(time) FROM edits WHERE model_id = $2 AND sequence <= $3)",
@@ -371,30 +371,29 @@ Result<std::int64_t> Store::table_sequence_when(std::int64_t table_id, std::int6
   });
 }
 
-Result<Store::TableHistory> Store::table_history(std::int64_t table_id, Role seen_by,
-                                                 std::optional<std::int64_t> key, int limit,
-                                                 int offset, std::optional<std::int64_t> before) {
-  return impl_->pool.read([&](PgConnection& connection) {
+Result<TableHistory> Tables::history(std::int64_t table_id, Role seen_by,
+                                     std::optional<std::int64_t> key, int limit, int offset,
+                                     std::optional<std::int64_t> before) {
+  return pool_.read([&](PgConnection& connection) {
     return read_history(connection, table_id, seen_by, key, limit, offset, before);
   });
 }
 
-Result<UndoPlan> Store::plan_table_undo(std::int64_t table_id, const std::string& user, bool redo) {
+Result<UndoPlan> Tables::plan_undo(std::int64_t table_id, const std::string& user, bool redo) {
   STRATA_TRY(check_text(user, "user"));
-  return impl_->pool.read([&](PgConnection& connection) -> Result<UndoPlan> {
+  return pool_.read([&](PgConnection& connection) -> Result<UndoPlan> {
     auto open = STRATA_TRY(read_table(connection, table_id));
-    auto undo = STRATA_TRY(plan_undo(connection, open, user, redo));
+    auto undo = STRATA_TRY(store::plan_undo(connection, open, user, redo));
     return std::move(undo.plan);
   });
 }
 
-Result<TableChange> Store::undo_table(std::int64_t table_id, const std::string& user, bool redo,
-                                      std::int64_t planned_at,
-                                      const FirstAnswer<TableChange>& answer) {
+Result<TableChange> Tables::undo(std::int64_t table_id, const std::string& user, bool redo,
+                                 std::int64_t planned_at, const FirstAnswer<TableChange>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<TableChange> {
     auto open = STRATA_TRY(lock_table(connection, table_id));
     if (open.table.sequence != planned_at) return stale("table");
-    auto undo = STRATA_TRY(plan_undo(connection, open, user, redo));
+    auto undo = STRATA_TRY(store::plan_undo(connection, open, user, redo));
     const std::int64_t sequence = open.table.sequence + 1;
     auto change = STRATA_TRY(apply_edit(connection, open, std::move(undo.edit)));
     if (!change.problems.empty()) {
@@ -411,7 +410,7 @@ Result<TableChange> Store::undo_table(std::int64_t table_id, const std::string& 
             .optional_integer(redo ? std::nullopt : std::optional(sequence))));
     return change;
   };
-  return impl_->change(answer, work, kBulkLimits);
+  return change(pool_, answer, work, kBulkLimits);
 }
 
 }  // namespace strata::store

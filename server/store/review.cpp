@@ -1,12 +1,13 @@
+#include "store/journal_reads.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
 
-Result<ReviewQueue> Store::review_queue(std::int64_t layer_id,
-                                        const std::optional<std::string>& user, int limit,
-                                        int offset, std::int64_t after) {
+Result<ReviewQueue> Journal::review_queue(std::int64_t layer_id,
+                                          const std::optional<std::string>& user, int limit,
+                                          int offset, std::int64_t after) {
   if (user) STRATA_TRY(check_text(*user, "user"));
-  return impl_->pool.read([&](PgConnection& connection) -> Result<ReviewQueue> {
+  return pool_.read([&](PgConnection& connection) -> Result<ReviewQueue> {
     auto people = STRATA_TRY(connection.query(
         "SELECT user_name, count(DISTINCT stroke) FROM edits WHERE layer_id = $1 AND review = 'pending' AND in_force "
         "GROUP BY user_name ORDER BY user_name",
@@ -41,12 +42,12 @@ Result<ReviewQueue> Store::review_queue(std::int64_t layer_id,
   });
 }
 
-Result<std::vector<UnderReview>> Store::under_review(std::int64_t layer_id, Decision decision,
-                                                     const Reviewees& which) {
+Result<std::vector<UnderReview>> Journal::under_review(std::int64_t layer_id, Decision decision,
+                                                       const Reviewees& which) {
   if (which.user) STRATA_TRY(check_text(*which.user, "user"));
   PgArray named(oid::kInt8);
   for (const std::int64_t sequence : which.edits) named.add(sequence);
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<UnderReview>> {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<UnderReview>> {
     const std::string sql =
         std::string("SELECT sequence, stroke, user_name FROM edits WHERE layer_id = $1 AND ") +
         (decision == Decision::reopen

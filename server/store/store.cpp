@@ -27,6 +27,20 @@ Result<std::unique_ptr<Store>> Store::open(StoreOptions options,
   return store;
 }
 
+Projects& Store::projects() { return impl_->projects; }
+Models& Store::models() { return impl_->models; }
+Looks& Store::looks() { return impl_->looks; }
+Layers& Store::layers() { return impl_->layers; }
+Tables& Store::tables() { return impl_->tables; }
+Records& Store::records() { return impl_->records; }
+Attachments& Store::attachments() { return impl_->attachments; }
+Journal& Store::journal() { return impl_->journal; }
+Accounts& Store::accounts() { return impl_->accounts; }
+Members& Store::members() { return impl_->members; }
+Tokens& Store::tokens() { return impl_->tokens; }
+PersonalViews& Store::personal_views() { return impl_->personal_views; }
+Tools& Store::tools() { return impl_->tools; }
+Answers& Store::answers() { return impl_->answers; }
 Comments& Store::comments() { return impl_->comments; }
 NamedParts& Store::views() { return impl_->views; }
 NamedParts& Store::tours() { return impl_->tours; }

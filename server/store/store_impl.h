@@ -5,14 +5,28 @@
 
 #include "core/no_such.h"
 #include "core/slug.h"
+#include "store/accounts.h"
+#include "store/answers.h"
+#include "store/attachments.h"
 #include "store/bin.h"
 #include "store/comments.h"
 #include "store/groups.h"
 #include "store/jobs.h"
+#include "store/journal_reads.h"
 #include "store/kiosks.h"
+#include "store/layers.h"
+#include "store/looks.h"
+#include "store/members.h"
+#include "store/models.h"
 #include "store/named_parts.h"
+#include "store/personal_views.h"
 #include "store/pool.h"
+#include "store/projects.h"
+#include "store/records.h"
 #include "store/store.h"
+#include "store/tables.h"
+#include "store/tokens.h"
+#include "store/tools.h"
 
 namespace strata::store {
 
@@ -87,6 +101,20 @@ struct Store::Impl {
   Jobs jobs{pool};
   Groups groups{pool};
   Bin bin{pool};
+  Projects projects{pool};
+  Models models{pool};
+  Looks looks{pool};
+  Layers layers{pool};
+  Tables tables{pool};
+  Records records{pool};
+  Attachments attachments{pool};
+  Journal journal{pool};
+  Accounts accounts{pool};
+  Members members{pool};
+  Tokens tokens{pool};
+  PersonalViews personal_views{pool};
+  Tools tools{pool};
+  Answers answers{pool};
   std::int64_t schema_version = 0;
 
   template <class Answer, class Work>

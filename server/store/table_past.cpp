@@ -142,9 +142,9 @@ Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open,
   return past;
 }
 
-Result<Store::TableHistory> read_history(PgConnection& connection, std::int64_t table_id,
-                                         Role seen_by, std::optional<std::int64_t> key, int limit,
-                                         int offset, std::optional<std::int64_t> before) {
+Result<TableHistory> read_history(PgConnection& connection, std::int64_t table_id, Role seen_by,
+                                  std::optional<std::int64_t> key, int limit, int offset,
+                                  std::optional<std::int64_t> before) {
   auto total = STRATA_TRY(connection.query(
       "SELECT count(*) FROM table_edits e WHERE table_id = $1 AND ($2::bigint IS NULL OR EXISTS (SELECT 1 FROM table_changes c "
       "WHERE c.table_id = $1 AND c.subject = 'record' AND c.subject_id = $2 AND c.sequence = e.sequence))",
@@ -158,7 +158,7 @@ Result<Store::TableHistory> read_history(PgConnection& connection, std::int64_t 
       Params().integer(table_id).optional_integer(key).integer(limit).integer(offset).integer(
           before.value_or(INT64_MAX))));
   auto unseen = STRATA_TRY(unseen_columns(connection, table_id, seen_by));
-  Store::TableHistory history;
+  TableHistory history;
   history.total = total.integer(0, 0);
   for (int i = 0; i < rows.rows(); ++i) {
     TableEditRow row{rows.integer(i, 0),

@@ -2,6 +2,7 @@
 
 #include "store/store.h"
 #include "store/table_writer.h"
+#include "store/tables.h"
 
 // What a table was, and what undo makes of it.
 namespace strata::store {
@@ -10,9 +11,9 @@ namespace strata::store {
 Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open,
                                     std::int64_t sequence);
 
-Result<Store::TableHistory> read_history(PgConnection& connection, std::int64_t table_id,
-                                         Role seen_by, std::optional<std::int64_t> key, int limit,
-                                         int offset, std::optional<std::int64_t> before);
+Result<TableHistory> read_history(PgConnection& connection, std::int64_t table_id, Role seen_by,
+                                  std::optional<std::int64_t> key, int limit, int offset,
+                                  std::optional<std::int64_t> before);
 
 struct PlannedUndo {
   UndoPlan plan;

@@ -10,6 +10,7 @@
 #include "core/key_numbers.h"
 #include "core/table.h"
 #include "store/pg.h"
+#include "store/records.h"
 
 // The rows of a project's table: records.t<id> with a column c<id> for each of its columns, hidden
 // ones among them. A period has c<id>_first and c<id>_last beside it, its days (core/edtf), by
@@ -56,11 +57,11 @@ Result<std::vector<Record>> load_all_rows(PgConnection& connection, std::int64_t
 struct RowsPage {
   std::vector<Record> rows;
   std::int64_t total = 0;                // of the rows where the condition holds
-  std::optional<nlohmann::json> last{};  // Store::RecordPage::last
+  std::optional<nlohmann::json> last{};  // RecordPage::last
 };
 struct RowsPart {
   std::int64_t limit = 100, offset = 0;
-  std::optional<nlohmann::json> after{};  // Store::RecordQuery::after
+  std::optional<nlohmann::json> after{};  // RecordQuery::after
 };
 Result<RowsPage> load_page(PgConnection& connection, std::int64_t table_id,
                            const std::vector<Column>& columns,

@@ -3,9 +3,12 @@
 
 #include "core/column_value.h"
 #include "core/term_list.h"
+#include "store/attachments.h"
+#include "store/layers.h"
 #include "store/store_impl.h"
 #include "store/table_rows.h"
 #include "store/table_writer.h"
+#include "store/tables.h"
 
 namespace strata::store {
 namespace {
@@ -63,8 +66,8 @@ Result<TableChange> retype(PgConnection& connection, OpenTable& open, const Colu
 
 }  // namespace
 
-Result<std::vector<Table>> Store::tables(std::int64_t project_id, Role seen_by) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Table>> {
+Result<std::vector<Table>> Tables::of_project(std::int64_t project_id, Role seen_by) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<Table>> {
     auto rows = STRATA_TRY(connection.query(
         "SELECT id FROM record_tables WHERE project_id = $1 ORDER BY lower(name), id",
         Params().integer(project_id)));
@@ -79,9 +82,9 @@ Result<std::vector<Table>> Store::tables(std::int64_t project_id, Role seen_by) 
   });
 }
 
-Result<Table> Store::table(const std::string& ref, Role seen_by) {
+Result<Table> Tables::find(const std::string& ref, Role seen_by) {
   if (!check_text(ref, "table")) return no_such("table", ref);
-  return impl_->pool.read([&](PgConnection& connection) -> Result<Table> {
+  return pool_.read([&](PgConnection& connection) -> Result<Table> {
     if (const auto id = id_of(ref)) return table_of(connection, *id, seen_by);
     auto row = STRATA_TRY(
         connection.query("SELECT id FROM record_tables WHERE slug = $1", Params().text(ref)));
@@ -90,16 +93,16 @@ Result<Table> Store::table(const std::string& ref, Role seen_by) {
   });
 }
 
-Result<Table> Store::create_table(const Table& table, const FirstAnswer<Table>& answer) {
-  return impl_->change(answer,
-                       [&](PgConnection& connection) { return insert_table(connection, table); });
+Result<Table> Tables::create(const Table& table, const FirstAnswer<Table>& answer) {
+  return change(pool_, answer,
+                [&](PgConnection& connection) { return insert_table(connection, table); });
 }
 
-Result<Table> Store::update_table(const Table& table, const FirstAnswer<Table>& answer) {
+Result<Table> Tables::update(const Table& table, const FirstAnswer<Table>& answer) {
   STRATA_TRY(check_name(table.name));
   STRATA_TRY(check_text(table.description, "description"));
   STRATA_TRY(check_labels(table.labels));
-  return impl_->change(answer, [&](PgConnection& connection) -> Result<Table> {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Table> {
     // As for every other change: the analysts' view of the new name is made while nobody alters the
     // rows that it reads.
     auto open = STRATA_TRY(lock_table(connection, table.id));
@@ -131,8 +134,8 @@ Result<Table> Store::update_table(const Table& table, const FirstAnswer<Table>& 
   });
 }
 
-Result<void> Store::delete_table(std::int64_t id, const FirstAnswer<>& answer) {
-  auto gone = impl_->change(answer, [&](PgConnection& connection) -> Result<void> {
+Result<void> Tables::remove(std::int64_t id, const FirstAnswer<>& answer) {
+  auto gone = change(pool_, answer, [&](PgConnection& connection) -> Result<void> {
     STRATA_TRY(lock_table(connection, id));
     // What is gone for ever keeps no table, though its content is not erased yet.
     auto layers = STRATA_TRY(connection.query(
@@ -165,19 +168,19 @@ Result<void> Store::delete_table(std::int64_t id, const FirstAnswer<>& answer) {
   });
   // Afterwards, since those who attach hold a blob while they wait for the tables. What fails here
   // is done at the next start.
-  if (gone) (void)drop_orphans();
+  if (gone) (void)Attachments(pool_).drop_orphans();
   return gone;
 }
 
-Result<std::vector<Layer>> Store::layers_of_table(std::int64_t table_id, Role seen_by) {
-  auto refs = STRATA_TRY(impl_->pool.read([&](PgConnection& connection) {
+Result<std::vector<Layer>> Layers::of_table(std::int64_t table_id, Role seen_by) {
+  auto refs = STRATA_TRY(pool_.read([&](PgConnection& connection) {
     return connection.query(
         "SELECT model_id, id FROM layers WHERE table_id = $1 ORDER BY model_id, draw_order, id",
         Params().integer(table_id));
   }));
   std::vector<Layer> layers;
   for (int i = 0; i < refs.rows(); ++i) {
-    auto found = layer(refs.integer(i, 0), std::to_string(refs.integer(i, 1)), seen_by);
+    auto found = find(refs.integer(i, 0), std::to_string(refs.integer(i, 1)), seen_by);
     if (!found && found.error().code == ErrorCode::not_found)
       continue;  // deleted meanwhile, or not seen
     if (!found) return tl::unexpected(found.error());
@@ -186,9 +189,9 @@ Result<std::vector<Layer>> Store::layers_of_table(std::int64_t table_id, Role se
   return layers;
 }
 
-Result<TableChange> Store::create_column(std::int64_t table_id, const Column& column,
-                                         const std::string& user,
-                                         const FirstAnswer<TableChange>& answer) {
+Result<TableChange> Tables::create_column(std::int64_t table_id, const Column& column,
+                                          const std::string& user,
+                                          const FirstAnswer<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
   const auto work = [&](PgConnection& connection) -> Result<TableChange> {
     auto open = STRATA_TRY(lock_table(connection, table_id));
@@ -205,13 +208,13 @@ Result<TableChange> Store::create_column(std::int64_t table_id, const Column& co
     }
     return refused_by_records(apply_edit(connection, open, std::move(edit)));
   };
-  return impl_->change(answer, work, kBulkLimits);
+  return change(pool_, answer, work, kBulkLimits);
 }
 
-Result<TableChange> Store::update_column(std::int64_t table_id, const Column& column,
-                                         std::optional<std::int64_t> version,
-                                         const std::string& user,
-                                         const FirstAnswer<TableChange>& answer) {
+Result<TableChange> Tables::update_column(std::int64_t table_id, const Column& column,
+                                          std::optional<std::int64_t> version,
+                                          const std::string& user,
+                                          const FirstAnswer<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
   const auto work = [&](PgConnection& connection) -> Result<TableChange> {
     auto open = STRATA_TRY(lock_table(connection, table_id));
@@ -232,13 +235,13 @@ Result<TableChange> Store::update_column(std::int64_t table_id, const Column& co
     }
     return refused_by_records(apply_edit(connection, open, std::move(edit)));
   };
-  return impl_->change(answer, work, kBulkLimits);
+  return change(pool_, answer, work, kBulkLimits);
 }
 
-Result<Table> Store::show_column(std::int64_t table_id, std::int64_t column_id,
-                                 Visibility visibility, std::int64_t version,
-                                 const FirstAnswer<Table>& answer) {
-  return impl_->change(answer, [&](PgConnection& connection) -> Result<Table> {
+Result<Table> Tables::show_column(std::int64_t table_id, std::int64_t column_id,
+                                  Visibility visibility, std::int64_t version,
+                                  const FirstAnswer<Table>& answer) {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Table> {
     auto open = STRATA_TRY(lock_table(connection, table_id));
     auto found = STRATA_TRY(shown_column(open, column_id, version));
     Column column = *found;
@@ -261,11 +264,12 @@ Result<Table> Store::show_column(std::int64_t table_id, std::int64_t column_id,
   });
 }
 
-Result<TableChange> Store::drop_column(std::int64_t table_id, std::int64_t column_id,
-                                       std::optional<std::int64_t> version, const std::string& user,
-                                       const FirstAnswer<TableChange>& answer) {
+Result<TableChange> Tables::drop_column(std::int64_t table_id, std::int64_t column_id,
+                                        std::optional<std::int64_t> version,
+                                        const std::string& user,
+                                        const FirstAnswer<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
-  return impl_->change(answer, [&](PgConnection& connection) -> Result<TableChange> {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<TableChange> {
     auto open = STRATA_TRY(lock_table(connection, table_id));
     STRATA_TRY(shown_column(open, column_id, version));
     TableEdit edit{user, "drop-column", {{"column", column_id}}, {}, {}};

@@ -6,6 +6,7 @@
 #include "store/store_impl.h"
 #include "store/table_rows.h"
 #include "store/table_writer.h"
+#include "store/tables.h"
 
 namespace strata::store {
 namespace {
@@ -244,7 +245,7 @@ Result<TableChange> insert_with_terms(PgConnection& connection, Table table, con
 
 }  // namespace
 
-Result<std::vector<TableChange>> Store::create_tables(
+Result<std::vector<TableChange>> Tables::create_several(
     const std::vector<NewTable>& tables, bool dry_run, const std::string& user,
     const std::string& op, const FirstAnswer<std::vector<TableChange>>& answer) {
   STRATA_TRY(check_text(user, "user"));
@@ -267,14 +268,14 @@ Result<std::vector<TableChange>> Store::create_tables(
     told = std::move(made);
     return fail(ErrorCode::conflict, "Not kept", "Nothing was written.");
   };
-  auto done = impl_->change(answer, work, kBulkLimits);
+  auto done = change(pool_, answer, work, kBulkLimits);
   if (told) return std::move(*told);
   return done;
 }
 
-Result<TableChange> Store::import_terms(std::int64_t table_id, const TermList& list, bool dry_run,
-                                        const std::string& user,
-                                        const FirstAnswer<TableChange>& answer) {
+Result<TableChange> Tables::import_terms(std::int64_t table_id, const TermList& list, bool dry_run,
+                                         const std::string& user,
+                                         const FirstAnswer<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
   std::optional<TableChange> told;
   const auto work = [&](PgConnection& connection) -> Result<TableChange> {
@@ -290,7 +291,7 @@ Result<TableChange> Store::import_terms(std::int64_t table_id, const TermList& l
     told = std::move(*change);
     return fail(ErrorCode::conflict, "Not kept", "Nothing was written.");
   };
-  auto done = impl_->change(answer, work, kBulkLimits);
+  auto done = change(pool_, answer, work, kBulkLimits);
   if (told) return std::move(*told);
   return done;
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <set>
 
+#include "store/layers.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
@@ -87,8 +88,8 @@ void write_tile_sums(std::span<const JournalEntry* const> entries,
       {"UPDATE layers SET summed = false WHERE id = any($1) AND summed", std::move(params)});
 }
 
-Result<std::vector<Layer>> Store::layers_to_sum() {
-  auto ids = impl_->pool.read(
+Result<std::vector<Layer>> Layers::to_sum() {
+  auto ids = pool_.read(
       [](PgConnection& connection) -> Result<std::vector<std::pair<std::int64_t, std::int64_t>>> {
         auto rows =
             connection.query("SELECT model_id, id FROM layers WHERE NOT summed ORDER BY id");
@@ -101,15 +102,15 @@ Result<std::vector<Layer>> Store::layers_to_sum() {
   if (!ids) return tl::unexpected(ids.error());
   std::vector<Layer> layers;
   for (const auto& [model, id] : *ids)
-    if (auto found = layer(model, std::to_string(id), Role::owner))
+    if (auto found = find(model, std::to_string(id), Role::owner))
       layers.push_back(std::move(*found));
   return layers;
 }
 
-Result<void> Store::keep_sums(std::int64_t layer_id, std::vector<TileKeys> tiles) {
+Result<void> Layers::keep_sums(std::int64_t layer_id, std::vector<TileKeys> tiles) {
   TileKeysByPlace by_place;
   for (TileKeys& tile : tiles) by_place[{layer_id, tile.tile}] = std::move(tile.keys);
-  return impl_->pool.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<void> {
+  return pool_.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<void> {
     std::deque<PgConnection::Statement> statements;
     statements.push_back({"DELETE FROM tile_sums WHERE layer_id = $1", {}});
     statements.back().params.integer(layer_id);

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "core/revision.h"
+#include "store/journal_reads.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
@@ -123,9 +124,9 @@ constexpr const char* kLoadTiles =
 
 }  // namespace
 
-Result<TileMirror::Snapshot> Store::load_tiles(const Layer& layer,
-                                               std::optional<std::int64_t> at_sequence) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<TileMirror::Snapshot> {
+Result<TileMirror::Snapshot> Journal::load_tiles(const Layer& layer,
+                                                 std::optional<std::int64_t> at_sequence) {
+  return pool_.read([&](PgConnection& connection) -> Result<TileMirror::Snapshot> {
     auto last = STRATA_TRY(connection.query(
         "SELECT (SELECT coalesce(max(sequence), 0) FROM edits WHERE layer_id = l.id AND sequence <= $2) "
         "FROM layers l WHERE id = $1",
@@ -145,9 +146,9 @@ Result<TileMirror::Snapshot> Store::load_tiles(const Layer& layer,
   });
 }
 
-Result<std::vector<PastRevision>> Store::tile_history(const Layer& layer, TileAddress tile,
-                                                      std::int64_t before, int limit) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<PastRevision>> {
+Result<std::vector<PastRevision>> Journal::tile_history(const Layer& layer, TileAddress tile,
+                                                        std::int64_t before, int limit) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<PastRevision>> {
     auto rows = STRATA_TRY(connection.query(
         "SELECT r.sequence, e.writer, e.in_force, coalesce(e.review = 'pending', false), r.difference FROM tile_revisions r "
         "JOIN edits e ON e.model_id = $2 AND e.sequence = r.sequence "
@@ -169,11 +170,11 @@ Result<std::vector<PastRevision>> Store::tile_history(const Layer& layer, TileAd
   });
 }
 
-Result<std::vector<Store::WrittenTiles>> Store::written_by(
-    const Layer& layer, std::span<const std::int64_t> sequences) {
+Result<std::vector<WrittenTiles>> Journal::written_by(const Layer& layer,
+                                                      std::span<const std::int64_t> sequences) {
   PgArray list(oid::kInt8);
   for (const std::int64_t sequence : sequences) list.add(sequence);
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<WrittenTiles>> {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<WrittenTiles>> {
     std::vector<WrittenTiles> written;
     STRATA_TRY(connection.each_row(
         "SELECT tile_y, tile_x, difference FROM tile_revisions WHERE layer_id = $1 AND sequence = any($2) "
@@ -191,8 +192,8 @@ Result<std::vector<Store::WrittenTiles>> Store::written_by(
   });
 }
 
-Result<std::uint64_t> Store::revision_bytes(std::int64_t model_id) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::uint64_t> {
+Result<std::uint64_t> Journal::revision_bytes(std::int64_t model_id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::uint64_t> {
     auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(sum(octet_length(r.difference) + coalesce(octet_length(r.key_tile), 0)), 0)::bigint "
         "FROM layers l JOIN tile_revisions r ON r.layer_id = l.id WHERE l.model_id = $1",

@@ -1,3 +1,4 @@
+#include "store/tools.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
@@ -28,8 +29,8 @@ ShapeBits bits_of(Bytes bytes) {
 
 }  // namespace
 
-Result<std::vector<Tool>> Store::tools() {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Tool>> {
+Result<std::vector<Tool>> Tools::all() {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<Tool>> {
     auto rows =
         connection.query("SELECT " STRATA_TOOL_COLUMNS
                          " FROM tool_shapes WHERE deleted IS NULL ORDER BY lower(name), id");
@@ -40,9 +41,9 @@ Result<std::vector<Tool>> Store::tools() {
   });
 }
 
-Result<Tool> Store::tool(const std::string& ref) {
+Result<Tool> Tools::find(const std::string& ref) {
   if (!check_text(ref, "tool")) return no_such("tool", ref);
-  return impl_->pool.read([&](PgConnection& connection) -> Result<Tool> {
+  return pool_.read([&](PgConnection& connection) -> Result<Tool> {
     const auto id = id_of(ref);
     auto rows =
         id ? connection.query("SELECT " STRATA_TOOL_COLUMNS " FROM tool_shapes WHERE id = $1",
@@ -56,12 +57,12 @@ Result<Tool> Store::tool(const std::string& ref) {
   });
 }
 
-Result<Tool> Store::create_tool(const Tool& tool, const ShapeBits& shape,
-                                const FirstAnswer<Tool>& answer) {
+Result<Tool> Tools::create(const Tool& tool, const ShapeBits& shape,
+                           const FirstAnswer<Tool>& answer) {
   STRATA_TRY(check_name(tool.name));
   STRATA_TRY(check_text(tool.slug, "slug"));
   const auto cells = bytes_of(shape);
-  return impl_->change(answer, [&](PgConnection& connection) -> Result<Tool> {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Tool> {
     // Locked, so that of two at once the later one counts the earlier; reading goes on.
     STRATA_TRY(connection.query("LOCK TABLE tool_shapes IN SHARE ROW EXCLUSIVE MODE"));
     auto count =
@@ -83,9 +84,9 @@ Result<Tool> Store::create_tool(const Tool& tool, const ShapeBits& shape,
   });
 }
 
-Result<Tool> Store::update_tool(const Tool& tool, const FirstAnswer<Tool>& answer) {
+Result<Tool> Tools::update(const Tool& tool, const FirstAnswer<Tool>& answer) {
   STRATA_TRY(check_name(tool.name));
-  return impl_->change(answer, [&](PgConnection& connection) -> Result<Tool> {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Tool> {
     auto row = STRATA_TRY(connection.query(
         "UPDATE tool_shapes SET name = $3, version = version + 1 WHERE id = $1 AND version = $2 AND deleted IS NULL "
         "RETURNING " STRATA_TOOL_COLUMNS,
@@ -98,8 +99,8 @@ Result<Tool> Store::update_tool(const Tool& tool, const FirstAnswer<Tool>& answe
   });
 }
 
-Result<void> Store::delete_tool(std::int64_t id, const FirstAnswer<>& answer) {
-  return impl_->change(answer, [&](PgConnection& connection) -> Result<void> {
+Result<void> Tools::remove(std::int64_t id, const FirstAnswer<>& answer) {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<void> {
     auto done = STRATA_TRY(connection.query(
         "UPDATE tool_shapes SET deleted = now(), version = version + 1 WHERE id = $1 AND deleted IS NULL RETURNING id",
         Params().integer(id)));
@@ -108,8 +109,8 @@ Result<void> Store::delete_tool(std::int64_t id, const FirstAnswer<>& answer) {
   });
 }
 
-Result<ShapeBits> Store::tool_shape(std::int64_t id) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<ShapeBits> {
+Result<ShapeBits> Tools::shape(std::int64_t id) {
+  return pool_.read([&](PgConnection& connection) -> Result<ShapeBits> {
     auto row =
         connection.query("SELECT cells FROM tool_shapes WHERE id = $1", Params().integer(id));
     if (!row) return tl::unexpected(row.error());

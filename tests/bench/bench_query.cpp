@@ -14,6 +14,8 @@
 #include "jobs/job_queue.h"
 #include "net/transport/server.h"
 #include "query/expression_parser.h"
+#include "store/records.h"
+#include "store/tables.h"
 #include "strata_dirs.h"
 
 namespace strata::bench {
@@ -149,13 +151,13 @@ class Queries {
     state.name = state.slug = "state", state.kind = ColumnKind::enumeration,
     state.choices = {"loose", "firm"};
     const Layer made = layers_["parts"] = must(room_->create_layer(layer, {}, {thickness, state}));
-    const Table table = must(site_.store->table(std::to_string(*made.table), Role::owner));
+    const Table table = must(site_.store->tables().find(std::to_string(*made.table), Role::owner));
     store::WriteRecords records;
     for (int i = 0; i < kParts; ++i)
       records.records.push_back({{},
                                  {{table.columns[0].id, (i * 7 % 1000) / 100.0},
                                   {table.columns[1].id, i % 3 ? "firm" : "loose"}}});
-    must(site_.store->write_records(table.id, records, "bench"));
+    must(site_.store->records().write(table.id, records, "bench"));
     TileMap tiles;
     for (int ty = 0; ty < kResolution / kTileSize; ++ty) {
       for (int tx = 0; tx < kResolution / kTileSize; ++tx) {

@@ -14,6 +14,9 @@
 #include "bench/harness.h"
 #include "bench/wander.h"
 #include "jobs/import_job.h"
+#include "store/journal_reads.h"
+#include "store/models.h"
+#include "store/projects.h"
 
 namespace strata::bench {
 namespace {
@@ -29,9 +32,9 @@ class OneViewer {
   explicit OneViewer(const Options& options) : options_(options) {
     // Imported through the store like any model, from a PLY the bench writes when it is the
     // generated pot.
-    store::Store::NewModel made;
+    store::NewModel made;
     made.model.name = made.model.slug = "bench";
-    made.model.project_id = must(site_.store->project("default")).id;
+    made.model.project_id = must(site_.store->projects().find("default")).id;
     made.model.origin = bench_.geometry->origin;
     made.model.triangles = bench_.geometry->triangle_count();
     made.model.vertices = bench_.geometry->positions.size();
@@ -39,7 +42,7 @@ class OneViewer {
     made.model.bounds_max = bench_.geometry->origin + glm::dvec3(bench_.geometry->box_max);
     made.model.area = bench_.area;
     made.geometry = mesh::encode_geometry(*bench_.geometry);
-    model_ = must(site_.store->create_model(made, [] { return false; }));
+    model_ = must(site_.store->models().create(made, [] { return false; }));
     room_ = must(site_.rooms->open(model_.slug, Role::owner));
     for (int i = 0; i < options.layers; ++i) add_filled_layer(i);
     member_ = room_->join({"bench", Role::owner}, {}, nullptr,
@@ -158,7 +161,7 @@ class OneViewer {
   // A batch each 30 ms is what a client sends; the bytes kept do not depend on how fast we replay
   // it.
   nlohmann::json steady_painting() {
-    const auto bytes_before = must(site_.store->revision_bytes(model_.id));
+    const auto bytes_before = must(site_.store->journal().revision_bytes(model_.id));
     constexpr int kBatches = 400;
     Wander hand(1280, 720, 7);
     for (int i = 0; i < kBatches; ++i) {
@@ -166,8 +169,9 @@ class OneViewer {
       edit_and_wait(*room_, stroke_request(layers_[0], still_, {from, hand.step()}, options_.radius,
                                            1 + (i / 50) % 100));
     }
-    const double mb_per_hour = double(must(site_.store->revision_bytes(model_.id)) - bytes_before) /
-                               kBatches * (3600 / 0.03) / 1e6;
+    const double mb_per_hour =
+        double(must(site_.store->journal().revision_bytes(model_.id)) - bytes_before) / kBatches *
+        (3600 / 0.03) / 1e6;
     std::printf("steady painting keeps %.0f MB per hour\n", mb_per_hour);
     return {{"revision_mb_per_hour", mb_per_hour}};
   }

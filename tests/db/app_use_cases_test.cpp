@@ -11,6 +11,7 @@
 #include "app/layers/formula_layers.h"
 #include "app/layers/recomputer.h"
 #include "app/services.h"
+#include "store/layers.h"
 #include "support/room_fixture.h"
 
 namespace strata::app {
@@ -85,7 +86,7 @@ TEST_F(UseCases, an_edit_that_is_refused_is_counted_and_its_layer_is_taken_back)
   const Layer twice = make_double(source);
   ASSERT_TRUE(room()->bin_layer(source.id, {.key = {}, .make = {}, .user = "carl"}));
   Progress progress;
-  const auto now = store_->layer(model_.id, twice.slug, Role::owner);
+  const auto now = store_->layers().find(model_.id, twice.slug, Role::owner);
   ASSERT_TRUE(now);
   const auto refused = compute_layer(services(), room(), *now, {"carl", Role::curator}, progress);
   ASSERT_FALSE(refused);

@@ -11,7 +11,12 @@
 #include "mesh/load.h"
 #include "mesh/surface_map.h"
 #include "store/hash.h"
+#include "store/journal_reads.h"
+#include "store/layers.h"
+#include "store/looks.h"
+#include "store/models.h"
 #include "store/pg.h"
+#include "store/projects.h"
 #include "strata_dirs.h"
 #include "support/test_cluster.h"
 #include "support/zip_files.h"
@@ -95,7 +100,7 @@ TEST_F(Import, a_real_scan_becomes_a_model_that_holds_all_of_it) {
   EXPECT_EQ(model->bounds_min, low);
   EXPECT_EQ(model->bounds_max, high);
 
-  const auto stored = store_->geometry(model->id);
+  const auto stored = store_->models().geometry(model->id);
   ASSERT_TRUE(stored);
   const auto geometry = mesh::decode_geometry(*stored);
   ASSERT_TRUE(geometry);
@@ -146,7 +151,7 @@ TEST_F(Import, a_textured_scan_keeps_its_files_and_its_picture_becomes_the_first
   ASSERT_EQ(model->source_files.size(), 3u);
   EXPECT_EQ(model->source_files[2].name, "skin.png");
   EXPECT_EQ(model->source_files[2].sha256, store::to_hex(store::sha256(png)));
-  const auto looks = store_->looks(model->id);
+  const auto looks = store_->looks().of_model(model->id);
   ASSERT_TRUE(looks);
   ASSERT_EQ(looks->size(), 1u);
   EXPECT_EQ((*looks)[0].name, "Base colour");
@@ -258,7 +263,7 @@ TEST_F(Import, a_cancel_at_any_time_leaves_nothing_behind) {
     // Very late it may be too late, and then the model is whole.
     if (model) {
       EXPECT_GE(from, 0.8);
-      EXPECT_TRUE(store_->delete_model(model->id));
+      EXPECT_TRUE(store_->models().remove(model->id));
       continue;
     }
     EXPECT_EQ(model.error().code, ErrorCode::cancelled);
@@ -273,22 +278,23 @@ TEST_F(Import, the_demo_has_its_two_layers_and_asking_twice_makes_one) {
   EXPECT_EQ(demo->name, "Demo pot");
   EXPECT_EQ(demo->unit, Unit::mm);
   EXPECT_TRUE(demo->scale_verified);
-  const auto project = store_->project("demo");
+  const auto project = store_->projects().find("demo");
   ASSERT_TRUE(project);
   EXPECT_EQ(demo->project_id, project->id);
   EXPECT_EQ(demo->sequence, 2);
 
-  const auto layers = store_->layers(demo->id, Role::owner);
+  const auto layers = store_->layers().of_model(demo->id, Role::owner);
   ASSERT_TRUE(layers);
   ASSERT_EQ(layers->size(), 2u);
   EXPECT_EQ((*layers)[0].slug, "pieces");
   EXPECT_EQ((*layers)[1].slug, "cracks");
   Progress baking;
-  const auto geometry = mesh::decode_geometry(*store_->geometry(demo->id));
+  const auto geometry = mesh::decode_geometry(*store_->models().geometry(demo->id));
   ASSERT_TRUE(geometry);
   const auto map = mesh::bake_surface_map(*geometry, 2048, baking);
   ASSERT_TRUE(map);
-  const auto pieces = store_->load_tiles((*layers)[0]), cracks = store_->load_tiles((*layers)[1]);
+  const auto pieces = store_->journal().load_tiles((*layers)[0]),
+             cracks = store_->journal().load_tiles((*layers)[1]);
   ASSERT_TRUE(pieces && cracks);
   std::uint64_t covered = 0, cracked = 0;
   for (const auto& [address, tile] : pieces->tiles) {
@@ -303,7 +309,7 @@ TEST_F(Import, the_demo_has_its_two_layers_and_asking_twice_makes_one) {
   EXPECT_GT(cracked, map->surface_texels / 100);
   EXPECT_LT(cracked, map->surface_texels / 4);
 
-  const auto history = store_->history((*layers)[0].id, 10, 0);
+  const auto history = store_->journal().history((*layers)[0].id, 10, 0);
   ASSERT_TRUE(history);
   ASSERT_EQ(history->rows.size(), 1u);
   EXPECT_EQ(history->rows[0].op, "fill");

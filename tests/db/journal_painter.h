@@ -6,16 +6,18 @@
 
 #include "core/revision.h"
 #include "store/journal_writer.h"
+#include "store/layers.h"
+#include "store/models.h"
 #include "support/test_cluster.h"
 
 namespace strata::test {
 
 inline Model make_model(store::Store& store, const std::string& name = "pot") {
-  store::Store::NewModel fresh;
+  store::NewModel fresh;
   fresh.model.project_id = 1;
   fresh.model.name = name;
   fresh.geometry = {1, 2, 3};
-  return store.create_model(fresh, {}).value();
+  return store.models().create(fresh, {}).value();
 }
 
 inline Layer make_layer(store::Store& store, std::int64_t model_id, ValueType type = ValueType::u8,
@@ -25,7 +27,7 @@ inline Layer make_layer(store::Store& store, std::int64_t model_id, ValueType ty
   layer.name = name;
   layer.type = type;
   layer.palette = default_palette(type, false);
-  return store.create_layer(layer).value();
+  return store.layers().create(layer).value();
 }
 
 // Paints a layer in memory, and makes the journal entries that a room would make of it.

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "core/memory_ledger.h"
+#include "store/models.h"
 #include "support/room_fixture.h"
 
 namespace strata::test {
@@ -84,12 +85,12 @@ TEST_F(RoomMemory, that_is_used_up_refuses_edits_until_something_is_given_back) 
 }
 
 TEST_F(RoomMemory, of_a_model_that_nobody_is_in_serves_another) {
-  store::Store::NewModel copy;
+  store::NewModel copy;
   copy.model = model_;
   copy.model.id = 0;
   copy.model.slug = "copy";
-  copy.geometry = store_->geometry(model_.id).value();
-  ASSERT_TRUE(store_->create_model(copy, {}));
+  copy.geometry = store_->models().geometry(model_.id).value();
+  ASSERT_TRUE(store_->models().create(copy, {}));
   room();
   const auto one = rooms_->memory_bytes_used();
   restart_with(one + one / 2);

@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "query/expression_parser.h"
+#include "store/records.h"
+#include "store/tables.h"
 #include "support/room_fixture.h"
 
 namespace strata {
@@ -141,11 +143,11 @@ TEST_F(RoomQueries, records_decide_what_their_keys_cover) {
   columns[1].name = "State";
   const auto pieces = room()->create_layer(wished, {}, columns);
   ASSERT_TRUE(pieces) << pieces.error().detail;
-  const Table table = *store_->table(std::to_string(*pieces->table), Role::owner);
+  const Table table = *store_->tables().find(std::to_string(*pieces->table), Role::owner);
   const auto write = [&](std::int64_t key, double thickness, const char* state) {
     store::WriteRecords asked;
     asked.records = {{key, {{table.columns[0].id, thickness}, {table.columns[1].id, state}}}};
-    ASSERT_TRUE(store_->write_records(table.id, asked, "anna"));
+    ASSERT_TRUE(store_->records().write(table.id, asked, "anna"));
   };
   write(1, 4, "loose");
   write(2, 8, "firm");

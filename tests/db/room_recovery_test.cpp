@@ -8,7 +8,10 @@
 #include <thread>
 
 #include "room/tile_changes.h"
+#include "store/journal_reads.h"
 #include "store/journal_writer.h"
+#include "store/layers.h"
+#include "store/models.h"
 #include "support/room_fixture.h"
 
 namespace strata {
@@ -94,7 +97,7 @@ class RoomRecovery : public RoomTest {
     entry.answer = {{"sequence", sequence}, {"texels_changed", 1}, {"area_m2", 0.5}};
     entry.time = std::chrono::system_clock::now();
     const TileAddress address{3, 3};
-    const auto tiles = store_->load_tiles(layer)->tiles;
+    const auto tiles = store_->journal().load_tiles(layer)->tiles;
     const auto before = room::tile_or_empty(tiles, address, layer.type);
     TileData after = *before;
     TileMask written;
@@ -253,7 +256,7 @@ TEST_F(RoomRecovery, layers_made_changed_and_deleted_while_the_gpu_comes_back_st
   EXPECT_EQ(room()->layer("kept")->name, "Round 5");
   std::vector<std::string> here, stored;
   for (const auto& layer : room()->layers()) here.push_back(layer.slug + "/" + layer.name);
-  const auto rows = store_->layers(model_.id, Role::owner);
+  const auto rows = store_->layers().of_model(model_.id, Role::owner);
   for (const auto& layer : *rows) stored.push_back(layer.slug + "/" + layer.name);
   EXPECT_EQ(here, stored);
   expect_picture_of_journal();
@@ -412,7 +415,7 @@ TEST_F(RoomRecovery, people_in_a_deleted_model_are_told_and_their_edits_are_refu
   const auto held = room();
   Ears ears;
   auto member = held->join({"anna", Role::owner}, {}, &ears, [](const stream::FrameMessages&) {});
-  ASSERT_TRUE(store_->delete_model(model_.id));
+  ASSERT_TRUE(store_->models().remove(model_.id));
   rooms_->forget(model_.id);
   EXPECT_EQ(ears.deleted(), 1);
   std::promise<Answer> answered;
@@ -424,7 +427,7 @@ TEST_F(RoomRecovery, people_in_a_deleted_model_are_told_and_their_edits_are_refu
 TEST_F(RoomRecovery, layers_of_a_closed_room_are_not_waited_for) {
   const Layer layer = make_layer(ValueType::u8);
   const auto held = room();
-  ASSERT_TRUE(store_->delete_model(model_.id));
+  ASSERT_TRUE(store_->models().remove(model_.id));
   rooms_->forget(model_.id);
   EXPECT_EQ(held->delete_layer(layer.id).error().code, ErrorCode::gone);
   EXPECT_EQ(held->create_layer(layer).error().code, ErrorCode::gone);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "room/provisional.h"
+#include "store/journal_reads.h"
 #include "support/room_fixture.h"
 
 namespace strata {
@@ -50,7 +51,7 @@ class Reviews : public RoomTest {
     return stroke(layer_, value, {{x, 240}}, 20, user);
   }
   std::vector<JournalRow> history() {
-    auto rows = store_->history(layer_.id, 1000, 0)->rows;
+    auto rows = store_->journal().history(layer_.id, 1000, 0)->rows;
     std::ranges::reverse(rows);
     return rows;
   }
@@ -171,15 +172,15 @@ TEST_F(Reviews, a_batch_stands_for_its_stroke_and_what_does_not_wait_is_refused)
   ASSERT_TRUE(send(first));
   ASSERT_TRUE(send(second));
   ASSERT_TRUE(send(dab(3, 380)));
-  const auto queue = store_->review_queue(layer_.id, {}, 10, 0);
+  const auto queue = store_->journal().review_queue(layer_.id, {}, 10, 0);
   ASSERT_TRUE(queue) << queue.error().detail;
   ASSERT_EQ(queue->strokes.size(), 2u);
   EXPECT_EQ(queue->total, 2);
   EXPECT_EQ(queue->strokes[0].sequence, 1);
   EXPECT_EQ(queue->strokes[0].last, 2);
   EXPECT_EQ(queue->strokes[1].sequence, 3);
-  EXPECT_EQ(store_->review_queue(layer_.id, {}, 1, 1)->strokes.at(0).sequence, 3);
-  EXPECT_EQ(store_->review_queue(layer_.id, "ben", 10, 0)->total, 0);
+  EXPECT_EQ(store_->journal().review_queue(layer_.id, {}, 1, 1)->strokes.at(0).sequence, 3);
+  EXPECT_EQ(store_->journal().review_queue(layer_.id, "ben", 10, 0)->total, 0);
 
   const auto decision = review(Decision::reject, {{2}, {}});
   ASSERT_TRUE(send(decision));
@@ -209,7 +210,7 @@ TEST_F(Reviews, a_strokes_id_is_its_authors_and_each_decision_is_taken_back_by_i
   std::get<room::StrokeEdit>(bens.edit).stroke = std::get<room::StrokeEdit>(annas.edit).stroke;
   ASSERT_TRUE(send(annas));
   ASSERT_TRUE(send(bens));
-  const auto queue = store_->review_queue(layer_.id, {}, 10, 0);
+  const auto queue = store_->journal().review_queue(layer_.id, {}, 10, 0);
   ASSERT_EQ(queue->strokes.size(), 2u);
   EXPECT_EQ(queue->strokes[1].user, "ben");
   EXPECT_EQ(queue->strokes[1].sequence, 2);
@@ -363,7 +364,7 @@ TEST_F(Reviews, any_order_of_edits_undos_and_decisions_equals_the_oracle) {
         ASSERT_TRUE(done) << done.error().detail;
         Stroke& made = strokes[done->sequence];
         made = {curates ? "cleo" : user, value, true, curates ? Review::none : Review::pending};
-        const auto written = store_->written_by(layer_, std::vector{done->sequence});
+        const auto written = store_->journal().written_by(layer_, std::vector{done->sequence});
         for (const auto& tile : *written) made.written[tile.tile] = tile.written;
       } else if (random() % 4 == 0) {
         std::int64_t newest = 0;

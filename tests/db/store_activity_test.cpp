@@ -7,9 +7,16 @@
 #include <thread>
 
 #include "db/journal_painter.h"
+#include "store/accounts.h"
 #include "store/comments.h"
+#include "store/layers.h"
+#include "store/members.h"
+#include "store/models.h"
 #include "store/named_parts.h"
 #include "store/pg.h"
+#include "store/projects.h"
+#include "store/records.h"
+#include "store/tables.h"
 
 namespace strata::store {
 namespace {
@@ -52,19 +59,19 @@ class ActivityOfAProject : public ::testing::Test {
     layer.model_id = model;
     layer.name = name;
     layer.palette = default_palette(layer.type, false);
-    return store_->create_layer(layer, by<Layer>("ada")).value();
+    return store_->layers().create(layer, by<Layer>("ada")).value();
   }
   Table new_table() {
     Table table;
     table.project_id = 1;
     table.name = "Finds";
-    return store_->create_table(table, by<Table>("ada")).value();
+    return store_->tables().create(table, by<Table>("ada")).value();
   }
   void write_records(std::int64_t table, std::size_t count, bool dry_run = false) {
     WriteRecords asked;
     asked.records.resize(count);
     asked.dry_run = dry_run;
-    ASSERT_TRUE(store_->write_records(table, asked, "ada"));
+    ASSERT_TRUE(store_->records().write(table, asked, "ada"));
   }
   void save() {
     JournalWriter writer(*store_, {});
@@ -74,7 +81,7 @@ class ActivityOfAProject : public ::testing::Test {
     entries_.clear();
   }
   ActivityPage page(ActivityQuery query = {}) {
-    return store_->activity(1, Role::curator, query).value();
+    return store_->projects().activity(1, Role::curator, query).value();
   }
 
   const std::string dsn_ = test::fresh_database();
@@ -145,24 +152,24 @@ TEST_F(ActivityOfAProject, things_that_people_make_change_and_delete_are_told) {
   const Model second = test::make_model(*store_, "vase");
   Layer layer = new_layer(second.id, "cracks");
   layer.name = "Cracks";
-  layer = store_->update_layer(layer, by<Layer>("ada")).value();
+  layer = store_->layers().update(layer, by<Layer>("ada")).value();
   layer.opacity = 0.5;
   layer.locked = true;
-  layer = store_->update_layer(layer, by<Layer>("ada")).value();
+  layer = store_->layers().update(layer, by<Layer>("ada")).value();
   EXPECT_THAT(told(page()),
               ::testing::ElementsAre("ada layer changed Cracks ×2", "ada layer created Cracks ×1",
                                      "- model created vase ×1"));
   EXPECT_THAT(page().lines[0].changed, ::testing::ElementsAre("locked", "name", "opacity"));
   layer.visible = !layer.visible;
-  layer = store_->update_layer(layer).value();
+  layer = store_->layers().update(layer).value();
   EXPECT_EQ(page().lines[0].count, 2) << "nobody asked for it";
   EXPECT_THAT(told(page({.model = model_.id})), ::testing::IsEmpty());
-  ASSERT_TRUE(store_->delete_layer(layer.id, by<>("bob")));
+  ASSERT_TRUE(store_->layers().remove(layer.id, by<>("bob")));
   const Activity gone = page().lines[0];
   EXPECT_EQ(told(page())[0], "bob layer deleted Cracks ×1");
   EXPECT_FALSE(gone.layer);
   EXPECT_EQ(gone.model, second.id);
-  ASSERT_TRUE(store_->delete_model(second.id, by<>("bob")));
+  ASSERT_TRUE(store_->models().remove(second.id, by<>("bob")));
   EXPECT_EQ(told(page())[0], "bob model deleted vase ×1");
   EXPECT_FALSE(page().lines[0].model);
 }
@@ -200,9 +207,9 @@ TEST_F(ActivityOfAProject, a_layer_or_table_that_work_takes_back_never_was) {
   edit(layer, 0s, "ada", "import");
   save();
   EXPECT_EQ(page().lines.size(), 2u);
-  ASSERT_TRUE(store_->delete_layer(layer.id));
+  ASSERT_TRUE(store_->layers().remove(layer.id));
   const Table table = new_table();
-  ASSERT_TRUE(store_->delete_table(table.id));
+  ASSERT_TRUE(store_->tables().remove(table.id));
   EXPECT_THAT(told(page()), ::testing::IsEmpty());
 }
 
@@ -210,7 +217,7 @@ TEST_F(ActivityOfAProject, records_and_columns_are_told_and_their_record_where_i
   const Table table = new_table();
   Column weight;
   weight.name = "weight";
-  ASSERT_TRUE(store_->create_column(table.id, weight, "ada"));
+  ASSERT_TRUE(store_->tables().create_column(table.id, weight, "ada"));
   write_records(table.id, 1);
   EXPECT_THAT(told(page()), ::testing::ElementsAre("ada records records Finds ×1",
                                                    "ada columns create-column Finds ×1",
@@ -239,7 +246,7 @@ TEST_F(ActivityOfAProject, a_model_has_the_lines_of_the_tables_whose_records_lie
     layer.kind = LayerKind::database;
     layer.table = used.id;
     layer.palette = default_palette(layer.type, true);
-    ASSERT_TRUE(store_->create_layer(layer));
+    ASSERT_TRUE(store_->layers().create(layer));
   }
   forget_made_layers();
   EXPECT_THAT(told(page({.model = model_.id})),
@@ -281,11 +288,11 @@ TEST_F(ActivityOfAProject, comments_are_told_while_they_stand) {
 }
 
 TEST_F(ActivityOfAProject, members_are_told_to_those_who_may_know_them) {
-  ASSERT_TRUE(store_->create_person("Gus", "", Role::guest));
-  ASSERT_TRUE(store_->put_member(1, "Gus", Role::viewer, "ada"));
-  ASSERT_TRUE(store_->put_member(1, "Gus", Role::viewer, "ada"));  // as it is
-  ASSERT_TRUE(store_->put_member(1, "Gus", Role::curator, "ada"));
-  ASSERT_TRUE(store_->remove_member(1, "Gus", "ada"));
+  ASSERT_TRUE(store_->accounts().create("Gus", "", Role::guest));
+  ASSERT_TRUE(store_->members().put(1, "Gus", Role::viewer, "ada"));
+  ASSERT_TRUE(store_->members().put(1, "Gus", Role::viewer, "ada"));  // as it is
+  ASSERT_TRUE(store_->members().put(1, "Gus", Role::curator, "ada"));
+  ASSERT_TRUE(store_->members().remove(1, "Gus", "ada"));
   EXPECT_THAT(told(page()), ::testing::IsEmpty());
   const ActivityPage known = page({.with_members = true});
   EXPECT_THAT(told(known), ::testing::ElementsAre("ada member removed Default ×1",
@@ -301,13 +308,13 @@ TEST_F(ActivityOfAProject, lines_of_a_model_go_where_it_goes) {
   save();
   Project villa;
   villa.name = "Villa";
-  villa = store_->create_project(villa, by<Project>("ada")).value();
-  Model model = store_->model(std::to_string(model_.id)).value();
+  villa = store_->projects().create(villa, by<Project>("ada")).value();
+  Model model = store_->models().find(std::to_string(model_.id)).value();
   model.project_id = villa.id;
-  ASSERT_TRUE(store_->update_model(model, by<Model>("ada")));
+  ASSERT_TRUE(store_->models().update(model, by<Model>("ada")));
   EXPECT_THAT(told(page()), ::testing::IsEmpty());
   EXPECT_THAT(
-      told(store_->activity(villa.id, Role::curator, {}).value()),
+      told(store_->projects().activity(villa.id, Role::curator, {}).value()),
       ::testing::UnorderedElementsAre("ada model changed pot ×1", "ada project created Villa ×1",
                                       "ada edit stroke layer ×1"));
 }

@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "db/journal_painter.h"
+#include "store/layers.h"
 #include "store/pg.h"
+#include "store/records.h"
+#include "store/tables.h"
 
 namespace strata::store {
 namespace {
@@ -39,7 +42,7 @@ TEST_F(Analysis, an_area_has_its_middle_as_a_point_in_the_models_system) {
   layer.name = "Cracks";
   layer.palette = default_palette(layer.type, true);
   layer.labels = {{"de", "Risse"}};
-  layer = store_->create_layer(layer).value();
+  layer = store_->layers().create(layer).value();
   const std::string id = std::to_string(layer.id);
   run("INSERT INTO tile_sums VALUES (" + id +
       ", 0, 0, '{1,2}', '{4,0}', '{2,0}', '{3,0}', '{5,0}', '{1,0}', '{0,0}', '{0,0}', '{0,0}', '{1,1}', '{1,1}', '{1,1}')");
@@ -63,7 +66,7 @@ TEST_F(Analysis, lines_and_points_of_records_are_well_known_text) {
   table.columns = {marks("Crack", ColumnKind::line), marks("Sample", ColumnKind::point),
                    marks("Tomb", ColumnKind::point, Visibility::curators),
                    marks("Crack (wkt)", ColumnKind::text)};
-  table = store_->create_table(table).value();
+  table = store_->tables().create(table).value();
   EXPECT_EQ(
       ask("SELECT string_agg(attname, ', ' ORDER BY attnum) FROM pg_attribute WHERE attrelid = "
           "'analysis.\"Damage\"'::regclass AND attnum > 0"),
@@ -79,7 +82,7 @@ TEST_F(Analysis, lines_and_points_of_records_are_well_known_text) {
   input.values[table.columns[1].id] = json("[[4500000.25, 7, -1]]");
   WriteRecords asked;
   asked.records = {input, {2, {}, {}}};
-  const auto written = store_->write_records(table.id, asked, "ana");
+  const auto written = store_->records().write(table.id, asked, "ana");
   ASSERT_TRUE(written && written->problems.empty());
   const std::string crack = "\"Crack (c" + std::to_string(table.columns[0].id) + ", wkt)\"";
   EXPECT_EQ(ask("SELECT " + crack + " FROM analysis.\"Damage\" WHERE key = 1"),

@@ -6,9 +6,17 @@
 #include <functional>
 
 #include "db/journal_painter.h"
+#include "store/accounts.h"
+#include "store/attachments.h"
 #include "store/comments.h"
+#include "store/journal_reads.h"
+#include "store/layers.h"
+#include "store/models.h"
 #include "store/named_parts.h"
 #include "store/pg.h"
+#include "store/projects.h"
+#include "store/records.h"
+#include "store/tables.h"
 
 namespace strata::store {
 namespace {
@@ -52,7 +60,7 @@ class BinOfAProject : public ::testing::Test {
     layer.name = name;
     layer.palette = default_palette(layer.type, false);
     layer.visibility = visibility;
-    return store_->create_layer(layer, by<Layer>("carl")).value();
+    return store_->layers().create(layer, by<Layer>("carl")).value();
   }
   void paint(const Layer& layer, int edits) {
     test::Painter painter(layer, 7);
@@ -73,19 +81,20 @@ TEST_F(BinOfAProject, a_layer_in_the_bin_is_there_for_nobody_and_comes_back_as_i
   Layer layer = new_layer("Cracks");
   layer.locked = true;
   layer.description = "seen by eye";
-  layer = store_->update_layer(layer, by<Layer>("carl")).value();
+  layer = store_->layers().update(layer, by<Layer>("carl")).value();
   paint(layer, 5);
-  const auto tiles = store_->load_tiles(layer)->tiles;
-  const auto history = store_->history(layer.id, 100, 0).value();
+  const auto tiles = store_->journal().load_tiles(layer)->tiles;
+  const auto history = store_->journal().history(layer.id, 100, 0).value();
   ASSERT_TRUE(bin_.put_layer(layer.id, by<>("ada")));
-  EXPECT_EQ(store_->layer(model_.id, "cracks", Role::owner).error().code, ErrorCode::not_found);
-  EXPECT_EQ(store_->layer(model_.id, std::to_string(layer.id), Role::owner).error().code,
+  EXPECT_EQ(store_->layers().find(model_.id, "cracks", Role::owner).error().code,
             ErrorCode::not_found);
-  EXPECT_TRUE(store_->layers(model_.id, Role::owner)->empty());
-  EXPECT_EQ(store_->load_tiles(layer).error().code, ErrorCode::not_found);
-  EXPECT_EQ(store_->history(layer.id, 100, 0).error().code, ErrorCode::not_found);
-  EXPECT_EQ(store_->update_layer(layer).error().code, ErrorCode::not_found);
-  EXPECT_EQ(store_->delete_layer(layer.id).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->layers().find(model_.id, std::to_string(layer.id), Role::owner).error().code,
+            ErrorCode::not_found);
+  EXPECT_TRUE(store_->layers().of_model(model_.id, Role::owner)->empty());
+  EXPECT_EQ(store_->journal().load_tiles(layer).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->journal().history(layer.id, 100, 0).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->layers().update(layer).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->layers().remove(layer.id).error().code, ErrorCode::not_found);
   EXPECT_EQ(bin_.put_layer(layer.id, by<>("ada")).error().code, ErrorCode::not_found);
   for (const char* view : {"layers", "analysis.layers", "analysis.areas", "analysis.edits"})
     EXPECT_EQ(count(view), 0) << view;
@@ -98,14 +107,14 @@ TEST_F(BinOfAProject, a_layer_in_the_bin_is_there_for_nobody_and_comes_back_as_i
   const BinRestored back = restore(Kind::layer, layer.id);
   EXPECT_EQ(back.slug, "cracks");
   EXPECT_EQ(back.former_slug, "");
-  const Layer now = store_->layer(model_.id, "cracks", Role::owner).value();
+  const Layer now = store_->layers().find(model_.id, "cracks", Role::owner).value();
   EXPECT_EQ(now.id, layer.id);
   EXPECT_TRUE(now.locked);
   EXPECT_EQ(now.description, "seen by eye");
   EXPECT_GT(now.version, layer.version) << "who changes what they read before is told";
-  const auto again = store_->load_tiles(now)->tiles;
+  const auto again = store_->journal().load_tiles(now)->tiles;
   EXPECT_EQ(test::content_of({again, 0}), test::content_of({tiles, 0}));
-  EXPECT_EQ(store_->history(layer.id, 100, 0)->total, history.total);
+  EXPECT_EQ(store_->journal().history(layer.id, 100, 0)->total, history.total);
   EXPECT_THAT(listed(), ::testing::IsEmpty());
   EXPECT_EQ(bin_.restore(in_bin, by<BinRestored>("carl")).error().code, ErrorCode::not_found)
       << "it was restored already";
@@ -129,25 +138,26 @@ TEST_F(BinOfAProject, a_model_takes_all_along_and_brings_it_back) {
   comment.user = "ada";
   const Comment written = store_->comments().create(comment).value();
   ASSERT_TRUE(bin_.put_model(model_.id, by<>("ada")));
-  EXPECT_EQ(store_->model("pot").error().code, ErrorCode::not_found);
-  EXPECT_EQ(store_->model(std::to_string(model_.id)).error().code, ErrorCode::not_found);
-  EXPECT_TRUE(store_->models()->empty());
-  EXPECT_EQ(store_->layers(model_.id, Role::owner).error().code, ErrorCode::not_found);
-  EXPECT_EQ(store_->layer(model_.id, "cracks", Role::owner).error().code, ErrorCode::not_found);
-  EXPECT_EQ(store_->geometry(model_.id).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->models().find("pot").error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->models().find(std::to_string(model_.id)).error().code, ErrorCode::not_found);
+  EXPECT_TRUE(store_->models().all()->empty());
+  EXPECT_EQ(store_->layers().of_model(model_.id, Role::owner).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->layers().find(model_.id, "cracks", Role::owner).error().code,
+            ErrorCode::not_found);
+  EXPECT_EQ(store_->models().geometry(model_.id).error().code, ErrorCode::not_found);
   EXPECT_EQ(store_->comments().comment(written.id, Role::owner).error().code, ErrorCode::not_found);
-  EXPECT_EQ(store_->last_sequence(model_.id).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->journal().last_sequence(model_.id).error().code, ErrorCode::not_found);
   for (const char* what :
        {"models", "layers", "analysis.models", "analysis.layers", "analysis.edits"})
     EXPECT_EQ(count(what), 0) << what;
-  EXPECT_EQ(store_->drop_orphans().value(), 0) << "its files are kept";
+  EXPECT_EQ(store_->attachments().drop_orphans().value(), 0) << "its files are kept";
   EXPECT_THAT(listed(), ::testing::ElementsAre("pot"));
   EXPECT_EQ(restore(Kind::model, model_.id).slug, "pot");
-  EXPECT_EQ(store_->model("pot")->sequence, 3);
-  EXPECT_EQ(store_->geometry(model_.id)->size(), 3u);
+  EXPECT_EQ(store_->models().find("pot")->sequence, 3);
+  EXPECT_EQ(store_->models().geometry(model_.id)->size(), 3u);
   EXPECT_EQ(store_->views().of_model(model_.id, 10, 0)->total, 1);
   EXPECT_EQ(store_->comments().comment(written.id, Role::owner)->layer_id, layer.id);
-  EXPECT_EQ(store_->load_tiles(layer)->sequence, 3);
+  EXPECT_EQ(store_->journal().load_tiles(layer)->sequence, 3);
 }
 
 TEST_F(BinOfAProject, a_short_name_that_is_taken_meanwhile_gets_a_number) {
@@ -157,7 +167,7 @@ TEST_F(BinOfAProject, a_short_name_that_is_taken_meanwhile_gets_a_number) {
   const BinRestored back = restore(Kind::layer, layer.id);
   EXPECT_EQ(back.slug, "cracks-2");
   EXPECT_EQ(back.former_slug, "cracks");
-  EXPECT_EQ(store_->layer(model_.id, "cracks-2", Role::owner)->id, layer.id);
+  EXPECT_EQ(store_->layers().find(model_.id, "cracks-2", Role::owner)->id, layer.id);
   ASSERT_TRUE(bin_.put_model(model_.id, by<>("ada")));
   EXPECT_EQ(test::make_model(*store_).slug, "pot");
   EXPECT_EQ(restore(Kind::model, model_.id).slug, "pot-2");
@@ -176,7 +186,7 @@ TEST_F(BinOfAProject, who_does_not_see_a_layer_sees_it_in_neither_bin_nor_activi
             ErrorCode::not_found)
       << "of another project";
   const auto tells = [&](const std::string& name) {
-    const auto page = store_->activity(1, Role::viewer, {}).value();
+    const auto page = store_->projects().activity(1, Role::viewer, {}).value();
     return std::ranges::any_of(page.lines, [&](const Activity& line) { return line.name == name; });
   };
   EXPECT_TRUE(tells("Cracks"));
@@ -192,7 +202,7 @@ TEST_F(BinOfAProject, who_does_not_see_a_layer_sees_it_in_neither_bin_nor_activi
 TEST_F(BinOfAProject, activity_tells_who_deleted_and_restored_and_no_more_when_it_is_erased) {
   const auto told = [&] {
     std::vector<std::string> lines;
-    const auto page = store_->activity(1, Role::curator, {});
+    const auto page = store_->projects().activity(1, Role::curator, {});
     for (const Activity& line : page->lines)
       lines.push_back(line.user + " " + line.kind + " " + line.op + " " + line.name);
     return lines;
@@ -228,9 +238,9 @@ TEST_F(BinOfAProject, what_was_in_it_long_enough_is_erased_in_steps_and_nothing_
   EXPECT_EQ(count("all_layers"), 2);
   EXPECT_EQ(count("edits"), 4);
   EXPECT_EQ(count("tile_revisions WHERE layer_id = " + std::to_string(old.id)), 0);
-  EXPECT_FALSE(store_->load_tiles(kept)->tiles.empty());
+  EXPECT_FALSE(store_->journal().load_tiles(kept)->tiles.empty());
   restore(Kind::layer, fresh.id);
-  EXPECT_FALSE(store_->load_tiles(fresh)->tiles.empty());
+  EXPECT_FALSE(store_->journal().load_tiles(fresh)->tiles.empty());
   ASSERT_TRUE(bin_.put_model(model_.id, by<>("ada")));
   run("UPDATE all_models SET binned = now() - interval '31 days'");
   ASSERT_TRUE(bin_.expire(days(30)));
@@ -251,31 +261,31 @@ TEST_F(BinOfAProject, what_is_being_erased_is_not_restored) {
 }
 
 TEST_F(BinOfAProject, projects_and_tables_that_something_in_it_needs_are_kept) {
-  const Project villa = store_->create_project({0, "Villa", "villa", "", 1}).value();
-  Store::NewModel made;
+  const Project villa = store_->projects().create({0, "Villa", "villa", "", 1}).value();
+  NewModel made;
   made.model.project_id = villa.id;
   made.model.name = "vase";
   made.geometry = {4};
-  const Model vase = store_->create_model(made, {}).value();
+  const Model vase = store_->models().create(made, {}).value();
   Layer units;
   units.model_id = model_.id;
   units.name = "Units";
   units.kind = LayerKind::database;
   units.type = ValueType::u16;
   units.palette = default_palette(units.type, true);
-  units = store_->create_layer(units).value();
+  units = store_->layers().create(units).value();
   ASSERT_TRUE(bin_.put_layer(units.id, by<>("ada")));
   ASSERT_TRUE(bin_.put_model(vase.id, by<>("ada")));
-  EXPECT_THAT(store_->delete_table(*units.table).error().detail,
+  EXPECT_THAT(store_->tables().remove(*units.table).error().detail,
               ::testing::HasSubstr("lies in the Bin"));
-  EXPECT_THAT(store_->delete_project(villa.id).error().detail,
+  EXPECT_THAT(store_->projects().remove(villa.id).error().detail,
               ::testing::HasSubstr("Bin still holds 1"));
   ASSERT_TRUE(
       bin_.erase(bin_.entry(villa.id, Kind::model, vase.id, 0, {Role::owner, days(30)}).value(),
                  by<>("carl")));
   ASSERT_TRUE(bin_.erase(entry(Kind::layer, units.id), by<>("carl")));
-  EXPECT_TRUE(store_->delete_table(*units.table)) << "before all of it is erased";
-  EXPECT_TRUE(store_->delete_project(villa.id));
+  EXPECT_TRUE(store_->tables().remove(*units.table)) << "before all of it is erased";
+  EXPECT_TRUE(store_->projects().remove(villa.id));
   EXPECT_EQ(count("all_layers") + count("all_models WHERE id <> " + std::to_string(model_.id)), 0);
 }
 
@@ -286,14 +296,15 @@ TEST_F(BinOfAProject, a_layer_that_is_computed_from_one_in_the_bin_waits_for_it)
   computed.name = "Sum";
   computed.palette = default_palette(computed.type, false);
   computed.formula = LayerFormula{"cracks + 1", true, 0, false, {{"cracks", input.id, {}}}, false};
-  computed = store_->create_layer(computed).value();
-  EXPECT_EQ(store_->layers_to_recompute()->size(), 1u);
+  computed = store_->layers().create(computed).value();
+  EXPECT_EQ(store_->layers().to_recompute()->size(), 1u);
   ASSERT_TRUE(bin_.put_layer(input.id, by<>("ada")));
-  EXPECT_TRUE(store_->layers_to_recompute()->empty());
-  EXPECT_FALSE(store_->layer(model_.id, "sum", Role::owner)->formula->inputs[0].layer);
+  EXPECT_TRUE(store_->layers().to_recompute()->empty());
+  EXPECT_FALSE(store_->layers().find(model_.id, "sum", Role::owner)->formula->inputs[0].layer);
   restore(Kind::layer, input.id);
-  EXPECT_EQ(store_->layers_to_recompute()->size(), 1u);
-  EXPECT_EQ(store_->layer(model_.id, "sum", Role::owner)->formula->inputs[0].layer, input.id);
+  EXPECT_EQ(store_->layers().to_recompute()->size(), 1u);
+  EXPECT_EQ(store_->layers().find(model_.id, "sum", Role::owner)->formula->inputs[0].layer,
+            input.id);
 }
 
 TEST_F(BinOfAProject, a_record_comes_back_with_its_key_and_values_once_they_fit) {
@@ -306,17 +317,17 @@ TEST_F(BinOfAProject, a_record_comes_back_with_its_key_and_values_once_they_fit)
   weight.name = "weight";
   weight.kind = ColumnKind::integer;
   table.columns = {name, weight};
-  table = store_->create_table(table).value();
+  table = store_->tables().create(table).value();
   const std::int64_t name_id = table.columns[0].id, weight_id = table.columns[1].id;
   const auto write = [&](const std::string& text) {
     WriteRecords asked;
     asked.records.resize(1);
     asked.records[0].values = {{name_id, text}, {weight_id, 7}};
-    return store_->write_records(table.id, asked, "ada").value();
+    return store_->records().write(table.id, asked, "ada").value();
   };
   const std::int64_t key = write("SU 1").created.at(0);
   write("SU 2");
-  ASSERT_TRUE(store_->delete_record(table.id, key, {}, "bob", false));
+  ASSERT_TRUE(store_->records().remove(table.id, key, {}, "bob", false));
   EXPECT_THAT(listed(Role::annotator), ::testing::ElementsAre("SU 1"));
   EXPECT_THAT(listed(Role::viewer), ::testing::IsEmpty()) << "who may not delete does not restore";
   const Bin::Sight sight{Role::annotator, days(30)};
@@ -328,23 +339,23 @@ TEST_F(BinOfAProject, a_record_comes_back_with_its_key_and_values_once_they_fit)
   EXPECT_GT(other, key + 1) << "keys are not given again";
   EXPECT_EQ(bin_.restore_record(gone, "carl", {}).error().code, ErrorCode::conflict)
       << "its name is taken";
-  ASSERT_TRUE(store_->delete_record(table.id, other, {}, "bob", false));
+  ASSERT_TRUE(store_->records().remove(table.id, other, {}, "bob", false));
   const TableChange back = bin_.restore_record(gone, "carl", {}).value();
   EXPECT_THAT(back.created, ::testing::ElementsAre(key));
   EXPECT_EQ(back.records.at(0).values.at(weight_id), 7);
   EXPECT_EQ(bin_.restore_record(gone, "carl", {}).error().code, ErrorCode::not_found);
   EXPECT_EQ(bin_.entry(1, Kind::record, key, table.id, sight).error().code, ErrorCode::not_found);
   EXPECT_THAT(listed(), ::testing::ElementsAre("SU 1")) << "the other one";
-  EXPECT_EQ(store_->activity(1, Role::viewer, {})->lines[0].op, "restore");
+  EXPECT_EQ(store_->projects().activity(1, Role::viewer, {})->lines[0].op, "restore");
   run("UPDATE table_edits SET time = now() - interval '31 days' WHERE op = 'delete'");
   EXPECT_THAT(listed(), ::testing::IsEmpty());
 }
 
 TEST_F(BinOfAProject, who_is_deleted_is_told_by_no_name_there_either) {
-  ASSERT_TRUE(store_->create_person("ada", "Ada Lovelace", Role::curator));
+  ASSERT_TRUE(store_->accounts().create("ada", "Ada Lovelace", Role::curator));
   const Layer layer = new_layer("Cracks");
   ASSERT_TRUE(bin_.put_layer(layer.id, by<>("ada")));
-  ASSERT_TRUE(store_->delete_person("ada"));
+  ASSERT_TRUE(store_->accounts().remove("ada"));
   EXPECT_THAT(entry(Kind::layer, layer.id).user, ::testing::StartsWith("former-"));
 }
 

@@ -5,7 +5,12 @@
 #include <atomic>
 #include <thread>
 
+#include "store/accounts.h"
+#include "store/answers.h"
+#include "store/layers.h"
+#include "store/models.h"
 #include "store/pg.h"
+#include "store/tables.h"
 #include "support/test_cluster.h"
 
 namespace strata::store {
@@ -14,11 +19,11 @@ namespace {
 class CommentsOfAModel : public ::testing::Test {
  protected:
   CommentsOfAModel() {
-    Store::NewModel fresh;
+    NewModel fresh;
     fresh.model.project_id = 1;
     fresh.model.name = "bust";
     fresh.geometry = {1, 2, 3};
-    model_ = store_->create_model(fresh, {}).value().id;
+    model_ = store_->models().create(fresh, {}).value().id;
   }
   Comment thread(const std::string& text, const std::string& user = "ada") {
     Comment comment;
@@ -203,7 +208,7 @@ TEST_F(CommentsOfAModel, an_answer_is_kept_with_the_comment) {
                                       return nlohmann::json{{"id", made.id}};
                                     }};
   const auto first = comments_.create(thread("Look"), answer).value();
-  EXPECT_EQ(store_->find_answer("k").value()->at("id"), first.id);
+  EXPECT_EQ(store_->answers().find("k").value()->at("id"), first.id);
   EXPECT_EQ(comments_.create(thread("Look"), answer).error().code, ErrorCode::conflict);
   EXPECT_EQ(count(), 1);
 }
@@ -214,7 +219,7 @@ TEST_F(CommentsOfAModel, they_go_with_the_model_and_stay_without_layer_and_table
   layer.name = "Units";
   layer.kind = LayerKind::database;
   layer.type = ValueType::u8;
-  layer = store_->create_layer(layer).value();
+  layer = store_->layers().create(layer).value();
   auto comment = thread("About unit 3");
   comment.layer_id = layer.id;
   comment.table_id = layer.table;
@@ -223,20 +228,20 @@ TEST_F(CommentsOfAModel, they_go_with_the_model_and_stay_without_layer_and_table
   EXPECT_EQ(comment.layer_id, layer.id);
   EXPECT_EQ(comment.record, 3);
   ASSERT_TRUE(comments_.create(reply(comment.id, "Yes")));
-  ASSERT_TRUE(store_->delete_layer(layer.id));
+  ASSERT_TRUE(store_->layers().remove(layer.id));
   comment = comments_.comment(comment.id, Role::owner).value();
   EXPECT_FALSE(comment.layer_id);
   EXPECT_EQ(comment.table_id, layer.table);
   EXPECT_EQ(comment.record, 3);
-  ASSERT_TRUE(store_->delete_table(*layer.table));
+  ASSERT_TRUE(store_->tables().remove(*layer.table));
   comment = comments_.comment(comment.id, Role::owner).value();
   EXPECT_FALSE(comment.table_id || comment.record);
-  ASSERT_TRUE(store_->delete_model(model_));
+  ASSERT_TRUE(store_->models().remove(model_));
   EXPECT_EQ(count(), 0);
 }
 
 TEST_F(CommentsOfAModel, of_who_is_deleted_no_name_is_left_in_them) {
-  const Person ada = store_->create_person("Ada.L", "", Role::annotator).value();
+  const Person ada = store_->accounts().create("Ada.L", "", Role::annotator).value();
   const std::string former = "former-" + std::to_string(ada.id);
   const auto hers = comments_.create(thread("Mine", "Ada.L")).value();
   auto settled =
@@ -248,7 +253,7 @@ TEST_F(CommentsOfAModel, of_who_is_deleted_no_name_is_left_in_them) {
                                       return nlohmann::json{{"body", made.text}};
                                     }};
   ASSERT_TRUE(comments_.create(reply(settled.id, "For @ada.l only"), answer));
-  ASSERT_TRUE(store_->delete_person("ada.l"));
+  ASSERT_TRUE(store_->accounts().remove("ada.l"));
   EXPECT_EQ(comments_.comment(hers.id, Role::owner)->user, former);
   settled = comments_.comment(settled.id, Role::owner).value();
   EXPECT_EQ(settled.resolved->user, former);
@@ -258,7 +263,7 @@ TEST_F(CommentsOfAModel, of_who_is_deleted_no_name_is_left_in_them) {
       << "addresses of mail and other people's names stay";
   EXPECT_EQ(comments_.replies(settled.id, Role::owner, 1, 0)->comments.at(0).text,
             "For @" + former + " only");
-  EXPECT_FALSE(store_->find_answer("k").value())
+  EXPECT_FALSE(store_->answers().find("k").value())
       << "what was said to them is not told again either";
 }
 

@@ -11,6 +11,8 @@
 #include "core/timestamp.h"
 #include "query/expression_evaluator.h"
 #include "query/expression_parser.h"
+#include "store/records.h"
+#include "store/tables.h"
 #include "support/test_cluster.h"
 
 namespace strata::store {
@@ -39,7 +41,7 @@ class Filter : public ::testing::Test {
     table.project_id = 1;
     table.name = name;
     table.columns = std::move(columns);
-    auto made = store_->create_table(table);
+    auto made = store_->tables().create(table);
     EXPECT_TRUE(made) << made.error().detail;
     return made.value_or(Table{});
   }
@@ -51,7 +53,7 @@ class Filter : public ::testing::Test {
         input.values[find_column(table.columns, slug)->id] = value;
       asked.records.push_back(std::move(input));
     }
-    auto change = store_->write_records(table.id, asked, "ana");
+    auto change = store_->records().write(table.id, asked, "ana");
     ASSERT_TRUE(change) << change.error().detail;
     ASSERT_TRUE(change->problems.empty()) << change->problems.front().problem.detail;
   }
@@ -59,11 +61,11 @@ class Filter : public ::testing::Test {
                                          std::optional<std::int64_t> at = {}) {
     auto condition = parsed(filter);
     if (!condition) return tl::unexpected(condition.error());
-    Store::RecordQuery query;
+    RecordQuery query;
     query.limit = 10'000;
     query.at = at;
     query.filter = std::move(*condition);
-    auto page = store_->records(table.id, Role::owner, query);
+    auto page = store_->records().page(table.id, Role::owner, query);
     if (!page) return tl::unexpected(page.error());
     EXPECT_EQ(page->total, static_cast<std::int64_t>(page->records.size()));
     std::vector<std::int64_t> found;
@@ -310,12 +312,12 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
     }
 
   // Of another time: the same, by the rows as they were.
-  const auto then = store_->table(std::to_string(table.id), Role::owner)->sequence;
+  const auto then = store_->tables().find(std::to_string(table.id), Role::owner)->sequence;
   const auto before = keys(table, "depth > 1 and t_during(period, '15XX')");
   WriteRecords clear;
   for (const auto& [key, row] : rows)
     clear.records.push_back({key, {{find_column(table.columns, "depth")->id, nullptr}}});
-  ASSERT_TRUE(store_->write_records(table.id, clear, "ana"));
+  ASSERT_TRUE(store_->records().write(table.id, clear, "ana"));
   EXPECT_TRUE(keys(table, "depth > 1 and t_during(period, '15XX')")->empty());
   EXPECT_EQ(*keys(table, "depth > 1 and t_during(period, '15XX')", then), *before);
 }

@@ -6,7 +6,11 @@
 #include <atomic>
 #include <thread>
 
+#include "store/accounts.h"
+#include "store/members.h"
 #include "store/pg.h"
+#include "store/projects.h"
+#include "store/tokens.h"
 #include "support/test_cluster.h"
 
 namespace strata::store {
@@ -17,18 +21,19 @@ using Names = std::vector<std::string>;
 std::int64_t project(Store& store, const std::string& name) {
   Project made;
   made.name = name;
-  return store.create_project(made).value().id;
+  return store.projects().create(made).value().id;
 }
 
 std::string session_of(Store& store, const std::string& user, Role role) {
-  EXPECT_TRUE(store.create_person(user, "", role));
-  return store.create_token(TokenKind::session, user, role, std::chrono::seconds(60))
+  EXPECT_TRUE(store.accounts().create(user, "", role));
+  return store.tokens()
+      .create(TokenKind::session, user, role, std::chrono::seconds(60))
       .value()
       .secret;
 }
 
 Roles roles_of(Store& store, const std::string& secret) {
-  return store.find_token(secret).value()->roles;
+  return store.tokens().find(secret).value()->roles;
 }
 
 Names names_of(const std::vector<GroupDetail::Member>& members) {
@@ -80,7 +85,8 @@ TEST(Groups, the_highest_of_ones_own_role_and_those_of_ones_groups_counts) {
   Groups& groups = store->groups();
   const auto villa = project(*store, "Villa"), forum = project(*store, "Forum");
   const auto gus = session_of(*store, "Gus", Role::guest);
-  const auto weak = store->create_token(TokenKind::script, "Gus", Role::viewer, {}).value().secret;
+  const auto weak =
+      store->tokens().create(TokenKind::script, "Gus", Role::viewer, {}).value().secret;
   const auto students = groups.create("Students", {"gus"}).value().group.id;
   const auto diggers = groups.create("Diggers", {"Gus"}).value().group.id;
   EXPECT_EQ(roles_of(*store, gus), Roles{}) << "a group gives nothing of itself";
@@ -91,14 +97,14 @@ TEST(Groups, the_highest_of_ones_own_role_and_those_of_ones_groups_counts) {
             (Roles{Role::guest, {{villa, Role::curator}, {forum, Role::viewer}}}));
   EXPECT_EQ(roles_of(*store, weak),
             (Roles{Role::guest, {{villa, Role::viewer}, {forum, Role::viewer}}}));
-  ASSERT_TRUE(store->put_member(villa, "Gus", Role::viewer));
+  ASSERT_TRUE(store->members().put(villa, "Gus", Role::viewer));
   EXPECT_EQ(roles_of(*store, gus).in(villa), Role::curator)
       << "a lower role of their own takes nothing";
   const auto given = groups.roles_of("Gus").value();
   ASSERT_EQ(given.size(), 3u);
   EXPECT_EQ(given[0].group + " " + given[1].group + " " + given[2].group,
             "Diggers Diggers Students");
-  ASSERT_TRUE(store->put_member(forum, "Gus", Role::annotator));
+  ASSERT_TRUE(store->members().put(forum, "Gus", Role::annotator));
   EXPECT_EQ(roles_of(*store, gus).in(forum), Role::annotator) << "nor does a lower one of a group";
   EXPECT_EQ(groups.roles_of("Gus")->size(), 2u) << "what is less than their own is given by nobody";
   EXPECT_EQ(groups.people_with_role(villa)->size(), 1u);
@@ -110,13 +116,13 @@ TEST(Groups, the_highest_of_ones_own_role_and_those_of_ones_groups_counts) {
   EXPECT_EQ(roles_of(*store, gus).in(villa), Role::annotator) << "by the students";
   EXPECT_EQ(groups.change(students, {.remove = {"GUS"}}, {}).value().people, Names{"Gus"});
   EXPECT_EQ(roles_of(*store, gus).in(villa), Role::viewer) << "their own";
-  ASSERT_TRUE(store->remove_member(villa, "Gus"));
+  ASSERT_TRUE(store->members().remove(villa, "Gus"));
   EXPECT_EQ(groups.change(students, {.add = {"Gus"}}, {}).value().people, Names{"Gus"});
   EXPECT_EQ(roles_of(*store, gus).in(villa), Role::annotator);
   EXPECT_EQ(groups.remove(students, {}).value(), Names{"Gus"});
   EXPECT_EQ(roles_of(*store, gus), (Roles{Role::guest, {{forum, Role::annotator}}}));
   EXPECT_TRUE(groups.of_project(villa)->empty());
-  EXPECT_EQ(store->person("Gus")->groups, Names{"Diggers"});
+  EXPECT_EQ(store->accounts().find("Gus")->groups, Names{"Diggers"});
 }
 
 TEST(Groups, only_roles_of_projects_are_given_and_to_what_is_there) {
@@ -132,7 +138,7 @@ TEST(Groups, only_roles_of_projects_are_given_and_to_what_is_there) {
   const auto put = groups.put(villa, students, Role::viewer, {}).value();
   EXPECT_EQ(put.now.role, Role::viewer);
   EXPECT_EQ(put.now.group.name, "Students");
-  ASSERT_TRUE(store->delete_project(villa)) << "roles keep no project";
+  ASSERT_TRUE(store->projects().remove(villa)) << "roles keep no project";
   EXPECT_TRUE(groups.group(students)->projects.empty());
 }
 
@@ -140,7 +146,7 @@ TEST(Groups, people_are_put_in_and_taken_out_all_or_none) {
   auto store = test::fresh_store();
   Groups& groups = store->groups();
   for (const char* name : {"Ada", "Bob", "Cyd"})
-    ASSERT_TRUE(store->create_person(name, "", Role::viewer));
+    ASSERT_TRUE(store->accounts().create(name, "", Role::viewer));
   EXPECT_EQ(groups.create("Students", {"Ada", "nobody"}).error().code, ErrorCode::invalid);
   EXPECT_TRUE(groups.all()->empty()) << "nothing is left of what was refused";
   const auto students = groups.create("Students", {"bob", "Ada", "Ada"}).value();
@@ -161,13 +167,13 @@ TEST(Groups, people_are_put_in_and_taken_out_all_or_none) {
   EXPECT_TRUE(changed.people.empty()) << "in no project does anybody do anything else than before";
   EXPECT_EQ(groups.all()->front().people, 2);
   // Who is deleted leaves; who is invited may come with groups.
-  ASSERT_TRUE(store->delete_person("Ada"));
+  ASSERT_TRUE(store->accounts().remove("Ada"));
   EXPECT_EQ(names_of(groups.group(id)->members), Names{"Cyd"});
-  EXPECT_EQ(store->create_person("Dan", "", Role::guest, {id, id}).value().groups,
+  EXPECT_EQ(store->accounts().create("Dan", "", Role::guest, {id, id}).value().groups,
             Names{"Students"});
-  EXPECT_EQ(store->create_person("Eve", "", Role::guest, {id, id + 1}).error().code,
+  EXPECT_EQ(store->accounts().create("Eve", "", Role::guest, {id, id + 1}).error().code,
             ErrorCode::invalid);
-  EXPECT_EQ(store->person("Eve").error().code, ErrorCode::not_found);
+  EXPECT_EQ(store->accounts().find("Eve").error().code, ErrorCode::not_found);
 }
 
 TEST(Groups, it_is_told_who_could_do_less_without_one) {
@@ -186,8 +192,8 @@ TEST(Groups, it_is_told_who_could_do_less_without_one) {
   const auto other = groups.create("Others", {"Other"}).value().group.id;
   ASSERT_TRUE(groups.put(villa, students, Role::viewer, {}));
   ASSERT_TRUE(groups.put(villa, other, Role::viewer, {}));
-  ASSERT_TRUE(store->put_member(villa, "Own", Role::annotator));
-  ASSERT_TRUE(store->change_person(store->person("Out")->id, {{}, {}, true}));
+  ASSERT_TRUE(store->members().put(villa, "Own", Role::annotator));
+  ASSERT_TRUE(store->accounts().update(store->accounts().find("Out")->id, {{}, {}, true}));
   EXPECT_EQ(groups.group(students)->losing, 1);
   ASSERT_TRUE(groups.put(villa, students, Role::annotator, {}));
   EXPECT_EQ(groups.group(students)->losing, 3) << "all but who has the same of their own";
@@ -210,7 +216,7 @@ TEST(Groups, there_are_not_too_many_and_none_is_too_large) {
             ErrorCode::conflict);
   ASSERT_TRUE(groups.change(students, {.add = {"p1000"}}, {}));
   EXPECT_EQ(groups.change(students, {.add = {"p1001"}}, {}).error().code, ErrorCode::conflict);
-  EXPECT_EQ(store->create_person("New", "", Role::viewer, {students}).error().code,
+  EXPECT_EQ(store->accounts().create("New", "", Role::viewer, {students}).error().code,
             ErrorCode::conflict);
   ASSERT_TRUE(groups.change(students, {.add = {"p1001"}, .remove = {"p1"}}, {}))
       << "who leaves makes room";
@@ -245,7 +251,7 @@ TEST(Groups, who_asked_for_what_is_told_in_each_project) {
     ActivityQuery query;
     query.with_members = true;
     Names lines;
-    const auto page = store->activity(of_project, Role::owner, query).value();
+    const auto page = store->projects().activity(of_project, Role::owner, query).value();
     for (const Activity& line : page.lines)
       if (line.kind == "member")
         lines.push_back(line.user + " " + line.op + " " + line.group + " " + line.person + " " +

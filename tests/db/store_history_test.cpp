@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "db/journal_painter.h"
+#include "store/journal_reads.h"
 
 namespace strata::store {
 namespace {
@@ -35,21 +36,21 @@ class History : public ::testing::Test {
   }
   void undo(const std::string& user) {
     auto entry = painter_.entry(++sequence_, "undo", user);
-    entry.disable = store_->undoable(layer_.id, user).value();
+    entry.disable = store_->journal().undoable(layer_.id, user).value();
     ASSERT_FALSE(entry.disable.empty());
     ASSERT_TRUE(save(writer_, entry));
   }
   void redo(const std::string& user) {
     auto entry = painter_.entry(++sequence_, "redo", user);
-    entry.enable = store_->redoable(layer_.id, user).value();
+    entry.enable = store_->journal().redoable(layer_.id, user).value();
     ASSERT_FALSE(entry.enable.empty());
     ASSERT_TRUE(save(writer_, entry));
   }
   std::vector<std::int64_t> undoable(const std::string& user) {
-    return store_->undoable(layer_.id, user).value();
+    return store_->journal().undoable(layer_.id, user).value();
   }
   std::vector<std::int64_t> redoable(const std::string& user) {
-    return store_->redoable(layer_.id, user).value();
+    return store_->journal().redoable(layer_.id, user).value();
   }
 };
 
@@ -101,7 +102,7 @@ TEST_F(History, undo_stays_on_its_layer_and_a_restore_counts_as_paint) {
   EXPECT_THAT(undoable("Ada"), ElementsAre(2));
   undo("Ada");
   EXPECT_THAT(undoable("Ada"), ElementsAre(1));
-  EXPECT_THAT(store_->undoable(other.id, "Ada").value(), IsEmpty());
+  EXPECT_THAT(store_->journal().undoable(other.id, "Ada").value(), IsEmpty());
 }
 
 TEST_F(History, an_undo_and_what_it_undoes_may_come_in_one_transaction) {
@@ -133,10 +134,10 @@ TEST_F(History, written_tiles_are_the_union_of_the_edits_masks) {
     ASSERT_TRUE(save(writer_, entry));
   }
   const std::vector<std::int64_t> edits{2, 5};
-  const auto written = store_->written_by(layer_, edits).value();
+  const auto written = store_->journal().written_by(layer_, edits).value();
   ASSERT_EQ(written.size(), expected.size());
   for (const auto& tile : written) EXPECT_TRUE(tile.written == expected.at(tile.tile));
-  EXPECT_TRUE(store_->written_by(layer_, {})->empty());
+  EXPECT_TRUE(store_->journal().written_by(layer_, {})->empty());
 }
 
 TEST_F(History, every_revision_of_a_tile_comes_newest_first_and_leads_back_to_nothing) {
@@ -150,7 +151,7 @@ TEST_F(History, every_revision_of_a_tile_comes_newest_first_and_leads_back_to_no
         painter_.content().contains(tile) ? painter_.content().at(tile) : TileData(layer_.type);
     std::int64_t before = 1000;
     for (;;) {
-      const auto page = store_->tile_history(layer_, tile, before, 4).value();
+      const auto page = store_->journal().tile_history(layer_, tile, before, 4).value();
       EXPECT_LE(page.size(), 4u);
       if (page.empty()) break;
       for (const auto& past : page) {
@@ -165,7 +166,7 @@ TEST_F(History, every_revision_of_a_tile_comes_newest_first_and_leads_back_to_no
     EXPECT_LT(before, 1000);
     EXPECT_TRUE(current == TileData(layer_.type));
   }
-  EXPECT_TRUE(store_->tile_history(layer_, {7, 7}, 1000, 4)->empty());
+  EXPECT_TRUE(store_->journal().tile_history(layer_, {7, 7}, 1000, 4)->empty());
 }
 
 TEST_F(History, pages_are_newest_first_and_rows_are_whole) {
@@ -175,12 +176,12 @@ TEST_F(History, pages_are_newest_first_and_rows_are_whole) {
     entries.back().record["note"] = "größer ☃";
     ASSERT_TRUE(save(writer_, entries.back()));
   }
-  const auto page = store_->history(layer_.id, 2, 1).value();
+  const auto page = store_->journal().history(layer_.id, 2, 1).value();
   EXPECT_EQ(page.total, 5);
   ASSERT_EQ(page.rows.size(), 2u);
   EXPECT_EQ(page.rows[0].sequence, 4);
   const std::vector<Uuid> asked{random_uuid(), entries[2].id};
-  const auto state = store_->journal_state(model_.id, asked).value();
+  const auto state = store_->journal().state(model_.id, asked).value();
   EXPECT_EQ(state.last_sequence, 5);
   ASSERT_EQ(state.known.size(), 1u);
   const auto* found = &state.known[0];
@@ -193,10 +194,10 @@ TEST_F(History, pages_are_newest_first_and_rows_are_whole) {
   EXPECT_EQ(found->stroke, entries[2].stroke);
   EXPECT_TRUE(found->in_force);
   EXPECT_LT(std::chrono::abs(found->time - entries[2].time), std::chrono::microseconds(1));
-  EXPECT_EQ(store_->journal_state(model_.id, {})->last_sequence, 5);
-  EXPECT_EQ(store_->journal_state(model_.id + 1, asked).error().code, ErrorCode::not_found);
-  EXPECT_EQ(store_->history(999, 10, 0).error().code, ErrorCode::not_found);
-  EXPECT_TRUE(store_->history(layer_.id, 10, 100)->rows.empty());
+  EXPECT_EQ(store_->journal().state(model_.id, {})->last_sequence, 5);
+  EXPECT_EQ(store_->journal().state(model_.id + 1, asked).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->journal().history(999, 10, 0).error().code, ErrorCode::not_found);
+  EXPECT_TRUE(store_->journal().history(layer_.id, 10, 100)->rows.empty());
 }
 
 }  // namespace

@@ -6,7 +6,9 @@
 
 #include <map>
 
+#include "store/first_answer.h"
 #include "store/pg.h"
+#include "store/projects.h"
 #include "store/store.h"
 #include "support/test_cluster.h"
 
@@ -26,7 +28,7 @@ std::map<std::int64_t, StoredJob> by_id(std::vector<StoredJob> jobs) {
 TEST(Jobs, those_that_did_not_end_are_lost_with_the_server_and_others_are_as_they_ended) {
   const auto dsn = test::fresh_database();
   const auto store = test::open_store(dsn);
-  const auto project = store->project("default")->id;
+  const auto project = store->projects().find("default")->id;
   for (const std::int64_t id : {11, 12, 13, 14})
     ASSERT_TRUE(store->jobs().begin(job_of(id, project)));
   StoredJob done = job_of(12, project);
@@ -61,7 +63,7 @@ TEST(Jobs, those_that_did_not_end_are_lost_with_the_server_and_others_are_as_the
 TEST(Jobs, an_end_that_is_known_is_not_written_over) {
   const auto dsn = test::fresh_database();
   const auto store = test::open_store(dsn);
-  const auto project = store->project("default")->id;
+  const auto project = store->projects().find("default")->id;
   ASSERT_TRUE(store->jobs().begin(job_of(1, project)));
   StoredJob ended = job_of(1, project);
   ended.state = "done";
@@ -76,7 +78,7 @@ TEST(Jobs, an_end_that_is_known_is_not_written_over) {
 TEST(Jobs, success_is_written_with_what_it_made) {
   const auto dsn = test::fresh_database();
   const auto store = test::open_store(dsn);
-  const auto project = store->project("default")->id;
+  const auto project = store->projects().find("default")->id;
   ASSERT_TRUE(store->jobs().begin(job_of(21, project)));
   ASSERT_TRUE(store->jobs().begin(job_of(22, project)));
   Project fresh;
@@ -89,10 +91,10 @@ TEST(Jobs, success_is_written_with_what_it_made) {
                                 {},
                                 job};
   };
-  const auto made = store->create_project(fresh, answer(21));
+  const auto made = store->projects().create(fresh, answer(21));
   ASSERT_TRUE(made);
   fresh.name = "";  // refused: nothing is made, and the job is not done
-  EXPECT_FALSE(store->create_project(fresh, answer(22)));
+  EXPECT_FALSE(store->projects().create(fresh, answer(22)));
   auto jobs = by_id(*store->jobs().take_over(10));
   EXPECT_EQ(jobs.at(21).state, "done");
   EXPECT_EQ(jobs.at(21).result, (nlohmann::json{{"model", made->id}}));
@@ -104,9 +106,9 @@ TEST(Jobs, go_after_seven_days_and_with_their_project) {
   const auto store = test::open_store(dsn);
   Project fresh;
   fresh.name = "Short-lived";
-  const auto project = store->create_project(fresh);
+  const auto project = store->projects().create(fresh);
   ASSERT_TRUE(project);
-  const auto stays = store->project("default")->id;
+  const auto stays = store->projects().find("default")->id;
   ASSERT_TRUE(store->jobs().begin(job_of(1, project->id)));
   ASSERT_TRUE(store->jobs().begin(job_of(2, stays)));
   ASSERT_TRUE(store->jobs().begin(job_of(3, stays)));
@@ -115,7 +117,7 @@ TEST(Jobs, go_after_seven_days_and_with_their_project) {
   ASSERT_TRUE(connection);
   ASSERT_TRUE(
       connection->query("UPDATE jobs SET ended = now() - interval '7 days 1 hour' WHERE id = 2"));
-  ASSERT_TRUE(store->delete_project(project->id));
+  ASSERT_TRUE(store->projects().remove(project->id));
   const auto left = store->jobs().take_over(10);
   ASSERT_EQ(left->size(), 1u);
   EXPECT_EQ(left->front().id, 3);

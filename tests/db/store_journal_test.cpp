@@ -5,6 +5,8 @@
 #include <cstdio>
 
 #include "db/journal_painter.h"
+#include "store/journal_reads.h"
+#include "store/layers.h"
 #include "store/pg.h"
 
 namespace strata::store {
@@ -47,12 +49,12 @@ TEST_P(JournalOfType, a_layer_reads_as_it_was_after_every_edit) {
                 ->integer(0, 0),
             4);
   for (std::size_t at = 0; at < states.size(); at += 1) {
-    const auto snapshot = store_->load_tiles(layer, static_cast<std::int64_t>(at));
+    const auto snapshot = store_->journal().load_tiles(layer, static_cast<std::int64_t>(at));
     ASSERT_TRUE(snapshot) << snapshot.error().detail;
     EXPECT_EQ(snapshot->sequence, static_cast<std::int64_t>(at));
     ASSERT_TRUE(content_of(*snapshot) == states[at]) << "at " << at;
   }
-  const auto newest = store_->load_tiles(layer).value();
+  const auto newest = store_->journal().load_tiles(layer).value();
   EXPECT_EQ(newest.sequence, 220);
   EXPECT_TRUE(content_of(newest) == states.back());
 }
@@ -64,15 +66,15 @@ TEST_F(Journal, layers_of_a_model_share_its_sequence_and_keep_their_own_state) {
   Painter two(test::make_layer(*store_, model_.id, ValueType::u16, "two"), 2);
   JournalWriter writer(*store_, {});
   for (int i = 1; i <= 20; ++i) ASSERT_TRUE(save(writer, (i % 3 ? one : two).paint(i, 2, 4)));
-  EXPECT_EQ(store_->last_sequence(model_.id).value(), 20);
-  EXPECT_EQ(store_->layer(model_.id, "one", Role::owner)->sequence, 20);
-  EXPECT_EQ(store_->layer(model_.id, "two", Role::owner)->sequence, 18);
-  EXPECT_TRUE(content_of(store_->load_tiles(one.layer()).value()) == one.content());
-  EXPECT_TRUE(content_of(store_->load_tiles(two.layer()).value()) == two.content());
-  EXPECT_EQ(store_->load_tiles(two.layer())->sequence, 18);
+  EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 20);
+  EXPECT_EQ(store_->layers().find(model_.id, "one", Role::owner)->sequence, 20);
+  EXPECT_EQ(store_->layers().find(model_.id, "two", Role::owner)->sequence, 18);
+  EXPECT_TRUE(content_of(store_->journal().load_tiles(one.layer()).value()) == one.content());
+  EXPECT_TRUE(content_of(store_->journal().load_tiles(two.layer()).value()) == two.content());
+  EXPECT_EQ(store_->journal().load_tiles(two.layer())->sequence, 18);
   Layer gone = one.layer();
   gone.id = 999;
-  EXPECT_EQ(store_->load_tiles(gone).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->journal().load_tiles(gone).error().code, ErrorCode::not_found);
 }
 
 TEST_F(Journal, damaged_revisions_are_a_problem_and_not_a_crash) {
@@ -81,9 +83,9 @@ TEST_F(Journal, damaged_revisions_are_a_problem_and_not_a_crash) {
   ASSERT_TRUE(save(writer, painter.paint(1, 2, 4)));
   ASSERT_TRUE(PgConnection::connect(dsn_)->script(
       "UPDATE tile_revisions SET difference = '\\x0102030405'"));
-  EXPECT_EQ(store_->load_tiles(painter.layer()).error().code, ErrorCode::internal);
+  EXPECT_EQ(store_->journal().load_tiles(painter.layer()).error().code, ErrorCode::internal);
   const std::vector<std::int64_t> first{1};
-  EXPECT_EQ(store_->written_by(painter.layer(), first).error().code, ErrorCode::internal);
+  EXPECT_EQ(store_->journal().written_by(painter.layer(), first).error().code, ErrorCode::internal);
 }
 
 TEST_F(Journal, opening_a_layer_reads_nothing_older_than_the_last_whole_tiles) {
@@ -94,8 +96,9 @@ TEST_F(Journal, opening_a_layer_reads_nothing_older_than_the_last_whole_tiles) {
   ASSERT_TRUE(PgConnection::connect(dsn_)->script(
       "UPDATE tile_revisions r SET difference = '\\x00' WHERE sequence < (SELECT max(sequence) FROM tile_revisions k "
       "WHERE k.tile_x = r.tile_x AND k.tile_y = r.tile_y AND k.key_tile IS NOT NULL)"));
-  EXPECT_TRUE(content_of(store_->load_tiles(painter.layer()).value()) == painter.content());
-  EXPECT_EQ(store_->load_tiles(painter.layer(), 5).error().code, ErrorCode::internal);
+  EXPECT_TRUE(content_of(store_->journal().load_tiles(painter.layer()).value()) ==
+              painter.content());
+  EXPECT_EQ(store_->journal().load_tiles(painter.layer(), 5).error().code, ErrorCode::internal);
 }
 
 TEST_F(Journal, deleting_the_layer_of_the_newest_edit_leaves_a_gap_and_the_journal_goes_on) {
@@ -105,8 +108,8 @@ TEST_F(Journal, deleting_the_layer_of_the_newest_edit_leaves_a_gap_and_the_journ
     JournalWriter writer(*store_, {});
     ASSERT_TRUE(save(writer, kept.paint(1, 2, 4)));
     ASSERT_TRUE(save(writer, gone.paint(2, 2, 4)));
-    ASSERT_TRUE(store_->delete_layer(gone.layer().id));
-    EXPECT_EQ(store_->last_sequence(model_.id).value(), 2) << "a sequence is given once";
+    ASSERT_TRUE(store_->layers().remove(gone.layer().id));
+    EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 2) << "a sequence is given once";
     EXPECT_FALSE(save(writer, kept.entry(2)));
     ASSERT_TRUE(save(writer, kept.paint(3, 2, 4)));
   }
@@ -114,13 +117,13 @@ TEST_F(Journal, deleting_the_layer_of_the_newest_edit_leaves_a_gap_and_the_journ
   store_ = test::open_store(dsn_);
   JournalWriter writer(*store_, {});
   ASSERT_TRUE(save(writer, kept.paint(4, 2, 4)));
-  EXPECT_EQ(store_->last_sequence(model_.id).value(), 4);
+  EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 4);
   std::vector<std::int64_t> sequences;
-  const auto history = store_->history(kept.layer().id, 10, 0).value();
+  const auto history = store_->journal().history(kept.layer().id, 10, 0).value();
   for (const auto& row : history.rows) sequences.push_back(row.sequence);
   EXPECT_EQ(sequences, (std::vector<std::int64_t>{4, 3, 1}));
-  EXPECT_TRUE(content_of(store_->load_tiles(kept.layer()).value()) == kept.content());
-  EXPECT_EQ(store_->load_tiles(kept.layer(), 2)->sequence, 1);
+  EXPECT_TRUE(content_of(store_->journal().load_tiles(kept.layer()).value()) == kept.content());
+  EXPECT_EQ(store_->journal().load_tiles(kept.layer(), 2)->sequence, 1);
 }
 
 TEST_F(Journal, three_painted_layers_of_4096_load_in_well_under_a_second_and_a_half) {
@@ -162,7 +165,8 @@ TEST_F(Journal, three_painted_layers_of_4096_load_in_well_under_a_second_and_a_h
     }
   }
   const auto start = std::chrono::steady_clock::now();
-  for (const Layer& layer : layers) EXPECT_EQ(store_->load_tiles(layer)->tiles.size(), 1024u);
+  for (const Layer& layer : layers)
+    EXPECT_EQ(store_->journal().load_tiles(layer)->tiles.size(), 1024u);
   const auto elapsed_ms = std::chrono::duration_cast<std::chrono::milliseconds>(
                               std::chrono::steady_clock::now() - start)
                               .count();

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "store/accounts.h"
+#include "store/models.h"
 #include "store/named_parts.h"
 #include "store/pg.h"
+#include "store/projects.h"
+#include "store/tokens.h"
 #include "support/test_cluster.h"
 
 namespace strata::store {
@@ -18,11 +22,11 @@ class KiosksOfATour : public ::testing::Test {
     tour_ = new_tour(model_).id;
   }
   std::int64_t new_model(std::int64_t project, const std::string& name) {
-    Store::NewModel fresh;
+    NewModel fresh;
     fresh.model.project_id = project;
     fresh.model.name = name;
     fresh.geometry = {1, 2, 3};
-    return store_->create_model(fresh, {}).value().id;
+    return store_->models().create(fresh, {}).value().id;
   }
   NamedPart new_tour(std::int64_t model) {
     NamedPart tour;
@@ -99,7 +103,7 @@ TEST_F(KiosksOfATour, a_link_leads_to_its_kiosk_and_only_its_hash_is_kept) {
   EXPECT_FALSE(kiosks_.find("").value());
   const auto text = connection_->query("SELECT kiosks::text FROM kiosks")->text(0, 0);
   EXPECT_EQ(text.find(made.secret), std::string::npos);
-  EXPECT_FALSE(store_->find_token(made.secret).value()) << "nobody signs in with it";
+  EXPECT_FALSE(store_->tokens().find(made.secret).value()) << "nobody signs in with it";
 }
 
 TEST_F(KiosksOfATour, a_revoked_or_expired_link_leads_nowhere_and_is_listed_for_a_while) {
@@ -146,7 +150,7 @@ TEST_F(KiosksOfATour, those_of_some_projects_are_listed) {
   Project other;
   other.name = "Other";
   other.slug = "other";
-  other = store_->create_project(other).value();
+  other = store_->projects().create(other).value();
   const auto elsewhere =
       kiosks_.create(new_tour(new_model(other.id, "wall")).id, "Two", "carl", {}).value();
   EXPECT_EQ(kiosks_.all({}, 10, 0)->total, 2);
@@ -161,8 +165,8 @@ TEST_F(KiosksOfATour, those_of_some_projects_are_listed) {
 
 TEST_F(KiosksOfATour, links_go_with_their_tour_and_names_with_their_person) {
   const auto made = this->made();
-  ASSERT_TRUE(store_->create_person("carl", "", Role::curator));
-  ASSERT_TRUE(store_->delete_person("carl"));
+  ASSERT_TRUE(store_->accounts().create("carl", "", Role::curator));
+  ASSERT_TRUE(store_->accounts().remove("carl"));
   EXPECT_TRUE(kiosks_.kiosk(made.kiosk.id)->user.starts_with("former-"));
   EXPECT_TRUE(tours_.find(model_, "once-around")->user.starts_with("former-"));
   EXPECT_TRUE(kiosks_.find(made.secret).value()) << "the screen goes on";

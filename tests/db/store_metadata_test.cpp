@@ -3,13 +3,18 @@
 
 #include <limits>
 
+#include "store/journal_reads.h"
+#include "store/layers.h"
+#include "store/models.h"
+#include "store/projects.h"
+#include "store/tables.h"
 #include "support/test_cluster.h"
 
 namespace strata::store {
 namespace {
 
-Store::NewModel small_model(const std::string& name, std::int64_t project = 1) {
-  Store::NewModel fresh;
+NewModel small_model(const std::string& name, std::int64_t project = 1) {
+  NewModel fresh;
   fresh.model.project_id = project;
   fresh.model.name = name;
   fresh.geometry = {1, 2, 3};
@@ -17,7 +22,7 @@ Store::NewModel small_model(const std::string& name, std::int64_t project = 1) {
 }
 
 Model create(Store& store, const std::string& name) {
-  return store.create_model(small_model(name), {}).value();
+  return store.models().create(small_model(name), {}).value();
 }
 
 Layer new_layer(std::int64_t model_id, const std::string& name) {
@@ -30,10 +35,10 @@ Layer new_layer(std::int64_t model_id, const std::string& name) {
 
 TEST(Projects, the_default_project_exists_and_stays) {
   auto store = test::fresh_store();
-  const auto project = store->project("default").value();
-  EXPECT_EQ(store->project(std::to_string(project.id))->slug, "default");
-  EXPECT_EQ(store->delete_project(project.id).error().code, ErrorCode::conflict);
-  EXPECT_EQ(store->projects()->size(), 1u);
+  const auto project = store->projects().find("default").value();
+  EXPECT_EQ(store->projects().find(std::to_string(project.id))->slug, "default");
+  EXPECT_EQ(store->projects().remove(project.id).error().code, ErrorCode::conflict);
+  EXPECT_EQ(store->projects().all()->size(), 1u);
 }
 
 TEST(Projects, equal_names_get_slugs_of_their_own) {
@@ -41,54 +46,54 @@ TEST(Projects, equal_names_get_slugs_of_their_own) {
   Project villa;
   villa.name = "Villa Adriana";
   villa.description = "Tívoli — площадь";
-  EXPECT_EQ(store->create_project(villa)->slug, "villa-adriana");
-  EXPECT_EQ(store->create_project(villa)->slug, "villa-adriana-2");
-  const auto third = store->create_project(villa).value();
+  EXPECT_EQ(store->projects().create(villa)->slug, "villa-adriana");
+  EXPECT_EQ(store->projects().create(villa)->slug, "villa-adriana-2");
+  const auto third = store->projects().create(villa).value();
   EXPECT_EQ(third.slug, "villa-adriana-3");
-  EXPECT_EQ(store->project("villa-adriana-3")->description, villa.description);
+  EXPECT_EQ(store->projects().find("villa-adriana-3")->description, villa.description);
   Project number;
   number.name = "1937";
-  EXPECT_EQ(store->create_project(number)->slug, "n-1937");
+  EXPECT_EQ(store->projects().create(number)->slug, "n-1937");
 }
 
 TEST(Projects, changes_need_the_current_version_and_a_free_slug) {
   auto store = test::fresh_store();
   Project made;
   made.name = "Site";
-  made = store->create_project(made).value();
+  made = store->projects().create(made).value();
   made.description = "new";
-  const auto changed = store->update_project(made).value();
+  const auto changed = store->projects().update(made).value();
   EXPECT_EQ(changed.version, made.version + 1);
   EXPECT_EQ(changed.description, "new");
-  EXPECT_EQ(store->update_project(made).error().code, ErrorCode::stale);
+  EXPECT_EQ(store->projects().update(made).error().code, ErrorCode::stale);
   Project taken = changed;
   taken.slug = "default";
-  EXPECT_EQ(store->update_project(taken).error().code, ErrorCode::conflict);
+  EXPECT_EQ(store->projects().update(taken).error().code, ErrorCode::conflict);
   taken.slug = "12";
-  EXPECT_EQ(store->update_project(taken).error().code, ErrorCode::conflict);
+  EXPECT_EQ(store->projects().update(taken).error().code, ErrorCode::conflict);
   taken.id = 12345;
   taken.slug = "free";
-  EXPECT_EQ(store->update_project(taken).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store->projects().update(taken).error().code, ErrorCode::not_found);
 }
 
 TEST(Projects, one_with_models_is_not_deleted) {
   auto store = test::fresh_store();
   Project made;
   made.name = "Site";
-  made = store->create_project(made).value();
-  const auto model = store->create_model(small_model("pot", made.id), {}).value();
-  EXPECT_EQ(store->delete_project(made.id).error().code, ErrorCode::conflict);
-  ASSERT_TRUE(store->delete_model(model.id));
-  EXPECT_TRUE(store->delete_project(made.id));
-  EXPECT_EQ(store->delete_project(made.id).error().code, ErrorCode::not_found);
+  made = store->projects().create(made).value();
+  const auto model = store->models().create(small_model("pot", made.id), {}).value();
+  EXPECT_EQ(store->projects().remove(made.id).error().code, ErrorCode::conflict);
+  ASSERT_TRUE(store->models().remove(model.id));
+  EXPECT_TRUE(store->projects().remove(made.id));
+  EXPECT_EQ(store->projects().remove(made.id).error().code, ErrorCode::not_found);
 }
 
 TEST(Projects, unknown_and_unstorable_references_are_not_found) {
   auto store = test::fresh_store();
   for (const std::string ref :
        {"nothing", "99", "99999999999999999999999999", "", "a\xff", "'; DROP TABLE projects --"})
-    EXPECT_EQ(store->project(ref).error().code, ErrorCode::not_found) << ref;
-  EXPECT_EQ(store->project(std::string("a\0b", 3)).error().code, ErrorCode::not_found);
+    EXPECT_EQ(store->projects().find(ref).error().code, ErrorCode::not_found) << ref;
+  EXPECT_EQ(store->projects().find(std::string("a\0b", 3)).error().code, ErrorCode::not_found);
 }
 
 TEST(Projects, text_that_cannot_be_stored_is_the_callers_mistake) {
@@ -98,18 +103,18 @@ TEST(Projects, text_that_cannot_be_stored_is_the_callers_mistake) {
                                  std::string("\xf4\x90\x80\x80"), std::string("cut \xe2\x82")}) {
     Project project;
     project.name = bad;
-    EXPECT_EQ(store->create_project(project).error().code, ErrorCode::malformed);
-    EXPECT_EQ(store->create_project(project).error().field, "name");
+    EXPECT_EQ(store->projects().create(project).error().code, ErrorCode::malformed);
+    EXPECT_EQ(store->projects().create(project).error().field, "name");
     project.name = "good";
     project.description = bad;
-    EXPECT_EQ(store->create_project(project).error().field, "description");
+    EXPECT_EQ(store->projects().create(project).error().field, "description");
   }
   Project nameless;
-  EXPECT_EQ(store->create_project(nameless).error().code, ErrorCode::malformed);
+  EXPECT_EQ(store->projects().create(nameless).error().code, ErrorCode::malformed);
   nameless.name = std::string(256, 'x');
-  EXPECT_EQ(store->create_project(nameless).error().code, ErrorCode::malformed);
+  EXPECT_EQ(store->projects().create(nameless).error().code, ErrorCode::malformed);
   nameless.name = "𝕊𝕚𝕥𝕖 ☃ é";
-  EXPECT_EQ(store->create_project(nameless)->name, nameless.name);
+  EXPECT_EQ(store->projects().create(nameless)->name, nameless.name);
 }
 
 TEST(Models, every_field_comes_back) {
@@ -142,8 +147,8 @@ TEST(Models, every_field_comes_back) {
   m.processing = "p";
   m.rights_uri = "https://example.org/r";
   m.credit = "cr";
-  const auto made = store->create_model(fresh, {}).value();
-  const auto read = store->model("vase-figures").value();
+  const auto made = store->models().create(fresh, {}).value();
+  const auto read = store->models().find("vase-figures").value();
   EXPECT_EQ(made.id, read.id);
   m.id = read.id;
   m.slug = "vase-figures";
@@ -152,8 +157,8 @@ TEST(Models, every_field_comes_back) {
   EXPECT_EQ(read.bounds_min, m.bounds_min);
   EXPECT_EQ(read.area, m.area);
   EXPECT_EQ(read.version, 1);
-  EXPECT_EQ(store->geometry(read.id).value(), fresh.geometry);
-  EXPECT_EQ(store->last_sequence(read.id).value(), 0);
+  EXPECT_EQ(store->models().geometry(read.id).value(), fresh.geometry);
+  EXPECT_EQ(store->journal().last_sequence(read.id).value(), 0);
 }
 
 TEST(Models, slugs_are_unique_among_all_models_and_changes_need_the_version) {
@@ -164,24 +169,24 @@ TEST(Models, slugs_are_unique_among_all_models_and_changes_need_the_version) {
   EXPECT_EQ(second.slug, "pot-2");
   second.credit = "someone";
   second.unit = Unit::cm;
-  const auto changed = store->update_model(second).value();
+  const auto changed = store->models().update(second).value();
   EXPECT_EQ(changed.version, 2);
   EXPECT_EQ(changed.credit, "someone");
   EXPECT_EQ(changed.unit, Unit::cm);
-  EXPECT_EQ(store->update_model(second).error().code, ErrorCode::stale);
+  EXPECT_EQ(store->models().update(second).error().code, ErrorCode::stale);
   second.version = 2;
   second.slug = "pot";
-  EXPECT_EQ(store->update_model(second).error().code, ErrorCode::conflict);
+  EXPECT_EQ(store->models().update(second).error().code, ErrorCode::conflict);
   second.slug = "pot-2";
   second.project_id = 77;
-  EXPECT_EQ(store->update_model(second).error().code, ErrorCode::conflict);
+  EXPECT_EQ(store->models().update(second).error().code, ErrorCode::conflict);
   second.project_id = 1;
   second.id = 77;
-  EXPECT_EQ(store->update_model(second).error().code, ErrorCode::not_found);
-  EXPECT_EQ(store->models()->size(), 2u);
-  EXPECT_EQ(store->models(1)->size(), 2u);
-  EXPECT_EQ(store->models(2)->size(), 0u);
-  EXPECT_EQ(store->create_model(small_model("x", 99), {}).error().code, ErrorCode::conflict);
+  EXPECT_EQ(store->models().update(second).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store->models().all()->size(), 2u);
+  EXPECT_EQ(store->models().all(1)->size(), 2u);
+  EXPECT_EQ(store->models().all(2)->size(), 0u);
+  EXPECT_EQ(store->models().create(small_model("x", 99), {}).error().code, ErrorCode::conflict);
 }
 
 TEST(Layers, they_come_in_drawing_order_with_every_field) {
@@ -198,84 +203,86 @@ TEST(Layers, they_come_in_drawing_order_with_every_field) {
   top.visible = false;
   top.palette.mode = PaletteMode::categorical;
   top.palette.points = {{0.1, {1, 2, 3, 4}, "crack"}, {2, {5, 6, 7, 255}, "sält"}};
-  top = store->create_layer(top).value();
-  const auto bottom = store->create_layer(new_layer(model.id, "Bottom")).value();
-  const auto list = store->layers(model.id, Role::owner).value();
+  top = store->layers().create(top).value();
+  const auto bottom = store->layers().create(new_layer(model.id, "Bottom")).value();
+  const auto list = store->layers().of_model(model.id, Role::owner).value();
   ASSERT_EQ(list.size(), 2u);
   EXPECT_EQ(list[0].id, bottom.id);
   EXPECT_EQ(to_json(list[1]), to_json(top));
-  EXPECT_EQ(store->table(std::to_string(list[1].table.value()), Role::owner)->name, "Top");
+  EXPECT_EQ(store->tables().find(std::to_string(list[1].table.value()), Role::owner)->name, "Top");
   EXPECT_EQ(list[1].palette.points[0].label, "crack");
   EXPECT_EQ(list[1].opacity, 0.3);
-  EXPECT_EQ(store->layer(model.id, "top", Role::owner)->id, top.id);
-  EXPECT_EQ(store->layer(model.id, std::to_string(top.id), Role::owner)->slug, "top");
-  EXPECT_EQ(store->layer(model.id + 1, "top", Role::owner).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store->layers().find(model.id, "top", Role::owner)->id, top.id);
+  EXPECT_EQ(store->layers().find(model.id, std::to_string(top.id), Role::owner)->slug, "top");
+  EXPECT_EQ(store->layers().find(model.id + 1, "top", Role::owner).error().code,
+            ErrorCode::not_found);
 }
 
 TEST(Layers, slugs_are_unique_in_their_model_only) {
   auto store = test::fresh_store();
   const auto one = create(*store, "one");
   const auto two = create(*store, "two");
-  EXPECT_EQ(store->create_layer(new_layer(one.id, "Cracks"))->slug, "cracks");
-  EXPECT_EQ(store->create_layer(new_layer(one.id, "Cracks"))->slug, "cracks-2");
-  EXPECT_EQ(store->create_layer(new_layer(two.id, "Cracks"))->slug, "cracks");
-  EXPECT_EQ(store->create_layer(new_layer(99, "Cracks")).error().code, ErrorCode::not_found);
-  EXPECT_EQ(store->layers(99, Role::owner).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store->layers().create(new_layer(one.id, "Cracks"))->slug, "cracks");
+  EXPECT_EQ(store->layers().create(new_layer(one.id, "Cracks"))->slug, "cracks-2");
+  EXPECT_EQ(store->layers().create(new_layer(two.id, "Cracks"))->slug, "cracks");
+  EXPECT_EQ(store->layers().create(new_layer(99, "Cracks")).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store->layers().of_model(99, Role::owner).error().code, ErrorCode::not_found);
 }
 
 TEST(Layers, changes_need_the_version_and_keep_to_the_rules) {
   auto store = test::fresh_store();
   const auto model = create(*store, "pot");
-  store->create_layer(new_layer(model.id, "other")).value();
-  auto layer = store->create_layer(new_layer(model.id, "salt")).value();
+  store->layers().create(new_layer(model.id, "other")).value();
+  auto layer = store->layers().create(new_layer(model.id, "salt")).value();
   layer.name = "Salts";
   layer.order = 3;
-  const auto changed = store->update_layer(layer).value();
+  const auto changed = store->layers().update(layer).value();
   EXPECT_EQ(changed.name, "Salts");
   EXPECT_EQ(changed.version, 2);
-  EXPECT_EQ(store->update_layer(layer).error().code, ErrorCode::stale);
+  EXPECT_EQ(store->layers().update(layer).error().code, ErrorCode::stale);
   auto named = changed;
   named.labels = {{"de", "Salze"}};
   named.descriptions = {{"pt-BR", "Brancos"}};
-  named = store->update_layer(named).value();
-  EXPECT_EQ(store->layer(model.id, "salt", Role::viewer)->labels, (Labels{{"de", "Salze"}}));
-  EXPECT_EQ(store->layer(model.id, "salt", Role::viewer)->descriptions,
+  named = store->layers().update(named).value();
+  EXPECT_EQ(store->layers().find(model.id, "salt", Role::viewer)->labels,
+            (Labels{{"de", "Salze"}}));
+  EXPECT_EQ(store->layers().find(model.id, "salt", Role::viewer)->descriptions,
             (Labels{{"pt-BR", "Brancos"}}));
   auto bad = named;
   bad.slug = "other";
-  EXPECT_EQ(store->update_layer(bad).error().code, ErrorCode::conflict);
+  EXPECT_EQ(store->layers().update(bad).error().code, ErrorCode::conflict);
   bad = named;
   bad.labels = {{"es_MX", "Sales"}};
-  EXPECT_EQ(store->update_layer(bad).error().field, "labels");
+  EXPECT_EQ(store->layers().update(bad).error().field, "labels");
   bad = named;
   bad.opacity = 1.5;
-  EXPECT_EQ(store->update_layer(bad).error().field, "opacity");
+  EXPECT_EQ(store->layers().update(bad).error().field, "opacity");
   bad.opacity = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(store->update_layer(bad).error().field, "opacity");
+  EXPECT_EQ(store->layers().update(bad).error().field, "opacity");
   auto odd = new_layer(model.id, "odd");
   odd.resolution = 1000;
-  EXPECT_EQ(store->create_layer(odd).error().code, ErrorCode::conflict);
-  EXPECT_TRUE(store->delete_layer(changed.id));
-  EXPECT_EQ(store->delete_layer(changed.id).error().code, ErrorCode::not_found);
-  EXPECT_EQ(store->update_layer(changed).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store->layers().create(odd).error().code, ErrorCode::conflict);
+  EXPECT_TRUE(store->layers().remove(changed.id));
+  EXPECT_EQ(store->layers().remove(changed.id).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store->layers().update(changed).error().code, ErrorCode::not_found);
 }
 
 TEST(Layers, a_lock_is_kept_until_it_is_taken_away) {
   auto store = test::fresh_store();
   const auto model = create(*store, "pot");
-  auto layer = store->create_layer(new_layer(model.id, "salt")).value();
+  auto layer = store->layers().create(new_layer(model.id, "salt")).value();
   EXPECT_FALSE(layer.locked);
   layer.locked = true;
-  layer = store->update_layer(layer).value();
+  layer = store->layers().update(layer).value();
   EXPECT_TRUE(layer.locked);
-  EXPECT_TRUE(store->widen_layer(layer, ValueType::u16)->locked);
-  layer = store->layers(model.id, Role::owner)->front();
+  EXPECT_TRUE(store->layers().widen(layer, ValueType::u16)->locked);
+  layer = store->layers().of_model(model.id, Role::owner)->front();
   EXPECT_TRUE(layer.locked);
   layer.locked = false;
-  EXPECT_FALSE(store->update_layer(layer)->locked);
+  EXPECT_FALSE(store->layers().update(layer)->locked);
   auto made_so = new_layer(model.id, "finished");
   made_so.locked = true;
-  EXPECT_TRUE(store->create_layer(made_so)->locked);
+  EXPECT_TRUE(store->layers().create(made_so)->locked);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "store/inspect.h"
 #include "store/migrations.h"
 #include "store/pg.h"
+#include "store/projects.h"
 #include "strata_dirs.h"
 #include "support/test_cluster.h"
 
@@ -55,7 +56,7 @@ TEST(Migrations, twenty_servers_starting_at_once_are_harmless) {
     servers.emplace_back([&] {
       auto store = Store::open({dsn, 1}, STRATA_MIGRATIONS_DIR);
       EXPECT_TRUE(store) << store.error().detail;
-      if (store && (*store)->project("default")) ++opened;
+      if (store && (*store)->projects().find("default")) ++opened;
     });
   for (auto& server : servers) server.join();
   EXPECT_EQ(opened, 20);

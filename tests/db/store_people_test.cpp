@@ -4,9 +4,17 @@
 #include <thread>
 
 #include "db/journal_painter.h"
+#include "store/accounts.h"
+#include "store/answers.h"
 #include "store/groups.h"
+#include "store/journal_reads.h"
+#include "store/members.h"
 #include "store/password.h"
 #include "store/pg.h"
+#include "store/projects.h"
+#include "store/records.h"
+#include "store/tables.h"
+#include "store/tokens.h"
 #include "support/test_cluster.h"
 
 namespace strata::store {
@@ -16,46 +24,48 @@ using std::chrono::seconds;
 
 TEST(Tokens, a_token_is_found_until_it_is_revoked_or_expires) {
   auto store = test::fresh_store();
-  EXPECT_EQ(store->create_token(TokenKind::script, "Ada", Role::owner, {}).error().code,
+  EXPECT_EQ(store->tokens().create(TokenKind::script, "Ada", Role::owner, {}).error().code,
             ErrorCode::not_found);
-  ASSERT_TRUE(store->create_person("Ada", "", Role::owner));
-  const auto token = store->create_token(TokenKind::script, "Ada", Role::owner, {}).value().secret;
+  ASSERT_TRUE(store->accounts().create("Ada", "", Role::owner));
+  const auto token =
+      store->tokens().create(TokenKind::script, "Ada", Role::owner, {}).value().secret;
   EXPECT_EQ(token.size(), 43u);
   EXPECT_EQ(
       token.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_"),
       std::string::npos);
-  const auto found = store->find_token(token).value();
+  const auto found = store->tokens().find(token).value();
   ASSERT_TRUE(found);
   EXPECT_EQ(found->user, "Ada");
   EXPECT_EQ(found->roles.everywhere, Role::owner);
   EXPECT_EQ(found->kind, TokenKind::script);
-  ASSERT_TRUE(store->revoke_token(token));
-  EXPECT_FALSE(store->find_token(token).value());
+  ASSERT_TRUE(store->tokens().revoke(token));
+  EXPECT_FALSE(store->tokens().find(token).value());
   const auto old =
-      store->create_token(TokenKind::session, "Ada", Role::owner, seconds(-1)).value().secret;
-  EXPECT_FALSE(store->find_token(old).value());
+      store->tokens().create(TokenKind::session, "Ada", Role::owner, seconds(-1)).value().secret;
+  EXPECT_FALSE(store->tokens().find(old).value());
   const auto fresh =
-      store->create_token(TokenKind::session, "Ada", Role::owner, seconds(3600)).value().secret;
-  EXPECT_TRUE(store->find_token(fresh).value());
+      store->tokens().create(TokenKind::session, "Ada", Role::owner, seconds(3600)).value().secret;
+  EXPECT_TRUE(store->tokens().find(fresh).value());
   EXPECT_NE(
       fresh,
-      store->create_token(TokenKind::session, "Ada", Role::owner, seconds(3600)).value().secret);
+      store->tokens().create(TokenKind::session, "Ada", Role::owner, seconds(3600)).value().secret);
 }
 
 TEST(Tokens, guesses_and_oddities_are_nobody) {
   auto store = test::fresh_store();
   for (const std::string guess : {"", "x", "' OR 1=1 --", "\xff\xff"})
-    EXPECT_FALSE(store->find_token(guess).value()) << guess;
+    EXPECT_FALSE(store->tokens().find(guess).value()) << guess;
   for (const char* nobody : {"", "x", "\xff", "' OR 1=1 --"})
-    EXPECT_EQ(store->create_token(TokenKind::script, nobody, Role::owner, {}).error().code,
+    EXPECT_EQ(store->tokens().create(TokenKind::script, nobody, Role::owner, {}).error().code,
               ErrorCode::not_found);
 }
 
 TEST(Tokens, secrets_are_not_in_the_database) {
   const auto dsn = test::fresh_database();
   auto store = test::open_store(dsn);
-  ASSERT_TRUE(store->create_person("Ada", "", Role::owner));
-  const auto token = store->create_token(TokenKind::script, "Ada", Role::owner, {}).value().secret;
+  ASSERT_TRUE(store->accounts().create("Ada", "", Role::owner));
+  const auto token =
+      store->tokens().create(TokenKind::script, "Ada", Role::owner, {}).value().secret;
   auto rows = PgConnection::connect(dsn)->query(
       "SELECT octet_length(hash)::bigint, position(convert_to($1, 'UTF8') in hash) "
       "FROM tokens",
@@ -68,33 +78,34 @@ TEST(Tokens, secrets_are_not_in_the_database) {
 TEST(Tokens, an_owner_link_opens_sessions_until_it_is_revoked) {
   auto store = test::fresh_store();
   const auto link =
-      store->create_token(TokenKind::owner_link, "owner", Role::owner, {}).value().secret;
-  const auto first = store->redeem_owner_link(link, seconds(60)).value();
-  const auto second = store->redeem_owner_link(link, seconds(60)).value();
+      store->tokens().create(TokenKind::owner_link, "owner", Role::owner, {}).value().secret;
+  const auto first = store->tokens().redeem_owner_link(link, seconds(60)).value();
+  const auto second = store->tokens().redeem_owner_link(link, seconds(60)).value();
   ASSERT_TRUE(first && second);
   EXPECT_NE(*first, *second);
-  EXPECT_EQ(store->find_token(*first).value()->kind, TokenKind::session);
-  EXPECT_EQ(store->find_token(*first).value()->roles.everywhere, Role::owner);
-  EXPECT_FALSE(store->redeem_owner_link(*first, seconds(60)).value());  // a session is no link
-  EXPECT_FALSE(store->redeem_owner_link("guess", seconds(60)).value());
-  ASSERT_TRUE(store->revoke_token(link));
-  EXPECT_FALSE(store->redeem_owner_link(link, seconds(60)).value());
-  EXPECT_TRUE(store->find_token(*first).value());
+  EXPECT_EQ(store->tokens().find(*first).value()->kind, TokenKind::session);
+  EXPECT_EQ(store->tokens().find(*first).value()->roles.everywhere, Role::owner);
+  EXPECT_FALSE(
+      store->tokens().redeem_owner_link(*first, seconds(60)).value());  // a session is no link
+  EXPECT_FALSE(store->tokens().redeem_owner_link("guess", seconds(60)).value());
+  ASSERT_TRUE(store->tokens().revoke(link));
+  EXPECT_FALSE(store->tokens().redeem_owner_link(link, seconds(60)).value());
+  EXPECT_TRUE(store->tokens().find(*first).value());
 }
 
 TEST(People, names_are_one_persons_in_any_case) {
   auto store = test::fresh_store();
-  const Person ada = store->create_person("Ada", "Ada L.", Role::annotator).value();
-  EXPECT_EQ(store->create_person("aDA", "", Role::viewer).error().code, ErrorCode::conflict);
-  EXPECT_EQ(store->person("ADA").value().id, ada.id);
-  EXPECT_EQ(store->person("nobody").error().code, ErrorCode::not_found);
-  EXPECT_EQ(store->person("\xff").error().code, ErrorCode::not_found);
-  EXPECT_EQ(store->password_of("ada").value(), "");
-  ASSERT_TRUE(store->set_password("ada", "a hash", {}));
-  EXPECT_EQ(store->password_of("ADA").value(), "a hash");
-  EXPECT_TRUE(store->person("Ada").value().has_password);
+  const Person ada = store->accounts().create("Ada", "Ada L.", Role::annotator).value();
+  EXPECT_EQ(store->accounts().create("aDA", "", Role::viewer).error().code, ErrorCode::conflict);
+  EXPECT_EQ(store->accounts().find("ADA").value().id, ada.id);
+  EXPECT_EQ(store->accounts().find("nobody").error().code, ErrorCode::not_found);
+  EXPECT_EQ(store->accounts().find("\xff").error().code, ErrorCode::not_found);
+  EXPECT_EQ(store->accounts().password_of("ada").value(), "");
+  ASSERT_TRUE(store->accounts().set_password("ada", "a hash", {}));
+  EXPECT_EQ(store->accounts().password_of("ADA").value(), "a hash");
+  EXPECT_TRUE(store->accounts().find("Ada").value().has_password);
   std::vector<std::string> names;
-  const auto people = store->people().value();
+  const auto people = store->accounts().all().value();
   for (const Person& person : people) names.push_back(person.name);
   EXPECT_EQ(names, (std::vector<std::string>{"Ada", "owner"}));
 }
@@ -105,150 +116,155 @@ TEST(People, names_for_signing_in_are_plain) {
                                  "\xc3\xa4"
                                  "da",
                                  "\xe2\x84\xaairk", "\xff"})
-    EXPECT_EQ(store->create_person(name, "", Role::viewer).error().code, ErrorCode::invalid)
+    EXPECT_EQ(store->accounts().create(name, "", Role::viewer).error().code, ErrorCode::invalid)
         << name;
-  EXPECT_EQ(store->create_person(std::string(65, 'x'), "", Role::viewer).error().code,
+  EXPECT_EQ(store->accounts().create(std::string(65, 'x'), "", Role::viewer).error().code,
             ErrorCode::invalid);
-  ASSERT_TRUE(store->create_person("kirk", "", Role::viewer));
-  ASSERT_TRUE(store->set_password("kirk", "a hash", {}));
-  EXPECT_EQ(store->password_of("\xe2\x84\xaairk").value(), "")
+  ASSERT_TRUE(store->accounts().create("kirk", "", Role::viewer));
+  ASSERT_TRUE(store->accounts().set_password("kirk", "a hash", {}));
+  EXPECT_EQ(store->accounts().password_of("\xe2\x84\xaairk").value(), "")
       << "the sign of Kelvin is a k in lower case";
-  EXPECT_TRUE(store->create_person("a@b.c-d_9", "", Role::viewer));
+  EXPECT_TRUE(store->accounts().create("a@b.c-d_9", "", Role::viewer));
 }
 
 TEST(People, a_session_is_opened_only_by_the_password_that_holds) {
   auto store = test::fresh_store();
-  ASSERT_TRUE(store->create_person("Ada", "", Role::annotator));
-  ASSERT_TRUE(store->set_password("Ada", "new", {}));
+  ASSERT_TRUE(store->accounts().create("Ada", "", Role::annotator));
+  ASSERT_TRUE(store->accounts().set_password("Ada", "new", {}));
   const auto open = [&](const std::string& hash) {
-    return store->create_token(TokenKind::session, "ada", Role::viewer, seconds(60), "", hash);
+    return store->tokens().create(TokenKind::session, "ada", Role::viewer, seconds(60), "", hash);
   };
   EXPECT_EQ(open("old").error().code, ErrorCode::unauthenticated);
   const auto first = open("new").value().secret;
-  EXPECT_EQ(store->find_token(first).value()->roles.everywhere, Role::annotator);
+  EXPECT_EQ(store->tokens().find(first).value()->roles.everywhere, Role::annotator);
   for (std::size_t i = 0; i < kMostTokens; ++i) ASSERT_TRUE(open("new"));
-  EXPECT_EQ(store->tokens("Ada", TokenKind::session)->size(), kMostTokens);
-  EXPECT_FALSE(store->find_token(first).value()) << "the oldest gives way";
+  EXPECT_EQ(store->tokens().of_user("Ada", TokenKind::session)->size(), kMostTokens);
+  EXPECT_FALSE(store->tokens().find(first).value()) << "the oldest gives way";
 }
 
 TEST(People, of_links_only_the_newest_is_good_and_none_once_there_is_a_password) {
   auto store = test::fresh_store();
   const auto link = [&] {
-    return store->create_link(TokenKind::owner_link, "owner", seconds(60)).value().secret;
+    return store->tokens().create_link(TokenKind::owner_link, "owner", seconds(60)).value().secret;
   };
   const auto old = link(), now = link();
-  EXPECT_FALSE(store->redeem_owner_link(old, seconds(60)).value());
-  EXPECT_TRUE(store->redeem_owner_link(now, seconds(60)).value());
-  ASSERT_TRUE(store->set_password("owner", "hash", {}));
-  EXPECT_FALSE(store->redeem_owner_link(now, seconds(60)).value());
+  EXPECT_FALSE(store->tokens().redeem_owner_link(old, seconds(60)).value());
+  EXPECT_TRUE(store->tokens().redeem_owner_link(now, seconds(60)).value());
+  ASSERT_TRUE(store->accounts().set_password("owner", "hash", {}));
+  EXPECT_FALSE(store->tokens().redeem_owner_link(now, seconds(60)).value());
 }
 
 TEST(People, a_token_does_no_more_than_its_person_and_a_session_the_same) {
   auto store = test::fresh_store();
-  const Person ada = store->create_person("Ada", "", Role::curator).value();
+  const Person ada = store->accounts().create("Ada", "", Role::curator).value();
   const auto session =
-      store->create_token(TokenKind::session, "Ada", Role::curator, seconds(60)).value().secret;
-  const auto weak = store->create_token(TokenKind::script, "Ada", Role::viewer, {}).value().secret;
-  const auto strong = store->create_token(TokenKind::script, "Ada", Role::owner, {}).value().secret;
+      store->tokens().create(TokenKind::session, "Ada", Role::curator, seconds(60)).value().secret;
+  const auto weak =
+      store->tokens().create(TokenKind::script, "Ada", Role::viewer, {}).value().secret;
+  const auto strong =
+      store->tokens().create(TokenKind::script, "Ada", Role::owner, {}).value().secret;
   const auto role_of = [&](const std::string& secret) {
-    return store->find_token(secret).value()->roles.everywhere;
+    return store->tokens().find(secret).value()->roles.everywhere;
   };
   EXPECT_EQ(role_of(session), Role::curator);
   EXPECT_EQ(role_of(weak), Role::viewer);
   EXPECT_EQ(role_of(strong), Role::curator);
-  ASSERT_TRUE(store->change_person(ada.id, {{}, Role::administrator, {}}));
+  ASSERT_TRUE(store->accounts().update(ada.id, {{}, Role::administrator, {}}));
   EXPECT_EQ(role_of(session), Role::administrator);
   EXPECT_EQ(role_of(weak), Role::viewer);
   const auto invitation =
-      store->create_link(TokenKind::invitation, "Ada", seconds(60)).value().secret;
-  ASSERT_TRUE(store->change_person(ada.id, {{}, {}, true}));
-  EXPECT_EQ(store->create_token(TokenKind::script, "Ada", Role::viewer, {}).error().code,
+      store->tokens().create_link(TokenKind::invitation, "Ada", seconds(60)).value().secret;
+  ASSERT_TRUE(store->accounts().update(ada.id, {{}, {}, true}));
+  EXPECT_EQ(store->tokens().create(TokenKind::script, "Ada", Role::viewer, {}).error().code,
             ErrorCode::not_found);
   for (const auto& secret : {session, weak, strong})
-    EXPECT_FALSE(store->find_token(secret).value());
+    EXPECT_FALSE(store->tokens().find(secret).value());
   // What somebody says of themselves at the same time takes nothing of it back.
-  EXPECT_TRUE(store->change_person(ada.id, {"Ada L.", {}, {}}).value().disabled);
-  ASSERT_TRUE(store->change_person(ada.id, {{}, {}, false}));
-  for (const auto& ended : {session, invitation}) EXPECT_FALSE(store->find_token(ended).value());
-  EXPECT_TRUE(store->find_token(weak).value());
+  EXPECT_TRUE(store->accounts().update(ada.id, {"Ada L.", {}, {}}).value().disabled);
+  ASSERT_TRUE(store->accounts().update(ada.id, {{}, {}, false}));
+  for (const auto& ended : {session, invitation}) EXPECT_FALSE(store->tokens().find(ended).value());
+  EXPECT_TRUE(store->tokens().find(weak).value());
 }
 
 TEST(People, an_invitation_is_good_for_one_of_many_who_use_it_at_once) {
   auto store = test::fresh_store();
-  ASSERT_TRUE(store->create_person("Ada", "", Role::annotator));
-  const auto invitation =
-      store->create_token(TokenKind::invitation, "Ada", Role::annotator, seconds(60))
-          .value()
-          .secret;
-  EXPECT_FALSE(store->redeem_owner_link(invitation, seconds(60)).value());
+  ASSERT_TRUE(store->accounts().create("Ada", "", Role::annotator));
+  const auto invitation = store->tokens()
+                              .create(TokenKind::invitation, "Ada", Role::annotator, seconds(60))
+                              .value()
+                              .secret;
+  EXPECT_FALSE(store->tokens().redeem_owner_link(invitation, seconds(60)).value());
   std::atomic<int> in = 0;
   {
     std::vector<std::jthread> browsers;
     for (int i = 0; i < 8; ++i)
       browsers.emplace_back([&] {
         const auto session =
-            store->accept_invitation(invitation, "hash", "Ada L.", seconds(60), "");
+            store->accounts().accept_invitation(invitation, "hash", "Ada L.", seconds(60), "");
         if (session && *session) ++in;
       });
   }
   EXPECT_EQ(in, 1);
-  EXPECT_EQ(store->person("Ada").value().full_name, "Ada L.");
-  EXPECT_FALSE(store->accept_invitation("guess", "hash", {}, seconds(60), "").value());
+  EXPECT_EQ(store->accounts().find("Ada").value().full_name, "Ada L.");
+  EXPECT_FALSE(store->accounts().accept_invitation("guess", "hash", {}, seconds(60), "").value());
 }
 
 TEST(People, in_a_project_somebody_may_do_more) {
   auto store = test::fresh_store();
   Project villa;
   villa.name = "Villa";
-  const auto project = store->create_project(villa).value().id;
-  ASSERT_TRUE(store->create_person("Gus", "Gustav G.", Role::guest));
+  const auto project = store->projects().create(villa).value().id;
+  ASSERT_TRUE(store->accounts().create("Gus", "Gustav G.", Role::guest));
   const auto session =
-      store->create_token(TokenKind::session, "Gus", Role::guest, seconds(60)).value().secret;
-  const auto weak = store->create_token(TokenKind::script, "Gus", Role::viewer, {}).value().secret;
+      store->tokens().create(TokenKind::session, "Gus", Role::guest, seconds(60)).value().secret;
+  const auto weak =
+      store->tokens().create(TokenKind::script, "Gus", Role::viewer, {}).value().secret;
   const auto roles_of = [&](const std::string& secret) {
-    return store->find_token(secret).value()->roles;
+    return store->tokens().find(secret).value()->roles;
   };
   EXPECT_EQ(roles_of(session), Roles{});
-  EXPECT_EQ(store->put_member(project, "gus", Role::annotator).value().person.full_name,
+  EXPECT_EQ(store->members().put(project, "gus", Role::annotator).value().person.full_name,
             "Gustav G.");
-  ASSERT_TRUE(store->put_member(project, "Gus", Role::curator)) << "in place of the other";
+  ASSERT_TRUE(store->members().put(project, "Gus", Role::curator)) << "in place of the other";
   EXPECT_EQ(roles_of(session), (Roles{Role::guest, {{project, Role::curator}}}));
   EXPECT_EQ(roles_of(weak), (Roles{Role::guest, {{project, Role::viewer}}}));
-  const auto members = store->members(project).value();
+  const auto members = store->members().of_project(project).value();
   ASSERT_EQ(members.size(), 1u);
   EXPECT_EQ(members[0].person.name, "Gus");
   EXPECT_EQ(members[0].role, Role::curator);
   for (const Role role : {Role::guest, Role::administrator, Role::owner})
-    EXPECT_EQ(store->put_member(project, "Gus", role).error().code, ErrorCode::invalid);
-  EXPECT_EQ(store->put_member(project, "nobody", Role::viewer).error().code, ErrorCode::not_found);
-  EXPECT_EQ(store->put_member(project + 1, "Gus", Role::viewer).error().code, ErrorCode::not_found);
-  EXPECT_EQ(store->remove_member(project + 1, "Gus").error().code, ErrorCode::not_found);
-  ASSERT_TRUE(store->remove_member(project, "GUS"));
-  EXPECT_EQ(store->remove_member(project, "Gus").error().code, ErrorCode::not_found);
+    EXPECT_EQ(store->members().put(project, "Gus", role).error().code, ErrorCode::invalid);
+  EXPECT_EQ(store->members().put(project, "nobody", Role::viewer).error().code,
+            ErrorCode::not_found);
+  EXPECT_EQ(store->members().put(project + 1, "Gus", Role::viewer).error().code,
+            ErrorCode::not_found);
+  EXPECT_EQ(store->members().remove(project + 1, "Gus").error().code, ErrorCode::not_found);
+  ASSERT_TRUE(store->members().remove(project, "GUS"));
+  EXPECT_EQ(store->members().remove(project, "Gus").error().code, ErrorCode::not_found);
   EXPECT_EQ(roles_of(session), Roles{});
   // With the project, and with the person, it is gone.
-  ASSERT_TRUE(store->put_member(project, "Gus", Role::viewer));
-  ASSERT_TRUE(store->delete_project(project));
+  ASSERT_TRUE(store->members().put(project, "Gus", Role::viewer));
+  ASSERT_TRUE(store->projects().remove(project));
   EXPECT_EQ(roles_of(session), Roles{});
-  const auto other = store->create_project(villa).value().id;
-  ASSERT_TRUE(store->put_member(other, "Gus", Role::viewer));
-  ASSERT_TRUE(store->delete_person("Gus"));
-  EXPECT_TRUE(store->members(other).value().empty());
+  const auto other = store->projects().create(villa).value().id;
+  ASSERT_TRUE(store->members().put(other, "Gus", Role::viewer));
+  ASSERT_TRUE(store->accounts().remove("Gus"));
+  EXPECT_TRUE(store->members().of_project(other).value().empty());
 }
 
 TEST(Tokens, of_one_project_are_good_there_alone_and_go_with_it) {
   auto store = test::fresh_store();
   Project villa;
   villa.name = "Villa";
-  const auto project = store->create_project(villa).value().id;
+  const auto project = store->projects().create(villa).value().id;
   for (const auto& [name, role] :
        {std::pair("root", Role::administrator), {"Ada", Role::annotator}, {"Gus", Role::guest}})
-    ASSERT_TRUE(store->create_person(name, "", role));
+    ASSERT_TRUE(store->accounts().create(name, "", role));
   const auto token_of = [&](const char* name, Role role) {
-    return store->create_token(TokenKind::script, name, role, {}, "", {}, project);
+    return store->tokens().create(TokenKind::script, name, role, {}, "", {}, project);
   };
   const auto roles_of = [&](const std::string& secret) {
-    return store->find_token(secret).value()->roles;
+    return store->tokens().find(secret).value()->roles;
   };
   const auto roots = token_of("root", Role::curator).value().secret,
              adas = token_of("Ada", Role::curator).value().secret;
@@ -259,44 +275,46 @@ TEST(Tokens, of_one_project_are_good_there_alone_and_go_with_it) {
       << "no more than its person";
   EXPECT_EQ(roles_of(weak), (Roles{Role::guest, {{project, Role::viewer}}}));
   EXPECT_EQ(roles_of(of_guest), Roles{}) << "who has no role there gives none";
-  ASSERT_TRUE(store->put_member(project, "Gus", Role::curator));
+  ASSERT_TRUE(store->members().put(project, "Gus", Role::curator));
   EXPECT_EQ(roles_of(of_guest), (Roles{Role::guest, {{project, Role::viewer}}}));
-  EXPECT_EQ(store->tokens("Ada", TokenKind::script)->at(0).project, "villa");
+  EXPECT_EQ(store->tokens().of_user("Ada", TokenKind::script)->at(0).project, "villa");
   for (const Role role : {Role::guest, Role::administrator, Role::owner})
     EXPECT_EQ(token_of("root", role).error().code, ErrorCode::invalid);
-  EXPECT_EQ(store->create_token(TokenKind::script, "Ada", Role::viewer, {}, "", {}, project + 1)
+  EXPECT_EQ(store->tokens()
+                .create(TokenKind::script, "Ada", Role::viewer, {}, "", {}, project + 1)
                 .error()
                 .code,
             ErrorCode::not_found);
   const auto everywhere =
-      store->create_token(TokenKind::script, "Ada", Role::viewer, {}).value().secret;
-  ASSERT_TRUE(store->delete_project(project));
+      store->tokens().create(TokenKind::script, "Ada", Role::viewer, {}).value().secret;
+  ASSERT_TRUE(store->projects().remove(project));
   for (const auto& secret : {roots, adas, weak, of_guest})
-    EXPECT_FALSE(store->find_token(secret).value());
-  EXPECT_TRUE(store->find_token(everywhere).value());
+    EXPECT_FALSE(store->tokens().find(secret).value());
+  EXPECT_TRUE(store->tokens().find(everywhere).value());
 }
 
 TEST(People, of_who_is_deleted_no_name_is_left_anywhere) {
   const auto dsn = test::fresh_database();
   auto store = test::open_store(dsn);
-  const Person ada = store->create_person("Ada.Lovelace", "The Countess", Role::annotator).value();
-  ASSERT_TRUE(store->create_token(TokenKind::script, "Ada.Lovelace", Role::annotator, {},
-                                  "Countess's script"));
+  const Person ada =
+      store->accounts().create("Ada.Lovelace", "The Countess", Role::annotator).value();
+  ASSERT_TRUE(store->tokens().create(TokenKind::script, "Ada.Lovelace", Role::annotator, {},
+                                     "Countess's script"));
   Table finds;
   finds.project_id = 1;
   finds.name = "Finds";
   finds.columns.resize(1);
   finds.columns[0].name = "Code";
-  finds = store->create_table(finds).value();
+  finds = store->tables().create(finds).value();
   WriteRecords asked;
   asked.records = {{{}, {{finds.columns[0].id, "F 1"}}, {}}};
-  ASSERT_TRUE(store->write_records(finds.id, asked, "Ada.Lovelace"));
+  ASSERT_TRUE(store->records().write(finds.id, asked, "Ada.Lovelace"));
   const auto answer = [](const Project&) {
     return nlohmann::json{{"status", 201}, {"body", R"({"user":"Ada.Lovelace"})"}};
   };
   Project villa;
   villa.name = "Villa";
-  ASSERT_TRUE(store->create_project(villa, {"her key", answer}));
+  ASSERT_TRUE(store->projects().create(villa, {"her key", answer}));
   const auto group = store->groups().create("Students", {"Ada.Lovelace"}).value().group.id;
   ASSERT_TRUE(store->groups().put(1, group, Role::viewer, "Ada.Lovelace"));
   ASSERT_TRUE(store->groups().change(group, {.remove = {"Ada.Lovelace"}}, "owner"));
@@ -312,9 +330,9 @@ TEST(People, of_who_is_deleted_no_name_is_left_anywhere) {
   decision.reviewed = {{1}, Review::rejected};
   decision.disable = {1};
   ASSERT_TRUE(test::save(writer, decision));
-  ASSERT_TRUE(store->delete_person("ada.lovelace"));
+  ASSERT_TRUE(store->accounts().remove("ada.lovelace"));
   const std::string former = "former-" + std::to_string(ada.id);
-  const auto edits = store->history(layer.id, 10, 0)->rows;
+  const auto edits = store->journal().history(layer.id, 10, 0)->rows;
   EXPECT_EQ(edits.at(1).user, former);
   EXPECT_EQ(edits[1].reviewer->reason, "@" + former + ": too far, b@ada.lovelacex.org");
   decision.record["user"] = former;
@@ -335,8 +353,8 @@ TEST(People, of_who_is_deleted_no_name_is_left_anywhere) {
                                          Params().text(former));
   EXPECT_EQ(history->integer(0, 0), 1);
   for (const char* taken : {"former-7", "Former-8"})
-    EXPECT_EQ(store->create_person(taken, "", Role::viewer).error().code, ErrorCode::conflict);
-  EXPECT_TRUE(store->create_person("Ada.Lovelace", "", Role::viewer));
+    EXPECT_EQ(store->accounts().create(taken, "", Role::viewer).error().code, ErrorCode::conflict);
+  EXPECT_TRUE(store->accounts().create("Ada.Lovelace", "", Role::viewer));
 }
 
 TEST(Passwords, fit_only_their_own_hash) {
@@ -366,45 +384,48 @@ Project named(const std::string& name) {
 TEST(Answers, an_answer_is_kept_with_the_change_for_seven_days) {
   const auto dsn = test::fresh_database();
   auto store = test::open_store(dsn);
-  EXPECT_FALSE(store->find_answer("k").value());
-  const auto made = store->create_project(named("Villa"), answer_of("k")).value();
+  EXPECT_FALSE(store->answers().find("k").value());
+  const auto made = store->projects().create(named("Villa"), answer_of("k")).value();
   const nlohmann::json first = {{"status", 201}, {"id", made.id}, {"area", 0.1}};
-  EXPECT_EQ(store->find_answer("k").value(), first);
+  EXPECT_EQ(store->answers().find("k").value(), first);
   auto connection = PgConnection::connect(dsn);
   ASSERT_TRUE(connection->script("UPDATE answers SET time = time - interval '6 days 23 hours'"));
-  EXPECT_EQ(store->find_answer("k").value(), first);
+  EXPECT_EQ(store->answers().find("k").value(), first);
   ASSERT_TRUE(connection->script("UPDATE answers SET time = time - interval '2 hours'"));
-  EXPECT_FALSE(store->find_answer("k").value());
-  const auto again = store->create_project(named("Villa"), answer_of("k")).value();
-  EXPECT_EQ(store->find_answer("k").value()->at("id"), again.id);
+  EXPECT_FALSE(store->answers().find("k").value());
+  const auto again = store->projects().create(named("Villa"), answer_of("k")).value();
+  EXPECT_EQ(store->answers().find("k").value()->at("id"), again.id);
 }
 
 TEST(Answers, of_two_calls_with_one_key_only_one_changes_anything) {
   auto store = test::fresh_store();
-  ASSERT_TRUE(store->create_project(named("Villa"), answer_of("k")));
-  const auto second = store->create_project(named("Villa"), answer_of("k"));
+  ASSERT_TRUE(store->projects().create(named("Villa"), answer_of("k")));
+  const auto second = store->projects().create(named("Villa"), answer_of("k"));
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code, ErrorCode::conflict);
-  EXPECT_EQ(store->projects()->size(), 2u) << "`default` and the first";
+  EXPECT_EQ(store->projects().all()->size(), 2u) << "`default` and the first";
 }
 
 TEST(Answers, what_changes_nothing_keeps_no_answer) {
   auto store = test::fresh_store();
-  EXPECT_FALSE(store->create_project(named(""), answer_of("k")));
-  EXPECT_FALSE(store->delete_project(1, {"gone", [] { return nlohmann::json{{"status", 204}}; }}));
-  EXPECT_FALSE(store->find_answer("k").value());
-  EXPECT_FALSE(store->find_answer("gone").value());
+  EXPECT_FALSE(store->projects().create(named(""), answer_of("k")));
+  EXPECT_FALSE(store->projects().remove(1, {"gone", [] {
+                                              return nlohmann::json{{"status", 204}};
+                                            }}));
+  EXPECT_FALSE(store->answers().find("k").value());
+  EXPECT_FALSE(store->answers().find("gone").value());
 }
 
 TEST(Answers, bad_keys_are_the_callers_mistake) {
   auto store = test::fresh_store();
-  EXPECT_EQ(store->find_answer("").error().code, ErrorCode::malformed);
+  EXPECT_EQ(store->answers().find("").error().code, ErrorCode::malformed);
   for (const std::string& key :
        {std::string(256, 'k'), std::string("a\0b", 3), std::string("\xff")}) {
-    EXPECT_EQ(store->find_answer(key).error().code, ErrorCode::malformed);
-    EXPECT_EQ(store->create_project(named("x"), answer_of(key)).error().code, ErrorCode::malformed);
+    EXPECT_EQ(store->answers().find(key).error().code, ErrorCode::malformed);
+    EXPECT_EQ(store->projects().create(named("x"), answer_of(key)).error().code,
+              ErrorCode::malformed);
   }
-  EXPECT_EQ(store->projects()->size(), 1u);
+  EXPECT_EQ(store->projects().all()->size(), 1u);
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <random>
 #include <set>
 
+#include "store/records.h"
+#include "store/tables.h"
 #include "support/test_cluster.h"
 
 namespace strata::store {
@@ -90,7 +92,7 @@ class RandomWork {
     Table table;
     table.project_id = 1;
     table.name = "Units";
-    table_ = store_->create_table(table)->id;
+    table_ = store_->tables().create(table)->id;
   }
 
   void step() {
@@ -112,14 +114,14 @@ class RandomWork {
     past_.resize(static_cast<std::size_t>(oracle_.sequence()) + 1, expected);
     const auto at = random_() % past_.size();
     ASSERT_EQ(content(static_cast<std::int64_t>(at)), past_[at]) << "at " << at;
-    const Table table = store_->table(std::to_string(table_), Role::owner).value();
+    const Table table = store_->tables().find(std::to_string(table_), Role::owner).value();
     ASSERT_EQ(table.sequence, oracle_.sequence());
     ASSERT_EQ(table.records, static_cast<std::int64_t>(expected.size()));
   }
 
  private:
   json content(std::optional<std::int64_t> at) {
-    auto page = store_->records(table_, Role::owner, {{}, {}, at, 1000, 0});
+    auto page = store_->records().page(table_, Role::owner, {{}, {}, at, 1000, 0});
     EXPECT_TRUE(page) << page.error().detail;
     json all = json::object();
     if (!page) return all;
@@ -152,7 +154,7 @@ class RandomWork {
     column.name = "c" + std::to_string(columns_.size());
     column.kind = ColumnKind::integer;
     if (random_() % 2) column.default_value = 7;
-    const auto change = store_->create_column(table_, column, user);
+    const auto change = store_->tables().create_column(table_, column, user);
     ASSERT_TRUE(change) << change.error().detail;
     const auto id = change->table.columns.back().id;
     std::map<Cell, json> cells{{{0, id}, true}};
@@ -167,7 +169,7 @@ class RandomWork {
     const auto choice = shown();
     if (choice.empty()) return;
     const auto id = choice[random_() % choice.size()];
-    ASSERT_TRUE(store_->drop_column(table_, id, {}, user));
+    ASSERT_TRUE(store_->tables().drop_column(table_, id, {}, user));
     oracle_.write(user, {{{0, id}, false}});
   }
 
@@ -196,7 +198,7 @@ class RandomWork {
           if (!input.values.contains(column)) cells[{key, column}] = defaults_[column];
       asked.records.push_back(std::move(input));
     }
-    const auto change = store_->write_records(table_, asked, user);
+    const auto change = store_->records().write(table_, asked, user);
     ASSERT_TRUE(change && change->problems.empty());
     ASSERT_EQ(change->sequence > 0, !cells.empty());
     if (!cells.empty()) oracle_.write(user, std::move(cells));
@@ -206,7 +208,7 @@ class RandomWork {
     const auto there = records();
     if (there.empty()) return;
     const auto key = there[random_() % there.size()];
-    ASSERT_TRUE(store_->delete_record(table_, key, {}, user));
+    ASSERT_TRUE(store_->records().remove(table_, key, {}, user));
     std::map<Cell, json> cells{{{key, 0}, false}};
     for (const auto column : columns_) cells[{key, column}] = nullptr;
     oracle_.write(user, std::move(cells));
@@ -214,7 +216,7 @@ class RandomWork {
 
   void flip(const std::string& user, bool redo) {
     Oracle::Edit* edit = redo ? oracle_.redoable(user) : oracle_.undoable(user);
-    const auto plan = store_->plan_table_undo(table_, user, redo);
+    const auto plan = store_->tables().plan_undo(table_, user, redo);
     ASSERT_EQ(plan.has_value(), edit != nullptr) << (plan ? "" : plan.error().detail);
     if (!edit) return;
     const auto before = records();
@@ -224,7 +226,7 @@ class RandomWork {
     std::set_difference(before.begin(), before.end(), after.begin(), after.end(),
                         std::back_inserter(gone));
     EXPECT_EQ(plan->vanishing, gone);
-    const auto change = store_->undo_table(table_, user, redo, plan->table_sequence);
+    const auto change = store_->tables().undo(table_, user, redo, plan->table_sequence);
     ASSERT_TRUE(change) << change.error().detail;
   }
 

@@ -2,8 +2,13 @@
 
 #include <thread>
 
+#include "store/layers.h"
 #include "store/migrations.h"
+#include "store/models.h"
 #include "store/pg.h"
+#include "store/projects.h"
+#include "store/records.h"
+#include "store/tables.h"
 #include "strata_dirs.h"
 #include "support/test_cluster.h"
 
@@ -27,7 +32,7 @@ class Tables : public ::testing::Test {
     table.project_id = 1;
     table.name = name;
     table.columns = std::move(columns);
-    auto made = store_->create_table(table);
+    auto made = store_->tables().create(table);
     EXPECT_TRUE(made) << made.error().detail;
     return made.value_or(Table{});
   }
@@ -37,24 +42,24 @@ class Tables : public ::testing::Test {
                           const std::string& user = "ana",
                           std::optional<std::int64_t> version = {}) {
     RecordInput input{key, {}, version};
-    const Table now = store_->table(std::to_string(table.id), Role::owner).value();
+    const Table now = store_->tables().find(std::to_string(table.id), Role::owner).value();
     for (const auto& [slug, value] : values)
       input.values[find_column(now.columns, slug)->id] = value;
     WriteRecords asked;
     asked.records = {input};
-    auto change = store_->write_records(table.id, asked, user);
+    auto change = store_->records().write(table.id, asked, user);
     if (change && !change->problems.empty())
       return tl::unexpected(change->problems.front().problem);
     return change;
   }
   Result<TableChange> undo(const Table& table, const std::string& user = "ana", bool redo = false) {
-    auto plan = store_->plan_table_undo(table.id, user, redo);
+    auto plan = store_->tables().plan_undo(table.id, user, redo);
     if (!plan) return tl::unexpected(plan.error());
-    return store_->undo_table(table.id, user, redo, plan->table_sequence);
+    return store_->tables().undo(table.id, user, redo, plan->table_sequence);
   }
   // {key: {slug: value}} without what is null.
   json content(const Table& table, std::optional<std::int64_t> at = {}) {
-    auto page = store_->records(table.id, Role::owner, {{}, {}, at, 1000, 0});
+    auto page = store_->records().page(table.id, Role::owner, {{}, {}, at, 1000, 0});
     EXPECT_TRUE(page) << page.error().detail;
     json all = json::object();
     if (page)
@@ -69,13 +74,13 @@ class Tables : public ::testing::Test {
   std::vector<std::int64_t> keys(const Table& table,
                                  std::vector<std::pair<std::string, bool>> order) {
     std::vector<std::int64_t> found;
-    auto page = store_->records(table.id, Role::owner, {std::move(order), {}, {}, 1000, 0});
+    auto page = store_->records().page(table.id, Role::owner, {std::move(order), {}, {}, 1000, 0});
     EXPECT_TRUE(page) << page.error().detail;
     for (const Record& record : page->records) found.push_back(record.key);
     return found;
   }
   Table now(const Table& table) {
-    return store_->table(std::to_string(table.id), Role::owner).value();
+    return store_->tables().find(std::to_string(table.id), Role::owner).value();
   }
 
   const std::string dsn_ = test::fresh_database();
@@ -124,20 +129,20 @@ TEST_F(Tables, a_catalogue_keeps_names_in_any_language) {
   wished.name = "Ενότητες";
   wished.labels = {{"en", "Units"}};
   wished.columns = {name, column("Όνομα"), column("Όνομα")};
-  auto made = store_->create_table(wished);
+  auto made = store_->tables().create(wished);
   ASSERT_TRUE(made) << made.error().detail;
   EXPECT_EQ(made->columns[0].labels, name.labels);
   EXPECT_EQ(made->columns[1].slug, "n");
   EXPECT_EQ(made->columns[2].slug, "n-2");
   made->name = "Units";
   made->labels["de"] = "Einheiten";
-  auto renamed = store_->update_table(*made);
+  auto renamed = store_->tables().update(*made);
   ASSERT_TRUE(renamed) << renamed.error().detail;
   EXPECT_EQ(renamed->version, made->version + 1);
   EXPECT_EQ(renamed->labels.at("de"), "Einheiten");
-  EXPECT_EQ(store_->update_table(*made).error().code, ErrorCode::stale);
-  EXPECT_EQ(store_->tables(1, Role::owner)->size(), 1u);
-  EXPECT_EQ(store_->table("units", Role::owner).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->tables().update(*made).error().code, ErrorCode::stale);
+  EXPECT_EQ(store_->tables().of_project(1, Role::owner)->size(), 1u);
+  EXPECT_EQ(store_->tables().find("units", Role::owner).error().code, ErrorCode::not_found);
 }
 
 TEST_F(Tables, keys_are_never_given_again) {
@@ -145,7 +150,7 @@ TEST_F(Tables, keys_are_never_given_again) {
   EXPECT_EQ(put(table, {}, {{"name", "a"}})->created, std::vector<std::int64_t>{1});
   EXPECT_EQ(put(table, 7, {{"name", "b"}})->created, std::vector<std::int64_t>{7});
   EXPECT_EQ(put(table, {}, {{"name", "c"}})->created, std::vector<std::int64_t>{8});
-  ASSERT_TRUE(store_->delete_record(table.id, 8, {}, "ana"));
+  ASSERT_TRUE(store_->records().remove(table.id, 8, {}, "ana"));
   EXPECT_EQ(put(table, 8, {{"name", "d"}}).error().title, "Key used before");
   EXPECT_EQ(put(table, {}, {{"name", "d"}})->created, std::vector<std::int64_t>{9});
   EXPECT_EQ(put(table, 4294967295, {})->created, std::vector<std::int64_t>{4294967295});
@@ -158,7 +163,7 @@ TEST_F(Tables, of_two_who_change_a_record_the_second_is_told) {
   const auto first = put(table, 1, {{"name", "a"}})->records.at(0).version;
   ASSERT_TRUE(put(table, 1, {{"name", "b"}}, "ana", first));
   EXPECT_EQ(put(table, 1, {{"name", "c"}}, "ben", first).error().code, ErrorCode::stale);
-  EXPECT_EQ(store_->delete_record(table.id, 1, first, "ben").error().code, ErrorCode::stale);
+  EXPECT_EQ(store_->records().remove(table.id, 1, first, "ben").error().code, ErrorCode::stale);
   EXPECT_EQ(content(table)["1"]["name"], "b");
 }
 
@@ -186,19 +191,19 @@ TEST_F(Tables, required_and_unique_columns_hold_for_every_way_in) {
   const auto code_id = table.columns[0].id;
   WriteRecords both;
   both.records = {{1, {{code_id, "B"}}}, {2, {{code_id, "A"}}}};
-  EXPECT_TRUE(store_->write_records(table.id, both, "ana")->problems.empty());
+  EXPECT_TRUE(store_->records().write(table.id, both, "ana")->problems.empty());
   EXPECT_EQ(content(table), (json{{"1", {{"code", "B"}}}, {"2", {{"code", "A"}}}}));
   both.records = {{3, {{code_id, "C"}}}, {4, {{code_id, "C"}}}};
-  EXPECT_EQ(store_->write_records(table.id, both, "ana")->problems.size(), 1u);
+  EXPECT_EQ(store_->records().write(table.id, both, "ana")->problems.size(), 1u);
   // A column that becomes unique looks at what is there.
   ASSERT_TRUE(put(table, 1, {{"name", "same"}}));
   ASSERT_TRUE(put(table, 2, {{"name", "same"}}));
   Column name = now(table).columns[1];
   name.unique = true;
-  EXPECT_EQ(store_->update_column(table.id, name, {}, "ana").error().title, "Not unique");
+  EXPECT_EQ(store_->tables().update_column(table.id, name, {}, "ana").error().title, "Not unique");
   name.unique = false;
   name.required = true;
-  ASSERT_TRUE(store_->update_column(table.id, name, {}, "ana"));
+  ASSERT_TRUE(store_->tables().update_column(table.id, name, {}, "ana"));
   EXPECT_EQ(put(table, 3, {{"code", "C"}}).error().field, "values.name");
 }
 
@@ -209,25 +214,26 @@ TEST_F(Tables, terms_and_relations_name_records_that_are_there) {
   term.target = terms.id;
   const Table units = make("Units", {term});
   above.target = units.id;
-  ASSERT_TRUE(store_->create_column(units.id, above, "ana"));
+  ASSERT_TRUE(store_->tables().create_column(units.id, above, "ana"));
   EXPECT_EQ(put(units, 1, {{"damage", 2}}).error().field, "values.damage");
   ASSERT_TRUE(put(units, 1, {{"damage", 1}}));
   EXPECT_EQ(put(units, 2, {{"above", {1, 3}}}).error().field, "values.above");
   ASSERT_TRUE(put(units, 2, {{"above", {1, 2}}}));  // itself, which comes with it
-  EXPECT_EQ(store_->delete_record(terms.id, 1, {}, "ana").error().title, "Record in use");
-  EXPECT_EQ(store_->delete_record(units.id, 1, {}, "ana").error().title, "Record in use");
+  EXPECT_EQ(store_->records().remove(terms.id, 1, {}, "ana").error().title, "Record in use");
+  EXPECT_EQ(store_->records().remove(units.id, 1, {}, "ana").error().title, "Record in use");
   EXPECT_EQ(undo(terms).error().code, ErrorCode::conflict);
-  ASSERT_TRUE(store_->delete_record(units.id, 2, {}, "ana"));
-  ASSERT_TRUE(store_->delete_record(units.id, 1, {}, "ana"));
-  ASSERT_TRUE(store_->delete_record(terms.id, 1, {}, "ana"));
+  ASSERT_TRUE(store_->records().remove(units.id, 2, {}, "ana"));
+  ASSERT_TRUE(store_->records().remove(units.id, 1, {}, "ana"));
+  ASSERT_TRUE(store_->records().remove(terms.id, 1, {}, "ana"));
   EXPECT_EQ(undo(units).error().title, "Cannot be undone");  // its term is gone
-  EXPECT_EQ(store_->delete_table(terms.id).error().title, "Table in use");
-  ASSERT_TRUE(store_->delete_table(units.id));
-  ASSERT_TRUE(store_->delete_table(terms.id));
-  EXPECT_EQ(store_->tables(1, Role::owner)->size(), 0u);
+  EXPECT_EQ(store_->tables().remove(terms.id).error().title, "Table in use");
+  ASSERT_TRUE(store_->tables().remove(units.id));
+  ASSERT_TRUE(store_->tables().remove(terms.id));
+  EXPECT_EQ(store_->tables().of_project(1, Role::owner)->size(), 0u);
   Column foreign = column("x", ColumnKind::term);
   foreign.target = terms.id;
-  EXPECT_EQ(store_->create_column(make("New", {}).id, foreign, "ana").error().field, "target");
+  EXPECT_EQ(store_->tables().create_column(make("New", {}).id, foreign, "ana").error().field,
+            "target");
 }
 
 TEST_F(Tables, undo_takes_back_what_one_person_did_and_leaves_what_others_did) {
@@ -237,7 +243,7 @@ TEST_F(Tables, undo_takes_back_what_one_person_did_and_leaves_what_others_did) {
   ASSERT_TRUE(put(table, 1, {{"depth", 2.5}}, "ana"));
   ASSERT_TRUE(undo(table, "ana"));
   EXPECT_EQ(content(table)["1"], (json{{"name", "b"}, {"depth", 1.5}}));
-  const auto plan = store_->plan_table_undo(table.id, "ana", false).value();
+  const auto plan = store_->tables().plan_undo(table.id, "ana", false).value();
   EXPECT_EQ(plan.vanishing, std::vector<std::int64_t>{1});
   ASSERT_TRUE(undo(table, "ana"));
   EXPECT_EQ(content(table), json::object());
@@ -248,9 +254,9 @@ TEST_F(Tables, undo_takes_back_what_one_person_did_and_leaves_what_others_did) {
   EXPECT_EQ(content(table)["1"]["depth"], 2.5);
   EXPECT_EQ(undo(table, "ana", true).error().title, "Nothing to redo");
   // A plan is of its moment.
-  const auto old = store_->plan_table_undo(table.id, "ana", false).value();
+  const auto old = store_->tables().plan_undo(table.id, "ana", false).value();
   ASSERT_TRUE(put(table, 2, {}, "ben"));
-  EXPECT_EQ(store_->undo_table(table.id, "ana", false, old.table_sequence).error().code,
+  EXPECT_EQ(store_->tables().undo(table.id, "ana", false, old.table_sequence).error().code,
             ErrorCode::stale);
 }
 
@@ -259,11 +265,11 @@ TEST_F(Tables, the_past_is_read_with_the_columns_of_then) {
   ASSERT_TRUE(put(table, 1, {{"name", "a"}}));  // 1
   Column depth = column("Depth", ColumnKind::numeric);
   depth.default_value = 1;
-  ASSERT_TRUE(store_->create_column(table.id, depth, "ana"));                  // 2
-  ASSERT_TRUE(put(table, 2, {{"name", "b"}, {"depth", 3}}));                   // 3
-  ASSERT_TRUE(store_->drop_column(table.id, table.columns[0].id, {}, "ana"));  // 4
-  ASSERT_TRUE(store_->delete_record(table.id, 1, {}, "ana"));                  // 5
-  ASSERT_TRUE(undo(table));                                                    // 6
+  ASSERT_TRUE(store_->tables().create_column(table.id, depth, "ana"));                  // 2
+  ASSERT_TRUE(put(table, 2, {{"name", "b"}, {"depth", 3}}));                            // 3
+  ASSERT_TRUE(store_->tables().drop_column(table.id, table.columns[0].id, {}, "ana"));  // 4
+  ASSERT_TRUE(store_->records().remove(table.id, 1, {}, "ana"));                        // 5
+  ASSERT_TRUE(undo(table));                                                             // 6
   EXPECT_EQ(content(table, 0), json::object());
   EXPECT_EQ(content(table, 1), (json{{"1", {{"name", "a"}}}}));
   EXPECT_EQ(content(table, 2), (json{{"1", {{"name", "a"}, {"depth", 1.0}}}}));
@@ -273,15 +279,15 @@ TEST_F(Tables, the_past_is_read_with_the_columns_of_then) {
   EXPECT_EQ(content(table, 5), (json{{"2", {{"depth", 3.0}}}}));
   EXPECT_EQ(content(table, 6), content(table, 4));
   EXPECT_EQ(content(table), content(table, 6));
-  EXPECT_EQ(store_->records(table.id, Role::owner, {{}, {}, 7, 10, 0}).error().field, "at");
-  EXPECT_EQ(store_->table_sequence_at(table.id, "9999-12-31T23:59:59.999Z").value(), 6);
-  EXPECT_EQ(store_->table_sequence_at(table.id, "0001-01-01T00:00:00.000Z").value(), 0);
-  const auto history = store_->table_history(table.id, Role::owner, {}, 10, 0).value();
+  EXPECT_EQ(store_->records().page(table.id, Role::owner, {{}, {}, 7, 10, 0}).error().field, "at");
+  EXPECT_EQ(store_->tables().sequence_at(table.id, "9999-12-31T23:59:59.999Z").value(), 6);
+  EXPECT_EQ(store_->tables().sequence_at(table.id, "0001-01-01T00:00:00.000Z").value(), 0);
+  const auto history = store_->tables().history(table.id, Role::owner, {}, 10, 0).value();
   ASSERT_EQ(history.total, 6);
   EXPECT_EQ(history.rows[0].op, "undo");
   EXPECT_FALSE(history.rows[1].in_force);
   EXPECT_EQ(history.rows[5].changes.at(0).after.at("exists"), true);
-  EXPECT_EQ(store_->table_history(table.id, Role::owner, 2, 10, 0)->total, 1);
+  EXPECT_EQ(store_->tables().history(table.id, Role::owner, 2, 10, 0)->total, 1);
 }
 
 TEST_F(Tables, a_dropped_column_comes_back_with_its_values) {
@@ -289,13 +295,13 @@ TEST_F(Tables, a_dropped_column_comes_back_with_its_values) {
   code.unique = true;
   const Table table = make("Units", {code});
   ASSERT_TRUE(put(table, 1, {{"code", "A"}}));
-  ASSERT_TRUE(store_->drop_column(table.id, table.columns[0].id, {}, "ana"));
+  ASSERT_TRUE(store_->tables().drop_column(table.id, table.columns[0].id, {}, "ana"));
   EXPECT_EQ(now(table).columns.size(), 0u);
-  EXPECT_EQ(store_->drop_column(table.id, table.columns[0].id, {}, "ana").error().code,
+  EXPECT_EQ(store_->tables().drop_column(table.id, table.columns[0].id, {}, "ana").error().code,
             ErrorCode::not_found);
   ASSERT_TRUE(put(table, 2, {}, "ben"));
   // Its slug is free for another one, and taken again when it comes back.
-  ASSERT_TRUE(store_->create_column(table.id, column("Code"), "ben"));
+  ASSERT_TRUE(store_->tables().create_column(table.id, column("Code"), "ben"));
   EXPECT_EQ(undo(table).error().title, "Slug taken");
   ASSERT_TRUE(undo(table, "ben"));
   ASSERT_TRUE(undo(table));
@@ -311,16 +317,18 @@ TEST_F(Tables, retyping_keeps_what_can_be_kept_and_tells_what_cannot) {
   Column numeric = table.columns[0];
   numeric.kind = ColumnKind::numeric;
   numeric.unit = "m";
-  const auto change = store_->update_column(table.id, numeric, now(table).version, "ana");
+  const auto change = store_->tables().update_column(table.id, numeric, now(table).version, "ana");
   ASSERT_TRUE(change) << change.error().detail;
   EXPECT_EQ(change->record.at("converted"), 1);
   EXPECT_EQ(change->record.at("lost_keys"), json({2}));
   EXPECT_EQ(content(table),
             (json{{"1", {{"depth", 1.5}}}, {"2", json::object()}, {"3", json::object()}}));
   EXPECT_NE(now(table).columns[0].id, table.columns[0].id);
-  EXPECT_EQ(
-      store_->update_column(table.id, now(table).columns[0], table.version, "ana").error().code,
-      ErrorCode::stale);
+  EXPECT_EQ(store_->tables()
+                .update_column(table.id, now(table).columns[0], table.version, "ana")
+                .error()
+                .code,
+            ErrorCode::stale);
   ASSERT_TRUE(undo(table));
   EXPECT_EQ(content(table)["2"]["depth"], "deep");
   ASSERT_TRUE(undo(table, "ana", true));
@@ -332,18 +340,19 @@ TEST_F(Tables, column_properties_are_undone_one_by_one) {
   Column depth = table.columns[0];
   depth.name = "Depth below surface";
   depth.unit = "cm";
-  ASSERT_TRUE(store_->update_column(table.id, depth, {}, "ana"));
+  ASSERT_TRUE(store_->tables().update_column(table.id, depth, {}, "ana"));
   depth.unit = "m";
-  ASSERT_TRUE(store_->update_column(table.id, depth, {}, "ben"));
+  ASSERT_TRUE(store_->tables().update_column(table.id, depth, {}, "ben"));
   ASSERT_TRUE(undo(table, "ana"));
   EXPECT_EQ(now(table).columns[0].name, "Depth");
   EXPECT_EQ(now(table).columns[0].unit, "m");
   ASSERT_TRUE(put(table, 1, {{"depth", 5}}));
   depth = now(table).columns[0];
   depth.maximum = 4;
-  EXPECT_EQ(store_->update_column(table.id, depth, {}, "ana").error().title, "Values do not fit");
+  EXPECT_EQ(store_->tables().update_column(table.id, depth, {}, "ana").error().title,
+            "Values do not fit");
   depth.maximum = 6;
-  ASSERT_TRUE(store_->update_column(table.id, depth, {}, "ana"));
+  ASSERT_TRUE(store_->tables().update_column(table.id, depth, {}, "ana"));
   EXPECT_EQ(put(table, 1, {{"depth", 7}}).error().field, "values.depth");
 }
 
@@ -353,7 +362,7 @@ TEST_F(Tables, what_was_right_once_is_not_undone_into_what_is_wrong_now) {
   ASSERT_TRUE(put(table, 1, {{"depth", 5}}));
   Column depth = table.columns[0];
   depth.maximum = 10;
-  ASSERT_TRUE(store_->update_column(table.id, depth, {}, "ben"));
+  ASSERT_TRUE(store_->tables().update_column(table.id, depth, {}, "ben"));
   EXPECT_EQ(undo(table).error().title, "Cannot be undone");
   EXPECT_EQ(content(table)["1"]["depth"], 5.0);
   ASSERT_TRUE(undo(table, "ben"));
@@ -367,25 +376,26 @@ TEST_F(Tables, many_records_go_in_together_or_not_at_all) {
   WriteRecords many;
   for (int i = 0; i < 5000; ++i) many.records.push_back({{}, {{depth, i}}});
   many.records[4000].values[depth] = "deep";
-  auto change = store_->write_records(table.id, many, "ana").value();
+  auto change = store_->records().write(table.id, many, "ana").value();
   ASSERT_EQ(change.problems.size(), 1u);
   EXPECT_EQ(change.problems[0].index, 4000u);
   EXPECT_EQ(now(table).records, 0);
   many.records[4000].values[depth] = 4000;
   many.dry_run = true;
-  change = store_->write_records(table.id, many, "ana").value();
+  change = store_->records().write(table.id, many, "ana").value();
   EXPECT_TRUE(change.problems.empty());
   EXPECT_EQ(change.created.size(), 5000u);
   EXPECT_EQ(now(table).records, 0);
   many.dry_run = false;
-  ASSERT_TRUE(store_->write_records(table.id, many, "ana"));
+  ASSERT_TRUE(store_->records().write(table.id, many, "ana"));
   EXPECT_EQ(now(table).records, 5000);
-  EXPECT_EQ(store_->missing_records(table.id, std::vector<std::int64_t>{1, 5000, 5001, 0}).value(),
-            (std::vector<std::int64_t>{0, 5001}));
+  EXPECT_EQ(
+      store_->records().missing(table.id, std::vector<std::int64_t>{1, 5000, 5001, 0}).value(),
+      (std::vector<std::int64_t>{0, 5001}));
   ASSERT_TRUE(undo(table));
   EXPECT_EQ(now(table).records, 0);
   many.records = {{1, {}}, {1, {}}};
-  EXPECT_EQ(store_->write_records(table.id, many, "ana")->problems.at(0).problem.title,
+  EXPECT_EQ(store_->records().write(table.id, many, "ana")->problems.at(0).problem.title,
             "Key used before");
 }
 
@@ -401,17 +411,19 @@ TEST_F(Tables, records_are_sorted_by_what_they_mean) {
   EXPECT_EQ(keys(table, {{"depth", false}}), (std::vector<std::int64_t>{2, 1, 3}));
   EXPECT_EQ(keys(table, {{"depth", true}}), (std::vector<std::int64_t>{1, 2, 3}));
   EXPECT_EQ(keys(table, {{"key", true}}), (std::vector<std::int64_t>{3, 2, 1}));
-  EXPECT_EQ(
-      store_->records(table.id, Role::owner, {{{"none", false}}, {}, {}, 10, 0}).error().field,
-      "sortby");
+  EXPECT_EQ(store_->records()
+                .page(table.id, Role::owner, {{{"none", false}}, {}, {}, 10, 0})
+                .error()
+                .field,
+            "sortby");
   const auto page =
-      store_->records(table.id, Role::owner, {{{"depth", false}}, {}, {}, 1, 1}).value();
+      store_->records().page(table.id, Role::owner, {{{"depth", false}}, {}, {}, 1, 1}).value();
   EXPECT_EQ(page.total, 3);
   EXPECT_EQ(page.records.at(0).key, 1);
   // The past is sorted the same way.
-  ASSERT_TRUE(store_->delete_record(table.id, 1, {}, "ana"));
+  ASSERT_TRUE(store_->records().remove(table.id, 1, {}, "ana"));
   const auto past =
-      store_->records(table.id, Role::owner, {{{"name", false}}, {}, 3, 2, 1}).value();
+      store_->records().page(table.id, Role::owner, {{{"name", false}}, {}, 3, 2, 1}).value();
   EXPECT_EQ(past.total, 3);
   EXPECT_EQ(past.records.at(0).key, 2);
   EXPECT_EQ(past.records.at(1).key, 1);
@@ -434,35 +446,35 @@ TEST_F(Tables, many_who_write_at_once_get_keys_and_sequences_of_their_own) {
 }
 
 TEST_F(Tables, layers_of_several_models_share_a_table) {
-  Store::NewModel fresh;
+  NewModel fresh;
   fresh.model.project_id = 1;
   fresh.model.name = "trench";
   fresh.geometry = {1};
-  const auto model = store_->create_model(fresh, {}).value();
+  const auto model = store_->models().create(fresh, {}).value();
   Layer layer;
   layer.model_id = model.id;
   layer.name = "Units";
   layer.kind = LayerKind::database;
-  const auto own = store_->create_layer(layer, {}, {column("Name")}).value();
-  const Table table = store_->table("units", Role::owner).value();
+  const auto own = store_->layers().create(layer, {}, {column("Name")}).value();
+  const Table table = store_->tables().find("units", Role::owner).value();
   EXPECT_EQ(own.table, table.id);
   EXPECT_EQ(table.columns.at(0).name, "Name");
   layer.table = table.id;
   layer.name = "Second";
-  ASSERT_TRUE(store_->create_layer(layer));
-  EXPECT_EQ(store_->layers_of_table(table.id, Role::owner)->size(), 2u);
-  EXPECT_EQ(store_->delete_table(table.id).error().title, "Table in use");
+  ASSERT_TRUE(store_->layers().create(layer));
+  EXPECT_EQ(store_->layers().of_table(table.id, Role::owner)->size(), 2u);
+  EXPECT_EQ(store_->tables().remove(table.id).error().title, "Table in use");
   Project project;
   project.name = project.slug = "elsewhere";
   auto moved = model;
-  moved.project_id = store_->create_project(project)->id;
-  EXPECT_EQ(store_->update_model(moved).error().title, "Tables stay");
+  moved.project_id = store_->projects().create(project)->id;
+  EXPECT_EQ(store_->models().update(moved).error().title, "Tables stay");
   layer.table = 99;
-  EXPECT_EQ(store_->create_layer(layer).error().field, "table");
-  ASSERT_TRUE(store_->delete_model(model.id));
-  ASSERT_TRUE(store_->delete_table(table.id));
+  EXPECT_EQ(store_->layers().create(layer).error().field, "table");
+  ASSERT_TRUE(store_->models().remove(model.id));
+  ASSERT_TRUE(store_->tables().remove(table.id));
   Table elsewhere = make("Other", {});
-  EXPECT_EQ(store_->delete_project(moved.project_id).has_value(), true);
+  EXPECT_EQ(store_->projects().remove(moved.project_id).has_value(), true);
 }
 
 TEST(TablesMigration, database_layers_get_tables_with_the_keys_that_they_hold) {
@@ -495,15 +507,15 @@ TEST(TablesMigration, database_layers_get_tables_with_the_keys_that_they_hold) {
          FROM layers WHERE slug = 'units')");
   ASSERT_TRUE(migrate(connection, all));
   auto store = test::open_store(dsn);
-  const auto tables = store->tables(1, Role::owner).value();
+  const auto tables = store->tables().of_project(1, Role::owner).value();
   ASSERT_EQ(tables.size(), 2u);
   EXPECT_EQ(tables[0].name, "12");
   EXPECT_EQ(tables[0].slug, "n-12");
   EXPECT_EQ(tables[1].name, "SU");
   EXPECT_EQ(tables[1].slug, "su");
   EXPECT_EQ(tables[1].records, 3);
-  EXPECT_EQ(store->layers_of_table(tables[1].id, Role::owner)->size(), 2u);
-  const auto page = store->records(tables[1].id, Role::owner, {}).value();
+  EXPECT_EQ(store->layers().of_table(tables[1].id, Role::owner)->size(), 2u);
+  const auto page = store->records().page(tables[1].id, Role::owner, {}).value();
   ASSERT_EQ(page.records.size(), 3u);
   EXPECT_EQ(to_json(page.records[0], page.table.columns),
             json({{"key", 5}, {"version", 0}, {"values", {{"name", "pit"}}}}));
@@ -511,7 +523,7 @@ TEST(TablesMigration, database_layers_get_tables_with_the_keys_that_they_hold) {
   EXPECT_EQ(page.records[2].key, 9);
   WriteRecords more;
   more.records = {{}};
-  EXPECT_EQ(store->write_records(tables[1].id, more, "ana")->created,
+  EXPECT_EQ(store->records().write(tables[1].id, more, "ana")->created,
             std::vector<std::int64_t>{10});
 }
 

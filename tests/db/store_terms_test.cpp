@@ -5,6 +5,8 @@
 #include "core/terms_csv.h"
 #include "core/terms_skos.h"
 #include "store/pg.h"
+#include "store/records.h"
+#include "store/tables.h"
 #include "support/test_cluster.h"
 
 namespace strata::store {
@@ -27,12 +29,12 @@ class Terms : public ::testing::Test {
     std::vector<std::string> languages;
     for (const std::string& slug : list.columns)
       if (const auto language = label_language(slug)) languages.push_back(*language);
-    Store::NewTable wished;
+    NewTable wished;
     wished.table.project_id = 1;
     wished.table.name = name;
     wished.table.columns = new_term_columns(languages);
     wished.terms = list;
-    auto made = store_->create_tables({wished}, false, "ana", "import");
+    auto made = store_->tables().create_several({wished}, false, "ana", "import");
     if (!made) return tl::unexpected(made.error());
     return made->front();
   }
@@ -40,13 +42,13 @@ class Terms : public ::testing::Test {
     auto list = read_terms_csv(csv);
     EXPECT_TRUE(list) << list.error().detail;
     EXPECT_TRUE(list->mistakes.empty());
-    return store_->import_terms(table.id, *list, dry_run, "ana");
+    return store_->tables().import_terms(table.id, *list, dry_run, "ana");
   }
   // {code, key, parent's code, label} in the order of the tree.
   std::vector<std::string> content(const Table& table) {
-    Store::RecordQuery all;
+    RecordQuery all;
     all.limit = 1000;
-    auto page = store_->records(table.id, Role::owner, all);
+    auto page = store_->records().page(table.id, Role::owner, all);
     EXPECT_TRUE(page);
     std::vector<std::string> out;
     for (const ListedTerm& listed : list_terms(*term_columns(page->table), page->records))
@@ -55,9 +57,9 @@ class Terms : public ::testing::Test {
     return out;
   }
   Result<TableChange> undo(const Table& table) {
-    auto plan = store_->plan_table_undo(table.id, "ana", false);
+    auto plan = store_->tables().plan_undo(table.id, "ana", false);
     if (!plan) return tl::unexpected(plan.error());
-    return store_->undo_table(table.id, "ana", false, plan->table_sequence);
+    return store_->tables().undo(table.id, "ana", false, plan->table_sequence);
   }
 
   const std::string dsn_ = test::fresh_database();
@@ -85,12 +87,13 @@ TEST_F(Terms, an_import_keeps_the_keys_and_what_the_text_does_not_have) {
   EXPECT_THAT(change->created, ElementsAre(3));
   EXPECT_TRUE(change->columns_changed);
   EXPECT_THAT(content(table), ElementsAre("1 /alpha Alpha", "2 alpha/b Bee", "3 /c C"));
-  auto record = store_->records(table.id, Role::owner, {});
+  auto record = store_->records().page(table.id, Role::owner, {});
   ASSERT_TRUE(record);
   EXPECT_EQ(record->records[0].values.at(term_columns(record->table)->color->id), "#112233");
   ASSERT_TRUE(undo(table));
   EXPECT_THAT(content(table), ElementsAre("1 /a A", "2 a/b B"));
-  EXPECT_FALSE(term_columns(*store_->table(table.slug, Role::owner))->labels.contains("de"));
+  EXPECT_FALSE(
+      term_columns(*store_->tables().find(table.slug, Role::owner))->labels.contains("de"));
 }
 
 TEST_F(Terms, the_same_again_is_no_entry) {
@@ -123,7 +126,7 @@ TEST_F(Terms, circles_and_unknown_parents_are_told_and_nothing_is_written) {
   EXPECT_EQ(stranger->problems[0].problem.title, "No such parent");
   EXPECT_EQ(stranger->problems[1].problem.title, "Terms in a circle");
   EXPECT_EQ(content(table).size(), 3u);
-  EXPECT_EQ(store_->table(table.slug, Role::owner)->sequence, 1);
+  EXPECT_EQ(store_->tables().find(table.slug, Role::owner)->sequence, 1);
 }
 
 TEST_F(Terms, one_term_named_by_its_uri_and_by_its_code_is_refused) {
@@ -153,22 +156,23 @@ TEST_F(Terms, a_dry_run_tells_and_keeps_nothing) {
   ASSERT_TRUE(change);
   EXPECT_THAT(change->created, ElementsAre(2));
   EXPECT_THAT(content(table), ElementsAre("1 /a A"));
-  EXPECT_FALSE(term_columns(*store_->table(table.slug, Role::owner))->labels.contains("de"));
+  EXPECT_FALSE(
+      term_columns(*store_->tables().find(table.slug, Role::owner))->labels.contains("de"));
 }
 
 TEST_F(Terms, only_a_list_takes_terms_and_names_are_not_given_twice) {
   Table plain;
   plain.project_id = 1;
   plain.name = "Units";
-  auto made = store_->create_table(plain);
+  auto made = store_->tables().create(plain);
   ASSERT_TRUE(made);
   EXPECT_EQ(import(*made, "code\na\n").error().title, "No list of terms");
   EXPECT_EQ(create(*read_terms_csv("code\na\n"), "UNITS").error().code, ErrorCode::conflict);
-  EXPECT_EQ(store_->tables(1, Role::owner)->size(), 1u);
+  EXPECT_EQ(store_->tables().of_project(1, Role::owner)->size(), 1u);
 }
 
 TEST_F(Terms, tables_come_all_or_none_and_name_each_other) {
-  Store::NewTable terms, units;
+  NewTable terms, units;
   terms.table.project_id = units.table.project_id = 1;
   terms.table.name = "Kinds";
   terms.table.columns = new_term_columns({});
@@ -183,7 +187,7 @@ TEST_F(Terms, tables_come_all_or_none_and_name_each_other) {
   above.target = kOwnTable;
   units.table.columns = {kind, above};
   units.targets = {{0, 0}};
-  auto made = store_->create_tables({terms, units}, false, "ana", "template");
+  auto made = store_->tables().create_several({terms, units}, false, "ana", "template");
   ASSERT_TRUE(made) << made.error().detail;
   ASSERT_EQ(made->size(), 2u);
   EXPECT_EQ((*made)[1].table.columns[0].target, (*made)[0].table.id);
@@ -191,14 +195,14 @@ TEST_F(Terms, tables_come_all_or_none_and_name_each_other) {
   EXPECT_EQ((*made)[0].created.size(), 2u);
 
   terms.table.name = "Other kinds";
-  EXPECT_EQ(store_->create_tables({terms, units}, false, "ana", "template").error().code,
+  EXPECT_EQ(store_->tables().create_several({terms, units}, false, "ana", "template").error().code,
             ErrorCode::conflict);
   terms.terms = *read_terms_csv("code,parent\npit,nothing\n");
   units.table.name = "Other units";
-  auto refused = store_->create_tables({terms, units}, false, "ana", "template");
+  auto refused = store_->tables().create_several({terms, units}, false, "ana", "template");
   ASSERT_TRUE(refused);
   EXPECT_FALSE(refused->front().problems.empty());
-  EXPECT_EQ(store_->tables(1, Role::owner)->size(), 2u);
+  EXPECT_EQ(store_->tables().of_project(1, Role::owner)->size(), 2u);
 }
 
 }  // namespace

@@ -7,7 +7,10 @@
 #include <thread>
 
 #include "db/journal_painter.h"
+#include "store/journal_reads.h"
+#include "store/layers.h"
 #include "store/pg.h"
+#include "store/projects.h"
 #include "strata_dirs.h"
 
 namespace strata::store {
@@ -83,7 +86,7 @@ TEST_F(WriterFaults, killing_the_database_in_mid_load_loses_and_doubles_nothing)
     const std::int64_t promised = saved;
     EXPECT_TRUE(cluster_->ensure_running());
     while (saved <= promised) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    const auto snapshot = store_->load_tiles(layer_, promised);
+    const auto snapshot = store_->journal().load_tiles(layer_, promised);
     EXPECT_TRUE(snapshot) << snapshot.error().detail;
     if (snapshot) {
       EXPECT_TRUE(test::content_of(*snapshot) == replay(layer_, kSeed, promised))
@@ -94,9 +97,9 @@ TEST_F(WriterFaults, killing_the_database_in_mid_load_loses_and_doubles_nothing)
   painter_thread.join();
   writer.drain();
   EXPECT_EQ(saved, submitted);
-  EXPECT_EQ(store_->last_sequence(model_.id).value(), submitted);
-  EXPECT_EQ(store_->history(layer_.id, 1, 0)->total, submitted);
-  EXPECT_TRUE(test::content_of(store_->load_tiles(layer_).value()) ==
+  EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), submitted);
+  EXPECT_EQ(store_->journal().history(layer_.id, 1, 0)->total, submitted);
+  EXPECT_TRUE(test::content_of(store_->journal().load_tiles(layer_).value()) ==
               replay(layer_, kSeed, submitted));
   // Whole or not at all: every edit has its tiles.
   auto connection = PgConnection::connect(cluster_->dsn());
@@ -132,14 +135,14 @@ TEST_F(WriterFaults, commits_that_keep_failing_answer_everyone_and_then_it_start
     EXPECT_TRUE(std::is_sorted(answered.begin(), answered.end()));
   }
   EXPECT_TRUE(writer.accepting());
-  EXPECT_EQ(store_->project("default").error().code, ErrorCode::unavailable);
+  EXPECT_EQ(store_->projects().find("default").error().code, ErrorCode::unavailable);
   EXPECT_FALSE(store_->ready());
   ASSERT_TRUE(cluster_->ensure_running());
   EXPECT_TRUE(store_->ready());
-  EXPECT_EQ(store_->last_sequence(model_.id).value(), 1);
-  EXPECT_TRUE(test::content_of(store_->load_tiles(layer_).value()) == kept);
+  EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 1);
+  EXPECT_TRUE(test::content_of(store_->journal().load_tiles(layer_).value()) == kept);
   ASSERT_TRUE(test::save(writer, painter.entry(2)));
-  EXPECT_EQ(store_->last_sequence(model_.id).value(), 2);
+  EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 2);
 }
 
 TEST_F(WriterFaults, a_database_that_hangs_fails_commits_and_reads_in_time_and_then_all_is_well) {
@@ -147,7 +150,7 @@ TEST_F(WriterFaults, a_database_that_hangs_fails_commits_and_reads_in_time_and_t
   const PgLimits quick{milliseconds(300), milliseconds(0), milliseconds(0)};
   Painter painter(layer_, 6);
   const auto quick_store = Store::open({cluster_->dsn(), 2, quick}, STRATA_MIGRATIONS_DIR).value();
-  ASSERT_TRUE(quick_store->project("default"));
+  ASSERT_TRUE(quick_store->projects().find("default"));
   JournalWriter writer(*store_, {.retry_for = milliseconds(2000), .limits = quick});
   ASSERT_TRUE(test::save(writer, painter.paint(1, 2, 4)));
   const auto kept = painter.content();
@@ -163,7 +166,7 @@ TEST_F(WriterFaults, a_database_that_hangs_fails_commits_and_reads_in_time_and_t
     while (writer.accepting()) std::this_thread::sleep_for(milliseconds(1));
     EXPECT_FALSE(writer.submit(painter.entry(31), {}));
     EXPECT_FALSE(store_->ready());
-    const auto read = quick_store->project("default");
+    const auto read = quick_store->projects().find("default");
     ASSERT_FALSE(read);
     EXPECT_EQ(read.error().code, ErrorCode::unavailable);
     writer.drain();
@@ -171,11 +174,11 @@ TEST_F(WriterFaults, a_database_that_hangs_fails_commits_and_reads_in_time_and_t
     EXPECT_TRUE(writer.accepting());
   }
   while (!store_->ready()) std::this_thread::sleep_for(milliseconds(10));
-  EXPECT_TRUE(quick_store->project("default"));
-  EXPECT_EQ(store_->last_sequence(model_.id).value(), 1);
-  EXPECT_TRUE(test::content_of(store_->load_tiles(layer_).value()) == kept);
+  EXPECT_TRUE(quick_store->projects().find("default"));
+  EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 1);
+  EXPECT_TRUE(test::content_of(store_->journal().load_tiles(layer_).value()) == kept);
   ASSERT_TRUE(test::save(writer, painter.entry(2)));
-  EXPECT_EQ(store_->last_sequence(model_.id).value(), 2);
+  EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 2);
 }
 
 TEST_F(WriterFaults, a_caller_waits_for_a_busy_pool_only_so_long) {
@@ -186,19 +189,19 @@ TEST_F(WriterFaults, a_caller_waits_for_a_busy_pool_only_so_long) {
           .value();
   auto holder = PgConnection::connect(cluster_->dsn());
   ASSERT_TRUE(holder->script("BEGIN; SELECT 1 FROM layers FOR UPDATE"));
-  auto waiting = std::async(std::launch::async, [&] { return narrow->update_layer(layer_); });
+  auto waiting = std::async(std::launch::async, [&] { return narrow->layers().update(layer_); });
   auto watcher = PgConnection::connect(cluster_->dsn());
   while (watcher->query("SELECT count(*) FROM pg_stat_activity WHERE wait_event_type = 'Lock'")
              ->integer(0, 0) == 0)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));  // until it has the connection
-  const auto refused = narrow->project("default");
+  const auto refused = narrow->projects().find("default");
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::busy);
   EXPECT_EQ(refused.error().title, "Database busy");
   EXPECT_TRUE(narrow->ready()) << "busy is not away";
   ASSERT_TRUE(holder->script("COMMIT"));
   EXPECT_TRUE(waiting.get());
-  EXPECT_TRUE(narrow->project("default"));
+  EXPECT_TRUE(narrow->projects().find("default"));
 }
 
 TEST_F(WriterFaults, a_commit_without_an_answer_is_said_to_be_of_unknown_outcome) {
@@ -215,10 +218,10 @@ TEST_F(WriterFaults, a_commit_without_an_answer_is_said_to_be_of_unknown_outcome
 }
 
 TEST_F(WriterFaults, readers_get_through_a_restart_of_the_database) {
-  ASSERT_TRUE(store_->project("default"));
+  ASSERT_TRUE(store_->projects().find("default"));
   kill_postmaster();
   ASSERT_TRUE(cluster_->ensure_running());
-  for (int i = 0; i < 6; ++i) EXPECT_TRUE(store_->project("default"));
+  for (int i = 0; i < 6; ++i) EXPECT_TRUE(store_->projects().find("default"));
 }
 
 }  // namespace

@@ -7,7 +7,10 @@
 #include <thread>
 
 #include "db/journal_painter.h"
+#include "store/journal_reads.h"
+#include "store/layers.h"
 #include "store/pg.h"
+#include "store/projects.h"
 
 namespace strata::store {
 namespace {
@@ -73,7 +76,7 @@ TEST_F(Writer, answers_come_in_the_order_of_submission_after_the_commit) {
   for (int i = 1; i <= 50; ++i)
     ASSERT_TRUE(writer.submit(painter_.paint(i, 1, 4), [&, i](Result<void> result) {
       EXPECT_TRUE(result);
-      EXPECT_GE(reader->last_sequence(model_.id).value(), i);
+      EXPECT_GE(reader->journal().last_sequence(model_.id).value(), i);
       order.push_back(i);
     }));
   writer.drain();
@@ -87,7 +90,7 @@ TEST_F(Writer, destruction_writes_what_waits) {
     for (int i = 1; i <= 100; ++i) submit(writer, painter_.paint(i, 1, 4));
   }
   EXPECT_EQ(answers_, std::vector<Answer>(100, kSaved));
-  EXPECT_EQ(store_->last_sequence(model_.id).value(), 100);
+  EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 100);
 }
 
 TEST_F(Writer, an_entry_that_an_earlier_try_committed_counts_as_saved) {
@@ -103,7 +106,7 @@ TEST_F(Writer, an_entry_that_an_earlier_try_committed_counts_as_saved) {
   second.drain();
   EXPECT_THAT(answers_, ElementsAre(kSaved, kSaved, kSaved));
   EXPECT_EQ(count("SELECT count(*) FROM edits"), 2);
-  EXPECT_TRUE(test::content_of(store_->load_tiles(layer_).value()) == painter_.content());
+  EXPECT_TRUE(test::content_of(store_->journal().load_tiles(layer_).value()) == painter_.content());
 }
 
 TEST_F(Writer, an_edit_made_on_top_of_one_that_was_not_saved_is_refused_while_others_are_saved) {
@@ -126,9 +129,10 @@ TEST_F(Writer, an_edit_made_on_top_of_one_that_was_not_saved_is_refused_while_ot
   writer.drain();
   EXPECT_THAT(answers_, ElementsAre(kSaved, ErrorCode::malformed, kSaved, ErrorCode::malformed,
                                     kSaved, ErrorCode::conflict, kSaved));
-  EXPECT_EQ(store_->last_sequence(model_.id).value(), 2);
-  EXPECT_EQ(store_->last_sequence(other_model.id).value(), 2);
-  EXPECT_TRUE(test::content_of(store_->load_tiles(other.layer()).value()) == other.content());
+  EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 2);
+  EXPECT_EQ(store_->journal().last_sequence(other_model.id).value(), 2);
+  EXPECT_TRUE(test::content_of(store_->journal().load_tiles(other.layer()).value()) ==
+              other.content());
   EXPECT_TRUE(writer.accepting());
 }
 
@@ -174,7 +178,7 @@ TEST_F(Writer, a_layer_deleted_under_a_waiting_edit_fails_that_edit_only) {
   JournalWriter writer(*store_, {});
   submit(writer, doomed.paint(1, 1, 2));
   writer.drain();
-  ASSERT_TRUE(store_->delete_layer(second.id));
+  ASSERT_TRUE(store_->layers().remove(second.id));
   submit(writer, doomed.paint(2, 1, 2));
   writer.drain();
   submit(writer, painter_.paint(2, 1, 2));
@@ -231,7 +235,7 @@ TEST_F(Writer, a_very_large_edit_is_one_transaction) {
   submit(writer, import);
   writer.drain();
   EXPECT_THAT(answers_, ElementsAre(kSaved));
-  EXPECT_EQ(store_->revision_bytes(model_.id).value(), 40'960'000u);
+  EXPECT_EQ(store_->journal().revision_bytes(model_.id).value(), 40'960'000u);
 }
 
 TEST_F(Writer, durable_edits_per_second) {
@@ -252,7 +256,7 @@ TEST_F(Writer, durable_edits_per_second) {
   std::printf(
       "[ figure   ] single-tile edits: %.2f ms each, one after the other (%.0f/s); %.0f/s grouped; %.0f bytes each\n",
       one_ms, 1000 / one_ms, grouped,
-      static_cast<double>(store_->revision_bytes(model_.id).value()) / 3300);
+      static_cast<double>(store_->journal().revision_bytes(model_.id).value()) / 3300);
 }
 
 }  // namespace

@@ -5,6 +5,9 @@
 
 #include "mesh/demo_pot.h"
 #include "mesh/geometry.h"
+#include "store/journal_reads.h"
+#include "store/models.h"
+#include "store/projects.h"
 #include "support/shader_dirs.h"
 
 namespace strata::test {
@@ -38,10 +41,10 @@ void RoomTest::SetUp() {
   const auto& made_pot = pot();
   ASSERT_TRUE(made_pot) << made_pot.error().detail;
   const mesh::Geometry& geometry = made_pot->geometry;
-  store::Store::NewModel made;
+  store::NewModel made;
   made.model.name = "Pot";
   made.model.slug = "pot";
-  auto project = store_->project("default");
+  auto project = store_->projects().find("default");
   ASSERT_TRUE(project);
   made.model.project_id = project->id;
   made.model.unit = Unit::mm;
@@ -53,7 +56,7 @@ void RoomTest::SetUp() {
   made.model.area = made_pot->area;
   made.model.atlas = made_pot->report;
   made.geometry = mesh::encode_geometry(geometry);
-  auto model = store_->create_model(made, [] { return false; });
+  auto model = store_->models().create(made, [] { return false; });
   ASSERT_TRUE(model) << model.error().detail;
   model_ = *model;
   store_.reset();
@@ -159,11 +162,11 @@ Result<room::EditAnswer> RoomTest::send_until_taken(const room::EditRequest& edi
 void RoomTest::expect_room_equals_journal(const Layer& layer) {
   const auto live = room()->tiles(layer.slug, {});
   ASSERT_TRUE(live) << live.error().detail;
-  const auto stored = store_->load_tiles(layer);
+  const auto stored = store_->journal().load_tiles(layer);
   ASSERT_TRUE(stored) << stored.error().detail;
   EXPECT_TRUE(equal(live->tiles, stored->tiles));
   EXPECT_EQ(live->sequence, stored->sequence);
-  EXPECT_EQ(room()->durable_sequence(), store_->last_sequence(model_.id).value());
+  EXPECT_EQ(room()->durable_sequence(), store_->journal().last_sequence(model_.id).value());
 }
 
 void RoomTest::expect_picture_of_journal() {

@@ -5,7 +5,10 @@
 #include <set>
 
 #include "app/layers/formula_layers.h"
+#include "core/expression.h"
+#include "store/layers.h"
 #include "store/store.h"
+#include "store/tables.h"
 
 namespace strata::app {
 namespace {
@@ -43,7 +46,7 @@ bool names_unseen_column(const Expression& e, const std::map<std::string, Table>
 Result<void> check_shows_nothing(store::Store& store, const Layer& layer,
                                  const std::vector<Layer>& others) {
   if (layer.table && !layer.palette.column.empty()) {
-    const auto table = STRATA_TRY(store.table(std::to_string(*layer.table), Role::owner));
+    const auto table = STRATA_TRY(store.tables().find(std::to_string(*layer.table), Role::owner));
     const Column* column = find_column(table.columns, layer.palette.column);
     if (column && column->visibility > layer.visibility)
       return fail(
@@ -63,7 +66,7 @@ Result<void> check_shows_nothing(store::Store& store, const Layer& layer,
 
 Result<void> check_shows_nothing(store::Store& store, const Table& table, const Column& column,
                                  Visibility visibility) {
-  const auto layers = STRATA_TRY(store.layers_of_table(table.id, Role::owner));
+  const auto layers = STRATA_TRY(store.layers().of_table(table.id, Role::owner));
   std::map<std::int64_t, std::set<std::string>> by_model;  // slugs
   for (const Layer& layer : layers) {
     by_model[layer.model_id].insert(layer.slug);
@@ -72,7 +75,7 @@ Result<void> check_shows_nothing(store::Store& store, const Table& table, const 
       return shows_through(layer);
   }
   for (const auto& [model, slugs] : by_model) {
-    const auto all = STRATA_TRY(store.layers(model, Role::owner));
+    const auto all = STRATA_TRY(store.layers().of_model(model, Role::owner));
     for (const Layer& layer : all) {
       if (!layer.formula || layer.visibility >= visibility) continue;
       const auto expression = parse_formula(layer.formula->expression);
@@ -87,14 +90,14 @@ Result<bool> sees_all_of(store::Store& store, Role role, std::int64_t model_id,
   if (sees(role, Visibility::curators)) return true;
   const auto expression = parse_formula(text);
   if (!expression) return false;
-  const auto layers = STRATA_TRY(store.layers(model_id, Role::owner));
+  const auto layers = STRATA_TRY(store.layers().of_model(model_id, Role::owner));
   const std::vector<std::string> named = layers_of(*expression);
   std::map<std::string, Table> seen, all;  // by the slug of the layer
   for (const Layer& layer : layers) {
     if (std::ranges::find(named, layer.slug) == named.end()) continue;
     if (!sees(role, layer.visibility)) return false;
     if (!layer.table) continue;
-    auto table = STRATA_TRY(store.table(std::to_string(*layer.table), Role::owner));
+    auto table = STRATA_TRY(store.tables().find(std::to_string(*layer.table), Role::owner));
     seen.emplace(layer.slug, seen_by(table, role));
     all.emplace(layer.slug, std::move(table));
   }

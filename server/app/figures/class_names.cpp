@@ -3,16 +3,17 @@
 #include "app/records/record_words.h"
 #include "core/csv.h"
 #include "core/term_list.h"
+#include "store/records.h"
 
 namespace strata::app {
 
 Result<RecordNames> record_names(store::Store& store, std::int64_t table_id, Role seen_by,
                                  std::vector<std::int64_t> keys, std::optional<std::int64_t> at,
                                  const std::string& language) {
-  store::Store::RecordQuery query;
+  store::RecordQuery query;
   query.keys = std::move(keys);
   query.at = at;
-  auto page = STRATA_TRY(store.records(table_id, seen_by, query));
+  auto page = STRATA_TRY(store.records().page(table_id, seen_by, query));
   RecordNames names;
   if (const auto columns = term_columns(page.table)) {
     for (const ListedTerm& listed : list_terms(*columns, page.records))

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/layer.h"
+#include "core/role.h"
 #include "query/quantities.h"
 #include "store/store.h"
 

@@ -6,6 +6,8 @@
 
 #include "core/label_text.h"
 #include "room/provisional.h"
+#include "store/records.h"
+#include "store/tables.h"
 
 namespace strata::app {
 namespace {
@@ -77,10 +79,10 @@ Result<std::set<double>> marked_keys(store::Store& store, const FigureRequest& r
   std::optional<std::int64_t> at;  // of the table; none: now, as the picture has it
   if (*request.shown.at < request.room->durable_sequence()) {
     const auto then =
-        STRATA_TRY(store.table_sequence_when(*layer.table, model.id, *request.shown.at));
+        STRATA_TRY(store.tables().sequence_when(*layer.table, model.id, *request.shown.at));
     at = then;
   }
-  const auto marks = STRATA_TRY(store.marks(*layer.table, request.role, model.id, at));
+  const auto marks = STRATA_TRY(store.records().marks(*layer.table, request.role, model.id, at));
   const double pixel = 2 / (std::abs(camera.projection[0][0]) * camera.width);
   const double reach = kPlaceReach_px * pixel +
                        kPlaceReachOfSize * glm::distance(model.bounds_min, model.bounds_max);
@@ -134,7 +136,7 @@ Result<std::vector<figure::Legend>> legends_of(store::Store& store, const Figure
           {request.waiting_label, mark.color, mark.pattern, mark.angle, true});
     }
     if (palette.column.empty() || !layer.table) continue;
-    const auto table = store.table(std::to_string(*layer.table), request.role);
+    const auto table = store.tables().find(std::to_string(*layer.table), request.role);
     const Column* column = table ? find_column(table->columns, palette.column) : nullptr;
     if (column)
       legends.back().title = label_or(layer.labels, request.language, layer.name) + ": " +

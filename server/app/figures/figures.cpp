@@ -10,6 +10,7 @@
 #include "core/compass.h"
 #include "core/number_text.h"
 #include "core/uuid.h"
+#include "store/records.h"
 
 namespace strata::app {
 namespace {
@@ -59,13 +60,14 @@ std::map<std::uint32_t, Area> areas_of(const std::vector<std::optional<std::uint
 Result<std::map<std::uint32_t, std::string>> texts_of(store::Store& store,
                                                       const FigureRequest& request) {
   const Column& column = request.labels->column;
-  const auto found =
-      store.record_texts(*request.labels->layer.table, request.role, column.slug, "labels.column");
+  const auto found = store.records().texts(*request.labels->layer.table, request.role, column.slug,
+                                           "labels.column");
   if (!found) return tl::unexpected(found.error());
   std::map<std::uint32_t, std::string> texts;
   std::map<std::string, std::string> terms;  // by key
   if (column.kind == ColumnKind::term && column.target) {
-    const auto labels = store.record_texts(*column.target, request.role, "label", "labels.column");
+    const auto labels =
+        store.records().texts(*column.target, request.role, "label", "labels.column");
     if (!labels) return tl::unexpected(labels.error());
     for (const auto& [key, text] : *labels) terms[std::to_string(key)] = text;
   }

@@ -7,7 +7,10 @@
 #include <vector>
 
 #include "core/byte_budget.h"
+#include "core/layer.h"
 #include "core/progress.h"
+#include "core/role.h"
+#include "core/table.h"
 #include "core/temporary_file.h"
 #include "figure/files.h"
 #include "figure/layout.h"

@@ -1,11 +1,13 @@
 #include "app/layers/computed_layers.h"
+#include "store/models.h"
+#include "store/personal_views.h"
 
 namespace strata::app {
 namespace {
 
 Result<void> check_other_model(store::Store& store, const jobs::ShapeRecipe& recipe) {
   if (recipe.model.empty()) return {};
-  auto other = store.model(recipe.model);
+  auto other = store.models().find(recipe.model);
   if (other) return {};
   Error problem = other.error();
   if (problem.code == ErrorCode::not_found)
@@ -37,7 +39,7 @@ Result<Layer> add_shape_layer(store::Store& store, const room::Room& room, NewLa
   auto made = STRATA_TRY(
       layers.add(std::move(layer), std::move(computed.tiles), std::move(computed.recipe)));
   // Others see it once they want to.
-  STRATA_TRY(store.show_layer_to(user, made.model_id, made.id));
+  STRATA_TRY(store.personal_views().show_layer_to(user, made.model_id, made.id));
   return made;
 }
 

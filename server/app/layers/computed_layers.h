@@ -3,6 +3,8 @@
 #include <memory>
 
 #include "app/layers/new_layers.h"
+#include "core/layer.h"
+#include "core/model.h"
 #include "core/progress.h"
 #include "jobs/shape_layer.h"
 #include "store/store.h"

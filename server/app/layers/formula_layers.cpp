@@ -4,10 +4,17 @@
 #include <tuple>
 
 #include "app/edits.h"
+#include "core/layer.h"
+#include "core/model.h"
+#include "core/role.h"
+#include "core/tile_mirror.h"
+#include "core/visibility.h"
 #include "jobs/shape_layer.h"
 #include "query/expression_parser.h"
 #include "room/expression_binding.h"
 #include "room/room.h"
+#include "store/layers.h"
+#include "store/personal_views.h"
 #include "store/store.h"
 
 namespace strata::app {
@@ -125,7 +132,7 @@ Result<Layer> compute_layer(const Services& services, const std::shared_ptr<room
       STRATA_TRY(shape_views(services.store, *room, expression, layer.resolution, progress));
   if (progress.cancelled()) return cancelled_problem();
   // Before the records are read: what changes meanwhile makes the layer stale.
-  const auto tables = STRATA_TRY(services.store.table_sequences_of(layer.id));
+  const auto tables = STRATA_TRY(services.store.layers().table_sequences_of(layer.id));
   room::EditRequest edit{random_uuid(), author, layer.id};
   edit.record = {{"op", "compute"}, {"expression", layer.formula->expression}};
   edit.edit = room::ComputeEdit{expression, std::move(shapes), overwrites};
@@ -143,7 +150,7 @@ Result<Layer> add_formula_layer(const Services& services, const std::shared_ptr<
   return layers.add(std::move(layer), [&](const Layer& made) -> Result<Layer> {
     auto computed = STRATA_TRY(compute_layer(services, room, made, author, progress));
     // Others see it once they want to.
-    STRATA_TRY(services.store.show_layer_to(author.user, made.model_id, made.id));
+    STRATA_TRY(services.store.personal_views().show_layer_to(author.user, made.model_id, made.id));
     return has_palette ? Result<Layer>(std::move(computed))
                        : with_colors(*room, std::move(computed));
   });

@@ -9,6 +9,8 @@
 #include "app/records/record_csv.h"
 #include "core/column_value.h"
 #include "core/mark.h"
+#include "store/records.h"
+#include "store/tables.h"
 
 namespace strata::app {
 namespace {
@@ -26,19 +28,20 @@ struct Records {
 
 Result<Records> read_records(store::Store& store, const FeatureRequest& request,
                              std::vector<std::int64_t> painted) {
-  store::Store::RecordQuery query;
+  store::RecordQuery query;
   query.limit = store::kMostRecords;
   if (request.at) {
     const auto then =
-        store.table_sequence_when(*request.layer.table, request.layer.model_id, *request.at);
+        store.tables().sequence_when(*request.layer.table, request.layer.model_id, *request.at);
     if (!then) return tl::unexpected(then.error());
     query.at = *then;
   }
-  const auto table = STRATA_TRY(store.table(std::to_string(*request.layer.table), request.role));
+  const auto table =
+      STRATA_TRY(store.tables().find(std::to_string(*request.layer.table), request.role));
   // Records that are painted nowhere may have lines and points.
   const auto is_mark = [](const Column& column) { return holds_marks(column.kind); };
   if (std::ranges::none_of(table.columns, is_mark)) query.keys = std::move(painted);
-  auto page = STRATA_TRY(store.records(table.id, request.role, query));
+  auto page = STRATA_TRY(store.records().page(table.id, request.role, query));
   Records records;
   for (const Column& column : page.table.columns)
     if (is_mark(column))

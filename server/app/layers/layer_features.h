@@ -1,6 +1,8 @@
 #pragma once
 
 #include "app/layers/feature_set.h"
+#include "core/layer.h"
+#include "core/role.h"
 #include "query/plane_outlines.h"
 #include "room/room.h"
 #include "store/store.h"

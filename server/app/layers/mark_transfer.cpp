@@ -4,8 +4,14 @@
 #include <set>
 
 #include "app/change_notifier.h"
+#include "core/layer.h"
+#include "core/mark.h"
+#include "core/role.h"
+#include "core/table.h"
 #include "jobs/transfer_marks.h"
+#include "store/records.h"
 #include "store/store.h"
+#include "store/table_changes.h"
 
 namespace strata::app {
 namespace {
@@ -14,9 +20,9 @@ Result<MarkTransfer> bring_marks_of(const Services& services, std::int64_t table
                                     const jobs::TransferTarget& target,
                                     const jobs::TransferRequest& request, const std::string& user) {
   MarkTransfer brought;
-  store::Store::RecordQuery query;
+  store::RecordQuery query;
   query.limit = store::kMostRecords;
-  const auto page = STRATA_TRY(services.store.records(table_id, Role::curator, query));
+  const auto page = STRATA_TRY(services.store.records().page(table_id, Role::curator, query));
   store::WriteRecords write;
   write.op = "transfer";
   write.may_create = false;
@@ -46,7 +52,7 @@ Result<MarkTransfer> bring_marks_of(const Services& services, std::int64_t table
     if (!input.values.empty()) write.records.push_back(std::move(input));
   }
   if (write.records.empty()) return brought;
-  const auto change = STRATA_TRY(services.store.write_records(table_id, write, user));
+  const auto change = STRATA_TRY(services.store.records().write(table_id, write, user));
   if (!change.problems.empty()) return tl::unexpected(change.problems.front().problem);
   services.changes.records_changed(change, user);
   return brought;

@@ -4,8 +4,11 @@
 #include <exception>
 
 #include "app/layers/formula_layers.h"
+#include "core/layer.h"
 #include "core/log.h"
+#include "core/role.h"
 #include "room/room.h"
+#include "store/layers.h"
 #include "store/store.h"
 
 namespace strata::app {
@@ -43,13 +46,13 @@ void Recomputer::run() {
       if (wake_.wait_for(lock, kBetweenLooks, [this] { return stopping_; })) return;
     }
     try {
-      const auto layers = services_.store.layers_to_recompute();
+      const auto layers = services_.store.layers().to_recompute();
       if (!layers) continue;  // the database is away
       for (const Layer& layer : *layers) {
         if (is_stopping()) return;
         recompute(layer);
       }
-      const auto uncounted = services_.store.layers_to_sum();
+      const auto uncounted = services_.store.layers().to_sum();
       if (!uncounted) continue;
       for (const Layer& layer : *uncounted) {
         if (is_stopping()) return;

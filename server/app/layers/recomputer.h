@@ -16,7 +16,7 @@ namespace strata::app {
 // an edit, a record, a layer that is computed itself. Edits of the model wait meanwhile, so it lets
 // a second pass in which nobody paints, but ten at most. Asks the database once a second, so that
 // nothing is forgotten over a restart. What fails is tried again, less and less often. Layers whose
-// surface was never counted for the database (Store::layers_to_sum), as those of older versions,
+// surface was never counted for the database (store::Layers::to_sum), as those of older versions,
 // are counted likewise.
 class Recomputer {
  public:

@@ -1,9 +1,11 @@
 #include "app/layers/vertex_colors.h"
 
 #include "core/picture.h"
+#include "core/role.h"
 #include "room/look_shelf.h"
 #include "room/record_colors.h"
 #include "room/room.h"
+#include "store/looks.h"
 #include "store/store.h"
 
 namespace strata::app {
@@ -11,7 +13,7 @@ namespace {
 
 Result<void> add_photo(const Services& services, const room::LookView& look,
                        query::VertexColors& colors) {
-  const auto encoded = STRATA_TRY(services.store.look_picture(look.look_id));
+  const auto encoded = STRATA_TRY(services.store.looks().picture(look.look_id));
   const auto info = STRATA_TRY(inspect_picture(encoded));
   // Reading takes at most twice the memory of its pixels.
   const auto bytes =

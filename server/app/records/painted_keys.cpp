@@ -6,8 +6,16 @@
 #include "app/change_notifier.h"
 #include "app/edits.h"
 #include "app/records/readable_area.h"
+#include "core/expression.h"
+#include "core/layer.h"
+#include "core/role.h"
+#include "core/table.h"
 #include "room/room.h"
+#include "store/layers.h"
+#include "store/records.h"
 #include "store/store.h"
+#include "store/table_changes.h"
+#include "store/tables.h"
 
 namespace strata::app {
 namespace {
@@ -25,7 +33,7 @@ std::string area_text(double area_m2) {
 
 Result<std::vector<PaintedLayer>> painted_layers(const Services& services, std::int64_t table_id,
                                                  Role seen_by) {
-  auto layers = STRATA_TRY(services.store.layers_of_table(table_id, seen_by));
+  auto layers = STRATA_TRY(services.store.layers().of_table(table_id, seen_by));
   std::vector<PaintedLayer> painted;
   for (Layer& layer : layers) {
     if (layer.sequence == 0) continue;  // nothing was ever painted there
@@ -98,8 +106,8 @@ Result<void> repaint_key(const Services& services, const std::vector<PaintedLaye
 Result<void> records_from_legend(const Services& services, const Layer& layer,
                                  const std::vector<std::int64_t>& keys, const Author& author) {
   if (keys.empty() || !layer.table || !lists_values(layer.palette)) return {};
-  const auto missing = STRATA_TRY(services.store.missing_records(*layer.table, keys));
-  auto table = STRATA_TRY(services.store.table(std::to_string(*layer.table), author.role));
+  const auto missing = STRATA_TRY(services.store.records().missing(*layer.table, keys));
+  auto table = STRATA_TRY(services.store.tables().find(std::to_string(*layer.table), author.role));
   const auto text =
       std::find_if(table.columns.begin(), table.columns.end(),
                    [](const Column& column) { return column.kind == ColumnKind::text; });
@@ -115,7 +123,7 @@ Result<void> records_from_legend(const Services& services, const Layer& layer,
   }
   if (write.records.empty()) return {};
   STRATA_TRY(room::check_not_locked(layer, author.role));
-  auto change = STRATA_TRY(services.store.write_records(table.id, write, author.user));
+  auto change = STRATA_TRY(services.store.records().write(table.id, write, author.user));
   if (!change.problems.empty()) return tl::unexpected(change.problems.front().problem);
   services.changes.records_changed(change, author.user);
   return {};
@@ -124,7 +132,7 @@ Result<void> records_from_legend(const Services& services, const Layer& layer,
 Result<void> check_keys(store::Store& store, const Layer& layer,
                         const std::vector<std::int64_t>& keys) {
   if (keys.empty() || !layer.table) return {};
-  const auto missing = STRATA_TRY(store.missing_records(*layer.table, keys));
+  const auto missing = STRATA_TRY(store.records().missing(*layer.table, keys));
   if (missing.empty()) return {};
   std::string named;
   for (std::size_t i = 0; i < std::min(missing.size(), kMostNamed); ++i)

@@ -3,7 +3,11 @@
 #include <algorithm>
 
 #include "core/mark.h"
+#include "core/model.h"
+#include "core/role.h"
+#include "core/table.h"
 #include "room/room.h"
+#include "store/models.h"
 #include "store/store.h"
 
 namespace strata::app {
@@ -32,7 +36,7 @@ Result<RecordMeasures> RecordMeasures::of_place(const Services& services, const 
     measures.metres_[place.model->id] = place.model->metres();
     return measures;
   }
-  const auto models = STRATA_TRY(services.store.models(place.table.project_id));
+  const auto models = STRATA_TRY(services.store.models().all(place.table.project_id));
   for (const Model& model : models) measures.metres_[model.id] = model.metres();
   return measures;
 }

@@ -6,23 +6,24 @@
 #include "core/number_text.h"
 #include "core/slug.h"
 #include "core/term_list.h"
+#include "store/records.h"
 
 namespace strata::app {
 namespace {
 
 constexpr int kDeepest = 3;  // tables may be called by each other's records, round in circles
 
-std::map<std::int64_t, std::string> titles_of(store::Store& store,
-                                              const store::Store::RecordPage& page, Role seen_by,
-                                              const std::string& language, int depth) {
+std::map<std::int64_t, std::string> titles_of(store::Store& store, const store::RecordPage& page,
+                                              Role seen_by, const std::string& language,
+                                              int depth) {
   std::map<std::int64_t, std::string> names;
   const Column* title = name_column(page.table);
   if (!title) return names;
   std::map<std::int64_t, std::string> named;  // of the records that titles are
   if (title->kind == ColumnKind::term && depth < kDeepest) {
-    store::Store::RecordQuery all;
+    store::RecordQuery all;
     all.limit = store::kMostRecords;
-    if (const auto target = store.records(*title->target, seen_by, all)) {
+    if (const auto target = store.records().page(*title->target, seen_by, all)) {
       if (const auto terms = term_columns(target->table))
         for (const ListedTerm& listed : list_terms(*terms, target->records))
           named[listed.key] = label_in(listed.term, language);
@@ -58,9 +59,9 @@ void RecordWords::add(std::int64_t key, const std::string& word) {
 
 Result<RecordWords> RecordWords::load(store::Store& store, std::int64_t table_id, Role seen_by,
                                       const std::string& language) {
-  store::Store::RecordQuery all;
+  store::RecordQuery all;
   all.limit = store::kMostRecords;
-  const auto page = STRATA_TRY(store.records(table_id, seen_by, all));
+  const auto page = STRATA_TRY(store.records().page(table_id, seen_by, all));
   RecordWords words;
   words.table_ = page.table.name;
   if (const auto terms = term_columns(page.table)) {

@@ -1,15 +1,16 @@
 #include "app/strokes/tool_shelf.h"
+#include "store/tools.h"
 
 namespace strata::app {
 
 Result<FoundTool> ToolShelf::find(const std::string& ref) {
-  auto tool = STRATA_TRY(store_.tool(ref));
+  auto tool = STRATA_TRY(store_.tools().find(ref));
   {
     std::lock_guard lock(mutex_);
     if (const auto found = ready_.find(tool.id); found != ready_.end())
       return FoundTool{tool.id, found->second};
   }
-  auto bits = STRATA_TRY(store_.tool_shape(tool.id));
+  auto bits = STRATA_TRY(store_.tools().shape(tool.id));
   auto shape = std::make_shared<const ShapeTexture>(bits);
   std::lock_guard lock(mutex_);
   // strokes hold theirs; the next that are asked for come back

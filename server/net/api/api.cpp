@@ -16,6 +16,10 @@
 #include "net/http/origin.h"
 #include "net/http/precondition.h"
 #include "net/serialization/people_wire.h"
+#include "store/accounts.h"
+#include "store/projects.h"
+#include "store/records.h"
+#include "store/tables.h"
 
 namespace strata::net {
 namespace {
@@ -29,11 +33,11 @@ bool changes(Method method) {
 
 Result<void> check_record(store::Store& store, std::int64_t project_id,
                           const app::EditorBook::Record& record) {
-  const auto table = store.table(std::to_string(record.table), Role::viewer);
+  const auto table = store.tables().find(std::to_string(record.table), Role::viewer);
   if (!table && table.error().code != ErrorCode::not_found) return tl::unexpected(table.error());
   if (!table || table->project_id != project_id)
     return no_such("table", std::to_string(record.table), "table");
-  const auto missing = STRATA_TRY(store.missing_records(record.table, std::vector{record.key}));
+  const auto missing = STRATA_TRY(store.records().missing(record.table, std::vector{record.key}));
   if (!missing.empty()) return no_such("record", std::to_string(record.key), "key");
   return {};
 }
@@ -360,9 +364,9 @@ Result<Api::LiveEntry> Api::admit_live(Request& request) {
   STRATA_TRY(check_upgrade_origin(request, options_.allowed_origins));
   auto room = rooms_.open(request.segments[3], request.role());
   if (!room) return tl::unexpected(room.error());
-  auto project = STRATA_TRY(store_.project(std::to_string((*room)->model().project_id)));
+  auto project = STRATA_TRY(store_.projects().find(std::to_string((*room)->model().project_id)));
   // What the others read of them. A person who is gone will be sent out anyway.
-  auto person = store_.person(request.user());
+  auto person = store_.accounts().find(request.user());
   if (!person && person.error().code != ErrorCode::not_found) return tl::unexpected(person.error());
   std::optional<protocol::PersonalView> view;
   if (person && !request.principal->kiosk) {

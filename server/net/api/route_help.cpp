@@ -9,6 +9,8 @@
 #include "net/http/edit_book.h"
 #include "net/serialization/wire.h"
 #include "room/room.h"
+#include "store/layers.h"
+#include "store/models.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -120,8 +122,8 @@ void apply_edit(const RouteContext& context, const Request& request,
 }
 
 Result<Layer> stored_layer(const RouteContext& context, const Request& request) {
-  auto model = STRATA_TRY(context.store.model(request.param("model")));
-  return context.store.layer(model.id, request.param("layer"), request.role());
+  auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  return context.store.layers().find(model.id, request.param("layer"), request.role());
 }
 
 Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector<std::string>& refs,

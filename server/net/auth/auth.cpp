@@ -2,8 +2,10 @@
 
 #include "core/digest.h"
 #include "net/http/origin.h"
+#include "store/accounts.h"
 #include "store/kiosks.h"
 #include "store/password.h"
+#include "store/tokens.h"
 
 namespace strata::net {
 namespace {
@@ -57,7 +59,7 @@ Result<std::optional<Principal>> Authenticator::identify_token(const std::string
       remembered_.erase(found);
     }
   }
-  auto stored = STRATA_TRY(store_.find_token(token));
+  auto stored = STRATA_TRY(store_.tokens().find(token));
   // Links are traded for sessions; they are no tokens of their own.
   using store::TokenKind;
   if (stored && stored->kind != TokenKind::session && stored->kind != TokenKind::script)
@@ -94,7 +96,7 @@ Result<Principal> Authenticator::owner_by_token() {
     changes = changes_;
     if (owner_token_now_.until > now) return principal(owner_token_now_.is_script);
   }
-  const auto has_password = STRATA_TRY(store_.administrator_has_password());
+  const auto has_password = STRATA_TRY(store_.accounts().administrator_has_password());
   std::lock_guard lock(mutex_);
   if (changes == changes_) owner_token_now_ = {has_password, now + kRememberFor};
   return principal(has_password);
@@ -139,14 +141,14 @@ Result<std::optional<Principal>> Authenticator::identify(const Request& request)
 Result<std::string> Authenticator::session_for_password(const std::string& user,
                                                         const std::string& password,
                                                         const std::string& agent) {
-  const auto hash = STRATA_TRY(store_.password_of(user));
+  const auto hash = STRATA_TRY(store_.accounts().password_of(user));
   const auto fits = STRATA_TRY(store::password_fits(hash, password));
   if (!fits)
     return fail(ErrorCode::unauthenticated, "Not signed in",
                 "Name and password do not fit together. Whoever invited you can send a new link.",
                 "password");
-  auto session = store_.create_token(store::TokenKind::session, user, Role::viewer,
-                                     kSessionLifetime, agent, hash);
+  auto session = store_.tokens().create(store::TokenKind::session, user, Role::viewer,
+                                        kSessionLifetime, agent, hash);
   if (!session)
     return session.error().code == ErrorCode::not_found ? unknown_secret()
                                                         : tl::unexpected(session.error());
@@ -156,7 +158,7 @@ Result<std::string> Authenticator::session_for_password(const std::string& user,
 Result<std::string> Authenticator::session_for_token(const std::string& token,
                                                      const std::string& agent) {
   if (token.size() > kMaxTokenLength) return unknown_secret();
-  auto by_link = STRATA_TRY(store_.redeem_owner_link(token, kSessionLifetime, agent));
+  auto by_link = STRATA_TRY(store_.tokens().redeem_owner_link(token, kSessionLifetime, agent));
   if (by_link) return *by_link;
   auto principal = STRATA_TRY(identify_token(token));
   if (!principal) return unknown_secret();
@@ -166,15 +168,15 @@ Result<std::string> Authenticator::session_for_token(const std::string& token,
         ErrorCode::forbidden, "Not for signing in",
         "This token is for scripts, as `Authorization: Bearer TOKEN`. In a browser sign in with name and password.",
         "token");
-  auto session = store_.create_token(store::TokenKind::session, principal->user, Role::owner,
-                                     kSessionLifetime, agent);
+  auto session = store_.tokens().create(store::TokenKind::session, principal->user, Role::owner,
+                                        kSessionLifetime, agent);
   if (!session) return tl::unexpected(session.error());
   return std::move(session->secret);
 }
 
 Result<std::string> Authenticator::session_for_link(const std::string& link,
                                                     const std::string& agent) {
-  auto session = STRATA_TRY(store_.redeem_owner_link(link, kSessionLifetime, agent));
+  auto session = STRATA_TRY(store_.tokens().redeem_owner_link(link, kSessionLifetime, agent));
   if (!session)
     return fail(
         ErrorCode::unauthenticated, "Link not valid",
@@ -191,7 +193,7 @@ void Authenticator::forget() {
 }
 
 Result<void> Authenticator::end_session(const std::string& session_token) {
-  auto ended = store_.revoke_token(session_token);
+  auto ended = store_.tokens().revoke(session_token);
   forget();
   return ended;
 }

@@ -4,9 +4,16 @@
 #include <limits>
 #include <set>
 
+#include "core/layer.h"
+#include "core/role.h"
+#include "core/table.h"
 #include "net/auth/project_gate.h"
+#include "store/attachments.h"
+#include "store/layers.h"
+#include "store/models.h"
 #include "store/named_parts.h"
 #include "store/store.h"
+#include "store/tables.h"
 
 namespace strata::net {
 namespace {
@@ -39,7 +46,7 @@ using Tables = std::set<std::int64_t>;
 // Tables of the model's public layers and of the tour, and the lists whose terms their public
 // columns hold.
 Result<Tables> tables_of(const RouteContext& context, const KioskPass& kiosk) {
-  const auto layers = STRATA_TRY(context.store.layers(kiosk.model, Role::viewer));
+  const auto layers = STRATA_TRY(context.store.layers().of_model(kiosk.model, Role::viewer));
   const auto tour = STRATA_TRY(context.store.tours().find(kiosk.model, std::to_string(kiosk.tour)));
   Tables tables;
   for (const Layer& layer : layers)
@@ -49,7 +56,7 @@ Result<Tables> tables_of(const RouteContext& context, const KioskPass& kiosk) {
       tables.insert(records.at("table").get<std::int64_t>());
   Tables with_terms = tables;
   for (const std::int64_t id : tables) {
-    const auto table = context.store.table(std::to_string(id), Role::viewer);
+    const auto table = context.store.tables().find(std::to_string(id), Role::viewer);
     if (!table && table.error().code == ErrorCode::not_found) continue;
     if (!table) return tl::unexpected(table.error());
     for (const Column& column : table->columns)
@@ -60,7 +67,7 @@ Result<Tables> tables_of(const RouteContext& context, const KioskPass& kiosk) {
 
 Result<bool> has_table(const RouteContext& context, const KioskPass& kiosk,
                        const std::string& ref) {
-  const auto table = context.store.table(ref, Role::viewer);
+  const auto table = context.store.tables().find(ref, Role::viewer);
   if (!table)
     return table.error().code == ErrorCode::not_found ? Result<bool>(false)
                                                       : tl::unexpected(table.error());
@@ -78,7 +85,7 @@ constexpr Place kPlaces[] = {
     {"model",
      [](const RouteContext& context, const KioskPass& kiosk,
         const std::string& ref) -> Result<bool> {
-       const auto model = context.store.model(ref);
+       const auto model = context.store.models().find(ref);
        if (!model && model.error().code != ErrorCode::not_found)
          return tl::unexpected(model.error());
        return model && model->id == kiosk.model;
@@ -96,7 +103,7 @@ constexpr Place kPlaces[] = {
         const std::string& ref) -> Result<bool> {
        const auto id = parse_integer(ref, 1, std::numeric_limits<std::int64_t>::max(), {});
        if (!id) return false;
-       const auto attachment = context.store.attachment(*id, {{}, Role::viewer});
+       const auto attachment = context.store.attachments().find(*id, {{}, Role::viewer});
        if (!attachment)
          return attachment.error().code == ErrorCode::not_found
                     ? Result<bool>(false)

@@ -2,10 +2,15 @@
 
 #include <limits>
 
+#include "core/role.h"
 #include "jobs/job_queue.h"
+#include "store/attachments.h"
 #include "store/comments.h"
 #include "store/kiosks.h"
+#include "store/models.h"
+#include "store/projects.h"
 #include "store/store.h"
+#include "store/tables.h"
 
 namespace strata::net {
 namespace {
@@ -29,32 +34,35 @@ Result<std::int64_t> project_of_number(
 
 constexpr Place kProject = {
     "project", [](const RouteContext& context, const std::string& ref) -> Result<std::int64_t> {
-      const auto project = STRATA_TRY(context.store.project(ref));
+      const auto project = STRATA_TRY(context.store.projects().find(ref));
       return project.id;
     }};
 
 // Addresses in projects have one of these.
 constexpr Place kPlaces[] = {
     kProject,
-    {"model", [](const RouteContext& context,
-                 const std::string& ref) { return project_id_of(context.store.model(ref)); }},
+    {"model",
+     [](const RouteContext& context, const std::string& ref) {
+       return project_id_of(context.store.models().find(ref));
+     }},
     {"table",
      [](const RouteContext& context, const std::string& ref) {
-       return project_id_of(context.store.table(ref, Role::owner));
+       return project_id_of(context.store.tables().find(ref, Role::owner));
      }},
     {"attachment",
      [](const RouteContext& context, const std::string& ref) {
        return project_of_number(ref, [&](std::int64_t id) -> Result<std::int64_t> {
-         const auto attachment = STRATA_TRY(context.store.attachment(id, {{}, Role::owner}));
+         const auto attachment =
+             STRATA_TRY(context.store.attachments().find(id, {{}, Role::owner}));
          return project_id_of(
-             context.store.table(std::to_string(attachment.table_id), Role::owner));
+             context.store.tables().find(std::to_string(attachment.table_id), Role::owner));
        });
      }},
     {"comment",
      [](const RouteContext& context, const std::string& ref) {
        return project_of_number(ref, [&](std::int64_t id) -> Result<std::int64_t> {
          const auto comment = STRATA_TRY(context.store.comments().comment(id, Role::owner));
-         return project_id_of(context.store.model(std::to_string(comment.model_id)));
+         return project_id_of(context.store.models().find(std::to_string(comment.model_id)));
        });
      }},
     {"job",

@@ -1,6 +1,7 @@
 #include "net/http/answer_book.h"
 
 #include "core/digest.h"
+#include "store/answers.h"
 
 namespace strata::net {
 
@@ -45,7 +46,7 @@ Result<std::optional<nlohmann::json>> AnswerBook::begin(const Request& request) 
                   "The first call with this Idempotency-Key has not ended yet; ask again later.",
                   "Idempotency-Key");
   }
-  auto kept = store_.find_answer(scoped);
+  auto kept = store_.answers().find(scoped);
   if (kept && *kept && (*kept)->value("request", std::string()) != fingerprint(request))
     kept = fail(ErrorCode::invalid, "Key used for another call",
                 "This Idempotency-Key was used with another body; take a new key for a new call.",

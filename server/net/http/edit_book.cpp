@@ -1,4 +1,5 @@
 #include "net/http/edit_book.h"
+#include "store/journal_reads.h"
 
 namespace strata::net {
 namespace {
@@ -19,7 +20,7 @@ Result<void> EditBook::begin(std::int64_t model_id, const room::EditRequest& edi
     at_work.record = edit.record;
     ++at_work.calls;
   }
-  auto journal = store_.journal_state(model_id, std::span(&edit.id, 1));
+  auto journal = store_.journal().state(model_id, std::span(&edit.id, 1));
   Result<void> good;
   if (!journal)
     good = tl::unexpected(journal.error());

@@ -3,10 +3,18 @@
 #include <set>
 
 #include "core/digest.h"
+#include "core/layer.h"
+#include "core/look.h"
+#include "core/model.h"
 #include "core/uuid.h"
 #include "net/api/route_help.h"
 #include "room/room.h"
+#include "store/layers.h"
+#include "store/looks.h"
+#include "store/models.h"
+#include "store/projects.h"
 #include "store/store.h"
+#include "store/tables.h"
 
 namespace strata::net {
 namespace {
@@ -71,7 +79,7 @@ bool add_room(std::string& text, const room::Room& room, std::optional<std::int6
 }
 
 bool add_project(std::string& text, const RouteContext& context, std::int64_t project) {
-  const auto state = context.store.project_state(project);
+  const auto state = context.store.projects().state(project);
   if (!state) return false;
   add(text, *state);
   return true;
@@ -148,7 +156,7 @@ StateOf state_of_model(const RouteContext& context) {
 StateOf state_of_records(const RouteContext& context) {
   return [&context](const Request& request) -> std::optional<std::string> {
     if (request.params.contains("layer")) return model_state(context, request);
-    const auto table = context.store.table(request.param("table"), request.role());
+    const auto table = context.store.tables().find(request.param("table"), request.role());
     std::string text;
     if (!table || !add_project(text, context, table->project_id)) return std::nullopt;
     return text;
@@ -157,9 +165,9 @@ StateOf state_of_records(const RouteContext& context) {
 
 StateOf state_of_painted_table(const RouteContext& context) {
   return [&context](const Request& request) -> std::optional<std::string> {
-    const auto table = context.store.table(request.param("table"), request.role());
+    const auto table = context.store.tables().find(request.param("table"), request.role());
     if (!table) return std::nullopt;
-    const auto layers = context.store.layers_of_table(table->id, request.role());
+    const auto layers = context.store.layers().of_table(table->id, request.role());
     if (!layers) return std::nullopt;
     std::set<std::int64_t> models;
     std::string text;
@@ -178,9 +186,9 @@ StateOf state_of_painted_table(const RouteContext& context) {
 
 StateOf state_of_look(const RouteContext& context) {
   return [&context](const Request& request) -> std::optional<std::string> {
-    const auto model = context.store.model(request.param("model"));
+    const auto model = context.store.models().find(request.param("model"));
     if (!model) return std::nullopt;
-    const auto look = context.store.look(model->id, request.param("look"));
+    const auto look = context.store.looks().find(model->id, request.param("look"));
     if (!look) return std::nullopt;
     std::string text;
     for (const std::int64_t number : {model->id, model->version, look->id}) add(text, number);

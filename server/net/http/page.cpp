@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/digest.h"
+#include "store/projects.h"
 
 namespace strata::net {
 namespace {
@@ -179,15 +180,15 @@ Result<Slice> slice_of(const Page& page, std::span<const NumberKey> sorted) {
                     [&](std::size_t at) { return ListPlace(sorted[at]); });
 }
 
-Result<Slice> slice_of(const Page& page, std::span<const store::Store::NamedId> sorted,
+Result<Slice> slice_of(const Page& page, std::span<const store::NamedId> sorted,
                        store::Store& store) {
   std::size_t begin = static_cast<std::size_t>(page.offset);
   if (page.after) {
     const ListPlace& after = *page.after;
     if (after.size() != 2 || !after[0].is_string() || !after[1].is_number_integer())
       return wrong_place();
-    auto until =
-        store.names_until({after[0].get<std::string>(), after[1].get<std::int64_t>()}, sorted);
+    auto until = store.projects().names_until(
+        {after[0].get<std::string>(), after[1].get<std::int64_t>()}, sorted);
     if (!until) return tl::unexpected(until.error());
     begin = *until;
   }

@@ -9,6 +9,7 @@
 
 #include "net/http/http_types.h"
 #include "store/list_place.h"
+#include "store/projects.h"
 #include "store/store.h"
 
 // Pages of lists: `limit`, and where the page begins: behind the entry at which another page ended
@@ -61,8 +62,8 @@ struct Slice {
 };
 using NumberKey = std::vector<std::int64_t>;  // compared number by number
 Result<Slice> slice_of(const Page& page, std::span<const NumberKey> sorted);
-// The same of a list that the database sorts by names (Store::names_until).
-Result<Slice> slice_of(const Page& page, std::span<const store::Store::NamedId> sorted,
+// The same of a list that the database sorts by names (store::Projects::names_until).
+Result<Slice> slice_of(const Page& page, std::span<const store::NamedId> sorted,
                        store::Store& store);
 
 template <class Items, class KeyOf>
@@ -74,7 +75,7 @@ Result<Slice> slice_by(const Page& page, const Items& items, const KeyOf& key_of
 template <class Items, class NameOf>
 Result<Slice> slice_by_name(const Page& page, const Items& items, store::Store& store,
                             const NameOf& name_of) {
-  std::vector<store::Store::NamedId> names;
+  std::vector<store::NamedId> names;
   for (const auto& item : items) names.push_back(name_of(item));
   return slice_of(page, names, store);
 }

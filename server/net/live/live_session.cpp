@@ -9,6 +9,7 @@
 #include "net/serialization/wire.h"
 #include "protocol/problem.h"
 #include "room/room.h"
+#include "store/journal_reads.h"
 
 namespace strata::net {
 namespace {
@@ -351,7 +352,7 @@ void LiveSession::paint(const protocol::StrokeExtend& message) {
 void LiveSession::find_start(const protocol::StrokeExtend& message) {
   const auto tool = shared_->strokes->tool(owner_, message.stroke);
   if (!tool) return;
-  auto page = shared_->store->history(tool->layer_id, kHistoryToSearch, 0);
+  auto page = shared_->store->journal().history(tool->layer_id, kHistoryToSearch, 0);
   // the stroke starts with a gap rather than not at all; the edit itself will tell that the
   // database is away
   if (!page) return;

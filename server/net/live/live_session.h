@@ -12,6 +12,11 @@
 
 #include "app/strokes/editor_book.h"
 #include "app/strokes/stroke_book.h"
+#include "core/layer.h"
+#include "core/look.h"
+#include "core/model.h"
+#include "core/role.h"
+#include "core/table.h"
 #include "net/api/metrics.h"
 #include "net/http/http_types.h"
 #include "net/http/token_bucket.h"

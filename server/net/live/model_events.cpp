@@ -2,6 +2,8 @@
 
 #include "net/auth/still_welcome.h"
 #include "net/serialization/activity_wire.h"
+#include "store/models.h"
+#include "store/projects.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -37,7 +39,7 @@ bool ModelEvents::is_still_welcome() {
   const auto now = std::chrono::steady_clock::now();
   if (now - checked_ < kCheckEvery) return true;
   checked_ = now;
-  const auto model = context_.store.model(std::to_string(model_));
+  const auto model = context_.store.models().find(std::to_string(model_));
   if (!model) return model.error().code != ErrorCode::not_found;
   return model->project_id == project_ &&
          net::is_still_welcome(context_.auth, secret_, project_, role_);
@@ -50,7 +52,7 @@ std::optional<ModelEvents::Lines> ModelEvents::lines_since(std::int64_t time_us)
   Lines lines;
   for (int page = 0; page < kMostPages; ++page) {
     query.limit = page == 0 ? kFirstPage : kPage;
-    auto found = context_.store.activity(project_, role_, query);
+    auto found = context_.store.projects().activity(project_, role_, query);
     if (!found) return std::nullopt;
     for (store::Activity& line : found->lines) {
       if (microseconds(line) < time_us) return lines;

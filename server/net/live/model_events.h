@@ -6,7 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "core/model.h"
+#include "core/role.h"
 #include "net/api/route_help.h"
+#include "store/activity.h"
 #include "store/store.h"
 
 namespace strata::net {

@@ -4,6 +4,7 @@
 
 #include "core/timestamp.h"
 #include "room/room.h"
+#include "store/journal_reads.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -35,7 +36,7 @@ Result<std::optional<std::int64_t>> find_sequence(const RouteContext& context,
         ErrorCode::invalid, "Not a time",
         "`at` is a sequence of the model or a time such as 2026-05-04T12:00:00Z (a + of a zone is %2B).",
         "at");
-  auto sequence = context.store.sequence_at(room.model().id, *utc);
+  auto sequence = context.store.journal().sequence_at(room.model().id, *utc);
   if (!sequence) return tl::unexpected(sequence.error());
   return *sequence;
 }

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "core/person_color.h"
+#include "store/accounts.h"
 
 namespace strata::net {
 namespace {
@@ -31,7 +32,7 @@ void add_color(nlohmann::json& json, const store::Person& person) {
 Result<People> People::load(store::Store& store, const std::vector<std::string>& names) {
   People people;
   if (names.empty()) return people;
-  const auto found = STRATA_TRY(store.people_called(names));
+  const auto found = STRATA_TRY(store.accounts().called(names));
   for (const store::Person& person : found) people.portraits_[person.name] = portrait_of(person);
   return people;
 }

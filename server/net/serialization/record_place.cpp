@@ -1,21 +1,28 @@
 #include "net/serialization/record_place.h"
 
 #include "core/no_such.h"
+#include "core/role.h"
+#include "core/table.h"
+#include "store/layers.h"
+#include "store/models.h"
+#include "store/records.h"
 #include "store/store.h"
+#include "store/tables.h"
 
 namespace strata::net {
 
 Result<app::RecordPlace> record_place(const RouteContext& context, const Request& request) {
   if (!request.params.contains("layer")) {
-    auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+    auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
     return app::RecordPlace{std::move(table), {}, {}};
   }
-  auto model = STRATA_TRY(context.store.model(request.param("model")));
-  auto layer = STRATA_TRY(context.store.layer(model.id, request.param("layer"), request.role()));
+  auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  auto layer =
+      STRATA_TRY(context.store.layers().find(model.id, request.param("layer"), request.role()));
   if (!layer.table)
     return fail(ErrorCode::invalid, "Numeric layer",
                 layer.name + " holds numbers; only database layers have records.", "layer");
-  auto table = context.store.table(std::to_string(*layer.table), request.role());
+  auto table = context.store.tables().find(std::to_string(*layer.table), request.role());
   if (!table) return tl::unexpected(table.error());
   return app::RecordPlace{std::move(*table), std::move(model), std::move(layer)};
 }
@@ -28,10 +35,10 @@ Result<std::int64_t> record_key(const Request& request) {
 
 Result<Record> stored_record(const RouteContext& context, const Table& table, Role seen_by,
                              std::int64_t key, std::optional<std::int64_t> at, Table* then) {
-  store::Store::RecordQuery query;
+  store::RecordQuery query;
   query.keys = std::vector{key};
   query.at = at;
-  auto page = STRATA_TRY(context.store.records(table.id, seen_by, query));
+  auto page = STRATA_TRY(context.store.records().page(table.id, seen_by, query));
   if (page.records.empty()) return no_such("record", std::to_string(key));
   if (then) *then = page.table;
   return page.records.front();

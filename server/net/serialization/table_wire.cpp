@@ -5,12 +5,13 @@
 #include "core/utf8.h"
 #include "net/http/http_types.h"
 #include "net/serialization/wire.h"
+#include "store/tables.h"
 
 namespace strata::net {
 Result<Table> table_of_project(store::Store& store, std::int64_t project_id,
                                const protocol::TableRef& ref, const std::string& field) {
   const std::string name = protocol::to_ref(ref);
-  auto table = store.table(name, Role::curator);
+  auto table = store.tables().find(name, Role::curator);
   if (!table && table.error().code != ErrorCode::not_found) return table;
   if (!table || table->project_id != project_id)
     return fail(ErrorCode::invalid, "No such table", "The project has no table `" + name + "`.",
@@ -108,7 +109,7 @@ Result<std::int64_t> sequence_at(store::Store& store, const Table& table, const 
   if (!utc)
     return fail(ErrorCode::invalid, "Not a moment",
                 "`at` is a sequence of the table, or a time such as 2024-02-29T12:00:00Z.", "at");
-  return store.table_sequence_at(table.id, *utc);
+  return store.tables().sequence_at(table.id, *utc);
 }
 
 }  // namespace strata::net

@@ -3,10 +3,15 @@
 #include <algorithm>
 #include <set>
 
+#include "core/layer.h"
+#include "core/table.h"
 #include "net/serialization/at_field.h"
 #include "net/serialization/table_wire.h"
 #include "net/serialization/wire.h"
+#include "store/layers.h"
+#include "store/records.h"
 #include "store/store.h"
+#include "store/tables.h"
 
 namespace strata::net {
 namespace {
@@ -48,13 +53,13 @@ Result<nlohmann::json> kept_records(const RouteContext& context, const Model& mo
   for (std::size_t i = 0; i < all.size(); ++i) {
     const protocol::TourRecords& asked = all[i];
     const std::string here = at(field, i);
-    auto table = context.store.table(asked.table, role);
+    auto table = context.store.tables().find(asked.table, role);
     if (!table && table.error().code != ErrorCode::not_found) return tl::unexpected(table.error());
     if (!table || table->project_id != model.project_id)
       return fail(ErrorCode::invalid, "No such table",
                   "The model's project has no table `" + asked.table + "`.", here + ".table");
     STRATA_TRY(once(known, table->id, "table", here + ".table"));
-    const auto missing = context.store.missing_records(table->id, asked.keys);
+    const auto missing = context.store.records().missing(table->id, asked.keys);
     if (!missing) return tl::unexpected(missing.error());
     for (std::size_t k = 0; k < asked.keys.size(); ++k)
       if (std::ranges::find(*missing, asked.keys[k]) != missing->end())
@@ -72,7 +77,7 @@ Result<nlohmann::json> kept_layers(const RouteContext& context, const Model& mod
   nlohmann::json kept = nlohmann::json::array();
   std::set<std::int64_t> known;
   for (std::size_t i = 0; i < refs.size(); ++i) {
-    const auto layer = context.store.layer(model.id, refs[i], role);
+    const auto layer = context.store.layers().find(model.id, refs[i], role);
     if (!layer) return at_field(layer.error(), at(field, i));
     STRATA_TRY(once(known, layer->id, "layer", at(field, i)));
     kept.push_back(layer->id);
@@ -117,7 +122,7 @@ class Seen {
  public:
   static Result<Seen> of(const RouteContext& context, std::int64_t model_id, Role role) {
     auto views = STRATA_TRY(context.store.views().slugs(model_id));
-    auto layers = STRATA_TRY(context.store.layers(model_id, role));
+    auto layers = STRATA_TRY(context.store.layers().of_model(model_id, role));
     Seen seen(context, role);
     seen.views_ = std::move(views);
     for (const Layer& layer : layers) seen.layers_[layer.id] = layer.slug;
@@ -162,7 +167,7 @@ class Seen {
   Result<std::optional<Table>> find_table(std::int64_t id) {
     const auto known = tables_.find(id);
     if (known != tables_.end()) return known->second;
-    auto table = context_->store.table(std::to_string(id), role_);
+    auto table = context_->store.tables().find(std::to_string(id), role_);
     if (!table && table.error().code != ErrorCode::not_found) return tl::unexpected(table.error());
     return tables_[id] = table ? std::optional(std::move(*table)) : std::nullopt;
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/model.h"
+#include "core/role.h"
 #include "net/api/route_help.h"
 #include "store/named_parts.h"
 #include "store/store.h"

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 
+#include "core/layer.h"
 #include "query/expression_parser.h"
 #include "room/room.h"
+#include "store/records.h"
 #include "store/store.h"
+#include "store/tables.h"
 
 namespace strata::net {
 namespace {
@@ -14,18 +17,18 @@ void leave_out_columns(store::Store& store, Role role, std::int64_t table_id,
                        nlohmann::json& shown) {
   if (const auto palette = shown.find("palette");
       palette != shown.end() && palette->contains("column")) {
-    const auto table = store.table(std::to_string(table_id), role);
+    const auto table = store.tables().find(std::to_string(table_id), role);
     if (!table || !find_column(table->columns, palette->at("column").get<std::string>()))
       shown.erase(palette);
   }
   if (const auto highlight = shown.find("highlight");
       highlight != shown.end() && highlight->contains("filter")) {
-    store::Store::RecordQuery asked;
+    store::RecordQuery asked;
     asked.limit = 1;
     auto filter = query::parse_condition(highlight->at("filter").get<std::string>(), "filter",
                                          query::Names::columns);
     if (filter) asked.filter = std::move(*filter);
-    if (!filter || !store.records(table_id, role, asked)) shown.erase(highlight);
+    if (!filter || !store.records().page(table_id, role, asked)) shown.erase(highlight);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "core/role.h"
 #include "net/api/route_help.h"
 #include "net/serialization/wire.h"
 #include "room/room.h"

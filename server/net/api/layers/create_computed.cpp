@@ -3,8 +3,11 @@
 #include "app/edits.h"
 #include "app/layers/computed_layers.h"
 #include "app/layers/formula_layers.h"
+#include "core/layer.h"
+#include "core/role.h"
 #include "net/http/answer_book.h"
 #include "room/room.h"
+#include "store/layers.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -70,8 +73,8 @@ Result<Response> create_formula_layer(const RouteContext& context, JobBook& book
     layers.take_back();
     return tl::unexpected(shown.error());
   }
-  return answer(STRATA_TRY(
-      context.store.layer(room->model().id, std::to_string(layers.ids().front()), Role::owner)));
+  return answer(STRATA_TRY(context.store.layers().find(
+      room->model().id, std::to_string(layers.ids().front()), Role::owner)));
 }
 
 }  // namespace strata::net

@@ -1,9 +1,12 @@
 #include "net/api/layers/layer_jobs.h"
 
 #include "app/edits.h"
+#include "core/layer.h"
 #include "jobs/job_queue.h"
 #include "net/http/answer_book.h"
 #include "room/room.h"
+#include "store/first_answer.h"
+#include "store/models.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -58,7 +61,7 @@ Result<Response> repeat_layer_job(const RouteContext& context, JobBook& book,
   jobs::JobResult result(kept.at("model").get<std::int64_t>());
   result.layers = kept.at("layers").get<std::vector<std::int64_t>>();
   result.report = kept.at("report");
-  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
   auto job = STRATA_TRY(book.finished(request, model.project_id, std::move(result)));
   return job_response(context, job);
 }

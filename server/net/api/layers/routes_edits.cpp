@@ -1,5 +1,7 @@
 #include "app/authorization/show_through.h"
 #include "app/strokes/tool_shelf.h"
+#include "core/layer.h"
+#include "core/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/page.h"
@@ -7,6 +9,7 @@
 #include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
+#include "store/journal_reads.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -16,7 +19,8 @@ Result<Response> history(const RouteContext& context, const Request& request) {
   auto page = STRATA_TRY(page_of(request));
   auto layer = STRATA_TRY(stored_layer(context, request));
   const auto before = STRATA_TRY(number_after(page, INT64_MAX));
-  auto rows = STRATA_TRY(context.store.history(layer.id, page.limit + 1, page.offset, before));
+  auto rows =
+      STRATA_TRY(context.store.journal().history(layer.id, page.limit + 1, page.offset, before));
   const auto last =
       end_page(rows.rows, page, [](const auto& row) { return ListPlace::array({row.sequence}); });
   nlohmann::json list = nlohmann::json::array();
@@ -44,8 +48,8 @@ Result<Response> list_review(const RouteContext& context, const Request& request
   if (user && (user->empty() || user->size() > 200))
     return fail(ErrorCode::invalid, "Bad name", "`user` is the name of a person.", "user");
   const auto after = STRATA_TRY(number_after(page));
-  auto queue =
-      STRATA_TRY(context.store.review_queue(layer.id, user, page.limit + 1, page.offset, after));
+  auto queue = STRATA_TRY(
+      context.store.journal().review_queue(layer.id, user, page.limit + 1, page.offset, after));
   const auto last = end_page(
       queue.strokes, page, [](const auto& stroke) { return ListPlace::array({stroke.sequence}); });
   nlohmann::json answer = to_json(queue);

@@ -7,6 +7,7 @@
 #include "net/transport/server_options.h"
 #include "room/record_colors.h"
 #include "room/room.h"
+#include "store/records.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -24,7 +25,8 @@ Result<Response> extent(const RouteContext& context, const Request& request) {
       room::highlighted_keys(context.store, *layer.table, request.role(), highlight, "filter");
   if (!keys) return tl::unexpected(keys.error());
   auto areas = STRATA_TRY((*room)->key_areas(layer.slug));
-  const auto marks = context.store.marks(*layer.table, request.role(), (*room)->model().id);
+  const auto marks =
+      context.store.records().marks(*layer.table, request.role(), (*room)->model().id);
   if (!marks) return tl::unexpected(marks.error());
   query::KeyArea all;
   CompensatedSum area_m2;

@@ -3,7 +3,12 @@
 #include "app/authorization/show_through.h"
 #include "app/bin_keeper.h"
 #include "app/layers/formula_layers.h"
+#include "core/layer.h"
+#include "core/model.h"
+#include "core/role.h"
+#include "core/table.h"
 #include "core/term_list.h"
+#include "core/visibility.h"
 #include "jobs/job_queue.h"
 #include "net/api/layers/create_computed.h"
 #include "net/api/route_help.h"
@@ -14,6 +19,9 @@
 #include "net/serialization/table_wire.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
+#include "store/journal_reads.h"
+#include "store/layers.h"
+#include "store/models.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -21,8 +29,8 @@ namespace {
 
 Result<Response> list_layers(const RouteContext& context, const Request& request) {
   auto page = STRATA_TRY(page_of(request));
-  auto model = STRATA_TRY(context.store.model(request.param("model")));
-  auto layers = STRATA_TRY(context.store.layers(model.id, request.role()));
+  auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  auto layers = STRATA_TRY(context.store.layers().of_model(model.id, request.role()));
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(layers.size());
   const auto part = STRATA_TRY(slice_by(page, layers, [](const Layer& layer) {
@@ -206,7 +214,8 @@ Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& ask
 
 Result<Response> compute(const RouteContext& context, const Request& request) {
   auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
-  auto layer = context.store.layer(room->model().id, request.param("layer"), request.role());
+  auto layer =
+      context.store.layers().find(room->model().id, request.param("layer"), request.role());
   if (!layer) return tl::unexpected(layer.error());
   const std::string overwrite = request.query_or("overwrite", "false");
   if (overwrite != "true" && overwrite != "false")
@@ -225,7 +234,8 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
   auto asked = STRATA_TRY(body_of<protocol::LayerPatch>(request));
   auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
   // As it is stored: what is open may be a moment behind.
-  auto layer = context.store.layer(room->model().id, request.param("layer"), request.role());
+  auto layer =
+      context.store.layers().find(room->model().id, request.param("layer"), request.role());
   if (!layer) return tl::unexpected(layer.error());
   STRATA_TRY(check_if_match(request, layer->version));
   const auto answer = [](const Layer& now) {
@@ -261,7 +271,7 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
   const bool was_painted = !layer->formula;
   STRATA_TRY(set_formula(*room, asked, before, *layer));
   if (was_painted && layer->formula) {
-    const auto queue = context.store.review_queue(layer->id, {}, 0, 0);
+    const auto queue = context.store.journal().review_queue(layer->id, {}, 0, 0);
     if (!queue) return tl::unexpected(queue.error());
     if (queue->total > 0)
       return fail(ErrorCode::conflict, "Edits wait for review",

@@ -5,7 +5,11 @@
 #include "app/records/painted_keys.h"
 #include "core/byte_budget.h"
 #include "core/digest.h"
+#include "core/layer.h"
 #include "core/mapped_file.h"
+#include "core/role.h"
+#include "core/table.h"
+#include "core/tile_mirror.h"
 #include "core/value_type.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
@@ -15,6 +19,8 @@
 #include "net/transport/server_options.h"
 #include "query/readings.h"
 #include "room/room.h"
+#include "store/models.h"
+#include "store/records.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -93,8 +99,8 @@ Result<Painted> paint_map(const RouteContext& context, ByteBudget& budget, MakeV
   auto files = STRATA_TRY(take_map(request, context.options.upload_dir));
   app::MapTarget map_target{*target.room, target.layer};
   if (target.layer.table) {
-    auto page = STRATA_TRY(context.store.records(*target.layer.table, request.role(),
-                                                 {{}, {}, {}, store::kMostRecords, 0}));
+    auto page = STRATA_TRY(context.store.records().page(*target.layer.table, request.role(),
+                                                        {{}, {}, {}, store::kMostRecords, 0}));
     for (const Record& record : page.records)
       map_target.records.insert(static_cast<double>(record.key));
   }
@@ -113,7 +119,7 @@ Result<Painted> paint_map(const RouteContext& context, ByteBudget& budget, MakeV
 
 Result<Response> map_contents(const RouteContext& context, ByteBudget& budget,
                               const Request& request) {
-  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
   const auto options = STRATA_TRY(map_options(request));
   const auto files = STRATA_TRY(take_map(request, context.options.upload_dir));
   return json_response(

@@ -5,6 +5,10 @@
 #include "app/records/painted_keys.h"
 #include "app/records/record_measures.h"
 #include "core/compensated_sum.h"
+#include "core/layer.h"
+#include "core/model.h"
+#include "core/role.h"
+#include "core/table.h"
 #include "core/term_list.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
@@ -12,7 +16,10 @@
 #include "net/serialization/sheet_response.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
+#include "store/layers.h"
+#include "store/records.h"
 #include "store/store.h"
+#include "store/tables.h"
 
 namespace strata::net {
 namespace {
@@ -42,13 +49,13 @@ struct OfMarks {
 // `model`: only those on it.
 Result<OfMarks> marks_of(const RouteContext& context, const Table& table, Role seen_by,
                          const std::optional<Model>& model, std::optional<std::int64_t> at) {
-  store::Store::RecordQuery query;
+  store::RecordQuery query;
   query.limit = store::kMostRecords;
   query.at = at;
   if (std::ranges::none_of(table.columns,
                            [](const Column& column) { return holds_marks(column.kind); }))
     return OfMarks{};
-  const auto page = STRATA_TRY(context.store.records(table.id, seen_by, query));
+  const auto page = STRATA_TRY(context.store.records().page(table.id, seen_by, query));
   const auto measures =
       app::RecordMeasures::of_place(context, {page.table, model, {}}, page.table.columns);
   if (!measures) return tl::unexpected(measures.error());
@@ -173,11 +180,12 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
     std::optional<std::int64_t> records_at;  // as they were when that edit was made
     if (asked.at) {
       auto found =
-          context.store.table_sequence_when(*asked.layer.table, asked.layer.model_id, *asked.at);
+          context.store.tables().sequence_when(*asked.layer.table, asked.layer.model_id, *asked.at);
       if (!found) return tl::unexpected(found.error());
       records_at = *found;
     }
-    const auto table = context.store.table(std::to_string(*asked.layer.table), request.role());
+    const auto table =
+        context.store.tables().find(std::to_string(*asked.layer.table), request.role());
     if (!table) return tl::unexpected(table.error());
     auto marked = marks_of(context, *table, request.role(), asked.room->model(), records_at);
     if (!marked) return tl::unexpected(marked.error());
@@ -212,7 +220,7 @@ struct OfLayer {
 
 Result<std::vector<OfLayer>> of_layers(const RouteContext& context, std::int64_t table_id,
                                        Role seen_by) {
-  auto layers = STRATA_TRY(context.store.layers_of_table(table_id, seen_by));
+  auto layers = STRATA_TRY(context.store.layers().of_table(table_id, seen_by));
   std::vector<OfLayer> found;
   for (Layer& layer : layers) {
     if (layer.sequence == 0) continue;  // nothing was ever painted there
@@ -248,7 +256,8 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
   const auto format = STRATA_TRY(sheet_format(request));
   const auto separator = STRATA_TRY(csv_separator(request));
   const auto language = STRATA_TRY(asked_language(request));
-  const auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  const auto table =
+      STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   const auto layers = STRATA_TRY(of_layers(context, table.id, request.role()));
   std::map<std::int64_t, QuantitySum> of_key;
   QuantitySum of_all;

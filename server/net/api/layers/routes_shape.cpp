@@ -1,7 +1,11 @@
 #include "app/layers/mark_transfer.h"
 #include "core/digest.h"
+#include "core/layer.h"
 #include "core/mapped_file.h"
+#include "core/model.h"
 #include "core/number_text.h"
+#include "core/role.h"
+#include "core/table.h"
 #include "jobs/job_queue.h"
 #include "jobs/shape_layer.h"
 #include "jobs/transfer.h"
@@ -12,6 +16,8 @@
 #include "net/api/routes.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
+#include "store/layers.h"
+#include "store/models.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -26,7 +32,7 @@ Result<std::vector<Layer>> chosen_layers(store::Store& store, const Model& sourc
   std::vector<Layer> layers;
   if (refs) {
     for (const std::string& ref : *refs) {
-      auto layer = store.layer(source.id, ref, seen_by);
+      auto layer = store.layers().find(source.id, ref, seen_by);
       if (!layer && layer.error().code == ErrorCode::not_found)
         return fail(ErrorCode::invalid, "No such layer",
                     source.name + " has no layer \"" + ref + "\".", "layers");
@@ -34,7 +40,7 @@ Result<std::vector<Layer>> chosen_layers(store::Store& store, const Model& sourc
       layers.push_back(std::move(*layer));
     }
   } else {
-    auto all = STRATA_TRY(store.layers(source.id, seen_by));
+    auto all = STRATA_TRY(store.layers().of_model(source.id, seen_by));
     layers = std::move(all);
   }
   if (layers.empty())
@@ -51,7 +57,7 @@ Result<std::vector<Layer>> chosen_layers(store::Store& store, const Model& sourc
 
 Result<jobs::TransferRequest> transfer_request(store::Store& store, const protocol::Transfer& asked,
                                                const Model& target, const Principal& who) {
-  auto source = store.model(asked.from);
+  auto source = store.models().find(asked.from);
   if (source ? !who.sees(source->project_id) : source.error().code == ErrorCode::not_found)
     return fail(ErrorCode::invalid, "No such model", "There is no model \"" + asked.from + "\".",
                 "from");
@@ -136,15 +142,15 @@ Result<Response> start_transfer(const RouteContext& context, JobBook& book,
 }
 
 Result<Response> list_properties(const RouteContext& context, const Request& request) {
-  auto model = STRATA_TRY(context.store.model(request.param("model")));
+  auto model = STRATA_TRY(context.store.models().find(request.param("model")));
   nlohmann::json list = nlohmann::json::array();
   for (const SourceFile& source : model.source_files) {
     std::vector<std::uint8_t> beginning;
-    auto read =
-        context.store.read_source(model.id, source.name, [&](std::span<const std::uint8_t> chunk) {
-          beginning.assign(chunk.begin(), chunk.end());
-          return false;
-        });
+    auto read = context.store.models().read_source(model.id, source.name,
+                                                   [&](std::span<const std::uint8_t> chunk) {
+                                                     beginning.assign(chunk.begin(), chunk.end());
+                                                     return false;
+                                                   });
     if (!read) return tl::unexpected(read.error());
     for (const std::string& property : mesh::vertex_property_names(beginning))
       if (list.size() < kMostProperties)

@@ -1,6 +1,8 @@
 #include "app/figures/class_names.h"
 #include "app/records/readable_area.h"
 #include "core/compensated_sum.h"
+#include "core/layer.h"
+#include "core/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
@@ -10,6 +12,7 @@
 #include "query/expression_parser.h"
 #include "room/room.h"
 #include "store/store.h"
+#include "store/tables.h"
 
 namespace strata::net {
 namespace {
@@ -147,7 +150,7 @@ Result<std::vector<std::string>> side_names(const RouteContext& context, const r
   std::optional<std::int64_t> records_at;  // as they were when that edit was made
   if (layer.table && at) {
     const auto found =
-        STRATA_TRY(context.store.table_sequence_when(*layer.table, room.model().id, *at));
+        STRATA_TRY(context.store.tables().sequence_when(*layer.table, room.model().id, *at));
     records_at = found;
   }
   auto names = app::class_names(context.store, layer, role, values, records_at, language);

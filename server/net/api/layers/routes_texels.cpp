@@ -3,7 +3,11 @@
 #include "app/records/texel_csv.h"
 #include "core/byte_budget.h"
 #include "core/digest.h"
+#include "core/layer.h"
 #include "core/mapped_file.h"
+#include "core/role.h"
+#include "core/table.h"
+#include "core/tile_mirror.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
@@ -13,7 +17,9 @@
 #include "query/expression_parser.h"
 #include "query/raster.h"
 #include "room/room.h"
+#include "store/records.h"
 #include "store/store.h"
+#include "store/tables.h"
 
 namespace strata::net {
 namespace {
@@ -131,13 +137,13 @@ Result<void> add_columns(const RouteContext& context, Role seen_by,
     return fail(ErrorCode::invalid, "Numeric layer",
                 layer.name + " holds numbers; only database layers have records with columns.",
                 "columns");
-  store::Store::RecordQuery query;
+  store::RecordQuery query;
   query.keys = keys_of(texels);
   if (at) {
-    auto then = STRATA_TRY(context.store.table_sequence_when(*layer.table, layer.model_id, *at));
+    auto then = STRATA_TRY(context.store.tables().sequence_when(*layer.table, layer.model_id, *at));
     query.at = then;
   }
-  auto page = STRATA_TRY(context.store.records(*layer.table, seen_by, query));
+  auto page = STRATA_TRY(context.store.records().page(*layer.table, seen_by, query));
   std::vector<Column> columns;
   for (const std::string& ref : wanted) {
     const Column* column = find_column(page.table.columns, ref);

@@ -1,11 +1,15 @@
 #include "net/api/models/figure_request.h"
 
+#include "core/layer.h"
+#include "core/model.h"
+#include "core/table.h"
 #include "net/serialization/as_of.h"
 #include "net/serialization/at_field.h"
 #include "net/serialization/view_wire.h"
 #include "room/room.h"
 #include "store/named_parts.h"
 #include "store/store.h"
+#include "store/tables.h"
 
 namespace strata::net {
 namespace {
@@ -90,7 +94,7 @@ Result<void> read_labels(const RouteContext& context, const protocol::FigureLabe
     return fail(ErrorCode::invalid, "No records",
                 "The layer '" + layer->slug + "' is no database layer: nothing of it has a record.",
                 "labels.layer");
-  const auto table = context.store.table(std::to_string(*layer->table), figure.role);
+  const auto table = context.store.tables().find(std::to_string(*layer->table), figure.role);
   if (!table) return tl::unexpected(table.error());
   const Column* column = find_column(table->columns, asked.column);
   if (!column || holds_lists(column->kind))

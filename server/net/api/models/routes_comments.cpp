@@ -2,9 +2,14 @@
 // changes oneself, and curators may delete it.
 #include <set>
 
+#include "core/layer.h"
 #include "core/log.h"
+#include "core/model.h"
 #include "core/no_such.h"
+#include "core/role.h"
+#include "core/table.h"
 #include "core/timestamp.h"
+#include "core/visibility.h"
 #include "net/api/annotated_routes.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
@@ -16,6 +21,8 @@
 #include "net/serialization/wire.h"
 #include "room/room.h"
 #include "store/comments.h"
+#include "store/models.h"
+#include "store/records.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -113,7 +120,7 @@ Result<Response> list_comments(const RouteContext& context, const Request& reque
                   "`since` is a time such as 2026-05-04T12:00:00Z (a + of a zone is %2B).",
                   "since");
   }
-  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
   const auto found = STRATA_TRY(context.store.comments().of_model(model.id, request.role(), query));
   return page_response(context, request, "comments", found, page);
 }
@@ -156,7 +163,7 @@ Result<void> put_subject(const RouteContext& context, const room::Room& room,
     return fail(ErrorCode::invalid, "No records",
                 "The layer `" + layer.slug + "` is numeric: it has no records.", "record");
   const auto missing =
-      STRATA_TRY(context.store.missing_records(*layer.table, std::vector{*asked.record}));
+      STRATA_TRY(context.store.records().missing(*layer.table, std::vector{*asked.record}));
   if (!missing.empty())
     return fail(
         ErrorCode::invalid, "No such record",

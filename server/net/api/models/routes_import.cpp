@@ -2,6 +2,8 @@
 #include <memory>
 
 #include "core/filename.h"
+#include "core/model.h"
+#include "core/role.h"
 #include "core/temporary_file.h"
 #include "core/uuid.h"
 #include "jobs/import_job.h"
@@ -14,6 +16,8 @@
 #include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
+#include "store/first_answer.h"
+#include "store/projects.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -26,7 +30,7 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
   jobs::ImportRequest asked;
   asked.name = request.query_or("name", {});
   asked.project = request.query_or("project", "default");
-  if (auto project = context.store.project(asked.project); !project) {
+  if (auto project = context.store.projects().find(asked.project); !project) {
     Error problem = project.error();
     problem.field = "project";
     return tl::unexpected(std::move(problem));
@@ -112,7 +116,7 @@ Result<Response> start_import(const RouteContext& context, JobBook& book, const 
         return nlohmann::json{{"request", print}, {"model", model.id}};
       },
       request.user()};
-  const auto project = STRATA_TRY(context.store.project(asked->project));
+  const auto project = STRATA_TRY(context.store.projects().find(asked->project));
   auto job = STRATA_TRY(context.jobs.add(
       project.id,
       [&store = context.store, &memory = context.rooms.memory(), asked = *asked,
@@ -132,7 +136,8 @@ Result<Response> repeat_import(const RouteContext& context, JobBook& book, const
                                const nlohmann::json& kept) {
   auto known = STRATA_TRY(book.find(request));
   if (known) return job_response(context, *known);
-  const auto project = STRATA_TRY(context.store.project(request.query_or("project", "default")));
+  const auto project =
+      STRATA_TRY(context.store.projects().find(request.query_or("project", "default")));
   auto job = STRATA_TRY(book.finished(request, project.id, kept.at("model").get<std::int64_t>()));
   return job_response(context, job);
 }

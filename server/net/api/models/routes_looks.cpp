@@ -2,8 +2,10 @@
 #include <span>
 #include <vector>
 
+#include "core/look.h"
 #include "core/mapped_file.h"
 #include "core/picture.h"
+#include "core/role.h"
 #include "core/thumbnail.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
@@ -11,6 +13,8 @@
 #include "net/http/page.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
+#include "store/looks.h"
+#include "store/models.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -19,14 +23,14 @@ namespace {
 constexpr std::uint64_t kLargestLook_bytes = std::uint64_t{256} << 20;
 
 Result<Look> stored_look(const RouteContext& context, const Request& request) {
-  auto model = STRATA_TRY(context.store.model(request.param("model")));
-  return context.store.look(model.id, request.param("look"));
+  auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  return context.store.looks().find(model.id, request.param("look"));
 }
 
 Result<Response> list_looks(const RouteContext& context, const Request& request) {
   const auto page = STRATA_TRY(page_of(request, kMaxPage));
-  auto model = STRATA_TRY(context.store.model(request.param("model")));
-  auto looks = STRATA_TRY(context.store.looks(model.id));
+  auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  auto looks = STRATA_TRY(context.store.looks().of_model(model.id));
   const auto part = STRATA_TRY(slice_by(page, looks, [](const Look& look) {
     return NumberKey{look.order, look.id};
   }));
@@ -118,8 +122,8 @@ Result<Response> delete_look(const RouteContext& context, const Request& request
 }
 
 Result<Response> look_picture(const RouteContext& context, const Request& request) {
-  auto model = STRATA_TRY(context.store.model(request.param("model")));
-  auto look = STRATA_TRY(context.store.look(model.id, request.param("look")));
+  auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  auto look = STRATA_TRY(context.store.looks().find(model.id, request.param("look")));
   std::optional<int> side;
   if (const std::string text = request.query_or("thumbnail", {}); !text.empty()) {
     auto number = STRATA_TRY(parse_integer(text, 16, 1024, "thumbnail"));
@@ -127,7 +131,7 @@ Result<Response> look_picture(const RouteContext& context, const Request& reques
   }
   // In full the pictures of a scan are as good as its files.
   if (!side) STRATA_TRY(check_source_download(request, model));
-  auto bytes = STRATA_TRY(context.store.look_picture(look.id));
+  auto bytes = STRATA_TRY(context.store.looks().picture(look.id));
   if (!side) return bytes_response(std::move(bytes), look.media_type);
   constexpr std::int64_t kAnyLook = std::int64_t{kLargestPictureSide} * kLargestPictureSide;
   auto picture = STRATA_TRY(make_thumbnail(bytes, *side, {kAnyLook, kAnyLook}));

@@ -1,18 +1,22 @@
 #include <map>
 
 #include "app/bin_keeper.h"
+#include "core/model.h"
+#include "core/role.h"
 #include "net/auth/project_gate.h"
 #include "net/http/answer_book.h"
 #include "net/http/page.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
+#include "store/models.h"
+#include "store/projects.h"
 #include "store/store.h"
 
 namespace strata::net {
 namespace {
 
 Result<std::string> project_slug(const RouteContext& context, std::int64_t project_id) {
-  auto project = STRATA_TRY(context.store.project(std::to_string(project_id)));
+  auto project = STRATA_TRY(context.store.projects().find(std::to_string(project_id)));
   return project.slug;
 }
 
@@ -24,16 +28,16 @@ Result<Response> model_answer(const RouteContext& context, const Request& reques
 
 Result<Response> list_models(const RouteContext& context, const Request& request) {
   auto page = STRATA_TRY(page_of(request));
-  auto projects = STRATA_TRY(context.store.projects());
+  auto projects = STRATA_TRY(context.store.projects().all());
   std::map<std::int64_t, std::string> slugs;
   for (const auto& project : projects) slugs[project.id] = project.slug;
   std::optional<std::int64_t> only;
   if (auto wanted = request.query.find("project"); wanted != request.query.end()) {
     STRATA_TRY(check_seen(context, request, wanted->second, "project"));
-    auto project = STRATA_TRY(context.store.project(wanted->second));
+    auto project = STRATA_TRY(context.store.projects().find(wanted->second));
     only = project.id;
   }
-  auto models = STRATA_TRY(context.store.models(only));
+  auto models = STRATA_TRY(context.store.models().all(only));
   std::erase_if(models,
                 [&](const Model& model) { return !request.principal->sees(model.project_id); });
   nlohmann::json list = nlohmann::json::array();
@@ -100,7 +104,7 @@ Result<Response> change_model(const RouteContext& context, const Request& reques
 }
 
 Result<Response> source(const RouteContext& context, const Request& request) {
-  auto model = STRATA_TRY(context.store.model(request.param("model")));
+  auto model = STRATA_TRY(context.store.models().find(request.param("model")));
   STRATA_TRY(check_source_download(request, model));
   const std::string& wanted = request.param("name");
   for (const auto& file : model.source_files) {
@@ -113,7 +117,7 @@ Result<Response> source(const RouteContext& context, const Request& request) {
     name_download(response, file.name);
     response.stream = Response::Stream{
         file.bytes, [&store = context.store, id = model.id, wanted](const Response::Sink& sink) {
-          return store.read_source(id, wanted, sink).has_value();
+          return store.models().read_source(id, wanted, sink).has_value();
         }};
     return response;
   }
@@ -133,7 +137,7 @@ void add_model_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
-                auto model = STRATA_TRY(context.store.model(request.param("model")));
+                auto model = STRATA_TRY(context.store.models().find(request.param("model")));
                 return model_answer(context, request, model);
               })});
   router.add({.method = Method::patch,
@@ -148,7 +152,7 @@ void add_model_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::remove,
               .pattern = "/api/v1/models/{model}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
-                auto model = STRATA_TRY(context.store.model(request.param("model")));
+                auto model = STRATA_TRY(context.store.models().find(request.param("model")));
                 STRATA_TRY(check_if_match(request, model.version));
                 STRATA_TRY(context.store.bin().put_model(
                     model.id, first_answer<>(request, [] { return empty_response(204); })));

@@ -2,6 +2,10 @@
 #include <algorithm>
 #include <bit>
 
+#include "core/layer.h"
+#include "core/look.h"
+#include "core/model.h"
+#include "core/role.h"
 #include "jobs/job_queue.h"
 #include "jobs/orthophoto.h"
 #include "net/api/route_help.h"
@@ -11,6 +15,8 @@
 #include "net/serialization/map_query.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
+#include "store/first_answer.h"
+#include "store/models.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -132,7 +138,7 @@ Result<Response> repeat_orthophoto(const RouteContext& context, JobBook& book,
   if (known) return job_response(context, *known);
   jobs::JobResult result(kept.at("model").get<std::int64_t>());
   result.look = kept.at("look").get<std::int64_t>();
-  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
   auto job = STRATA_TRY(book.finished(request, model.project_id, std::move(result)));
   return job_response(context, job);
 }

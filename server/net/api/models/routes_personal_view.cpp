@@ -1,15 +1,18 @@
 // How a person shows the layers of a model, kept for them alone.
+#include "core/role.h"
 #include "net/api/models/personal_view.h"
 #include "net/serialization/view_wire.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
+#include "store/models.h"
+#include "store/personal_views.h"
 #include "store/store.h"
 
 namespace strata::net {
 
 Result<nlohmann::json> personal_view(store::Store& store, const std::string& user, Role role,
                                      const room::Room& room) {
-  auto layers = STRATA_TRY(store.personal_view(user, room.model().id));
+  auto layers = STRATA_TRY(store.personal_views().find(user, room.model().id));
   leave_out_unseen(store, role, room, layers);
   return nlohmann::json{{"layers", std::move(layers)}};
 }
@@ -31,17 +34,17 @@ Result<Response> put_view(const RouteContext& context, const Request& request) {
                   "layers[" + std::to_string(i) + "].highlight");
   const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
   const auto settings = STRATA_TRY(view_settings(*room, asked.layers, {}, {}));
-  if (auto kept = context.store.keep_personal_view(request.user(), room->model().id,
-                                                   kept_layers(asked.layers, settings));
+  if (auto kept = context.store.personal_views().keep(request.user(), room->model().id,
+                                                      kept_layers(asked.layers, settings));
       !kept)
     return tl::unexpected(kept.error());
   return get_view(context, request);
 }
 
 Result<Response> delete_view(const RouteContext& context, const Request& request) {
-  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
   if (auto gone =
-          context.store.keep_personal_view(request.user(), model.id, nlohmann::json::array());
+          context.store.personal_views().keep(request.user(), model.id, nlohmann::json::array());
       !gone)
     return tl::unexpected(gone.error());
   return empty_response(204);

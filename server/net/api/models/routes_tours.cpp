@@ -1,4 +1,6 @@
 // Tours of a model. Everybody reads them, curators make and change them.
+#include "core/model.h"
+#include "core/role.h"
 #include "net/api/annotated_routes.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
@@ -7,6 +9,8 @@
 #include "net/serialization/tour_wire.h"
 #include "net/serialization/wire.h"
 #include "store/kiosks.h"
+#include "store/models.h"
+#include "store/named_parts.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -19,7 +23,7 @@ struct Found {
   NamedPart tour;
 };
 Result<Found> find_tour(const RouteContext& context, const Request& request) {
-  auto model = STRATA_TRY(context.store.model(request.param("model")));
+  auto model = STRATA_TRY(context.store.models().find(request.param("model")));
   auto tour = STRATA_TRY(context.store.tours().find(model.id, request.param("tour")));
   return Found{std::move(model), std::move(tour)};
 }
@@ -39,7 +43,7 @@ Response answer_of(nlohmann::json told, const NamedPart& now, int status) {
 
 Result<Response> list_tours(const RouteContext& context, const Request& request) {
   const auto page = STRATA_TRY(page_of(request));
-  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
   const auto after = STRATA_TRY(number_after(page));
   auto found =
       STRATA_TRY(context.store.tours().of_model(model.id, page.limit + 1, page.offset, after));
@@ -62,7 +66,7 @@ Result<Response> get_tour(const RouteContext& context, const Request& request) {
 
 Result<Response> create_tour(const RouteContext& context, const Request& request) {
   const auto asked = STRATA_TRY(body_of<protocol::TourCreate>(request));
-  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
   auto stops = STRATA_TRY(kept_stops(context, model, request.role(), asked.stops));
   NamedPart tour;
   tour.model_id = model.id;

@@ -1,8 +1,12 @@
 // What was done in a project.
+#include "core/role.h"
 #include "net/http/page.h"
 #include "net/live/model_events.h"
 #include "net/serialization/activity_wire.h"
 #include "net/serialization/people_wire.h"
+#include "store/activity.h"
+#include "store/models.h"
+#include "store/projects.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -21,16 +25,17 @@ Result<Response> list_activity(const RouteContext& context, const Request& reque
       return fail(ErrorCode::invalid, "No such page",
                   "`before` is `next` of an answer: 1777896570120000-7, for example.", "before");
   }
-  const auto project = STRATA_TRY(context.store.project(request.param("project")));
+  const auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
   if (const auto ref = request.query.find("model"); ref != request.query.end()) {
-    const auto model = context.store.model(ref->second);
+    const auto model = context.store.models().find(ref->second);
     if (!model && model.error().code != ErrorCode::not_found) return tl::unexpected(model.error());
     if (!model || model->project_id != project.id)
       return fail(ErrorCode::invalid, "No such model",
                   "The project has no model `" + ref->second.substr(0, 100) + "`.", "model");
     query.model = model->id;
   }
-  const auto found = STRATA_TRY(context.store.activity(project.id, request.role(), query));
+  const auto found =
+      STRATA_TRY(context.store.projects().activity(project.id, request.role(), query));
   nlohmann::json lines = nlohmann::json::array();
   for (const Activity& line : found.lines) lines.push_back(to_json(line));
   nlohmann::json answer{{"activity", std::move(lines)}};
@@ -41,7 +46,7 @@ Result<Response> list_activity(const RouteContext& context, const Request& reque
 
 // From where a reader comes back, or from now.
 Result<Response> listen(const RouteContext& context, const Request& request) {
-  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
   std::optional<store::ActivityPlace> after;
   if (const auto text = request.header("last-event-id"); !text.empty()) {
     after = place_of(text);

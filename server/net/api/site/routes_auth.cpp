@@ -1,6 +1,7 @@
 // Signing in and out, and what people change of themselves.
 #include <memory>
 
+#include "core/role.h"
 #include "core/utf8.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
@@ -13,13 +14,17 @@
 #include "net/serialization/people_wire.h"
 #include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
+#include "store/accounts.h"
 #include "store/password.h"
+#include "store/people.h"
+#include "store/projects.h"
 #include "store/store.h"
+#include "store/tokens.h"
 
 namespace strata::net {
 
 Result<Response> who_is_signed_in(const RouteContext& context, const std::string& user, Role role) {
-  const auto person = context.store.person(user);
+  const auto person = context.store.accounts().find(user);
   if (!person && person.error().code == ErrorCode::not_found)
     return fail(ErrorCode::unauthenticated, "Not signed in", "This account was closed meanwhile.");
   if (!person) return tl::unexpected(person.error());
@@ -86,8 +91,8 @@ Result<Response> sign_out(const RouteContext& context, const Request& request) {
 
 Result<Response> change_me(const RouteContext& context, const Request& request) {
   const auto asked = STRATA_TRY(body_of<protocol::MePatch>(request));
-  const auto person = STRATA_TRY(context.store.person(request.user()));
-  STRATA_TRY(context.store.change_person(
+  const auto person = STRATA_TRY(context.store.accounts().find(request.user()));
+  STRATA_TRY(context.store.accounts().update(
       person.id, {.full_name = asked.full_name, .role = {}, .disabled = {}}));
   return who_is_signed_in(context, request.user(), request.principal->role);
 }
@@ -96,7 +101,7 @@ Result<Response> change_password(const RouteContext& context, SignInGate& gate,
                                  const Request& request) {
   const auto asked = STRATA_TRY(body_of<protocol::PasswordChange>(request));
   STRATA_TRY(store::check_password(asked.password, request.user(), "password"));
-  const auto hash = STRATA_TRY(context.store.password_of(request.user()));
+  const auto hash = STRATA_TRY(context.store.accounts().password_of(request.user()));
   if (!hash.empty()) {
     // Whoever sits at somebody else's browser guesses no faster than from anywhere.
     STRATA_TRY(gate.pass(address_of(request), request.user()));
@@ -109,7 +114,8 @@ Result<Response> change_password(const RouteContext& context, SignInGate& gate,
     gate.was_right(address_of(request), request.user());
   }
   const auto chosen = STRATA_TRY(store::hash_password(asked.password));
-  STRATA_TRY(context.store.set_password(request.user(), chosen, request.principal->secret));
+  STRATA_TRY(
+      context.store.accounts().set_password(request.user(), chosen, request.principal->secret));
   context.auth.forget();
   context.live_sockets.close_user(request.user(), kClosePolicy, "the password was changed");
   return empty_response(204);
@@ -145,7 +151,7 @@ template <class Write>
 Result<Response> list_of(const RouteContext& context, const Request& request, TokenKind kind,
                          const char* member, Write write) {
   const auto page = STRATA_TRY(page_of(request, kMaxPage));
-  const auto tokens = STRATA_TRY(context.store.tokens(request.user(), kind));
+  const auto tokens = STRATA_TRY(context.store.tokens().of_user(request.user(), kind));
   const auto part =
       slice_by(page, tokens, [](const store::Token& token) { return NumberKey{-token.id}; });
   if (!part) return tl::unexpected(part.error());
@@ -161,15 +167,15 @@ Result<Response> end_one(const RouteContext& context, const Request& request, To
   const auto id =
       parse_integer(request.param(param), 1, std::numeric_limits<std::int64_t>::max(), param);
   if (!id) return tl::unexpected(id.error());
-  STRATA_TRY(context.store.revoke_token(request.user(), kind, *id));
+  STRATA_TRY(context.store.tokens().revoke(request.user(), kind, *id));
   context.auth.forget();
   context.live_sockets.close_user(request.user(), kClosePolicy, "a session ended");
   return empty_response(204);
 }
 
 Result<Response> end_others(const RouteContext& context, const Request& request) {
-  auto ended =
-      context.store.revoke_tokens(request.user(), TokenKind::session, request.principal->secret);
+  auto ended = context.store.tokens().revoke_all(request.user(), TokenKind::session,
+                                                 request.principal->secret);
   if (!ended) return tl::unexpected(ended.error());
   context.auth.forget();
   context.live_sockets.close_user(request.user(), kClosePolicy, "other sessions ended");
@@ -183,7 +189,7 @@ Result<Response> create_token(const RouteContext& context, const Request& reques
   std::optional<std::int64_t> only;
   if (asked.project) {
     STRATA_TRY(check_seen(context, request, *asked.project, "project"));
-    auto project = context.store.project(*asked.project);
+    auto project = context.store.projects().find(*asked.project);
     if (!project) {
       project.error().field = "project";
       return tl::unexpected(project.error());
@@ -199,8 +205,8 @@ Result<Response> create_token(const RouteContext& context, const Request& reques
                     std::string(name(own)) + ": a token of yours can do no more.",
                 "role");
   const auto made =
-      context.store.create_token(TokenKind::script, request.user(), role,
-                                 std::chrono::hours(24 * asked.days), asked.name, {}, only);
+      context.store.tokens().create(TokenKind::script, request.user(), role,
+                                    std::chrono::hours(24 * asked.days), asked.name, {}, only);
   if (!made) return tl::unexpected(made.error());
   return json_response({{"secret", made->secret}, {"token", token_json(made->token)}}, 201)
       .with("Cache-Control", "no-store");

@@ -3,6 +3,7 @@
 
 #include "app/bin_keeper.h"
 #include "app/change_notifier.h"
+#include "core/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
@@ -11,7 +12,9 @@
 #include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
+#include "store/projects.h"
 #include "store/store.h"
+#include "store/table_changes.h"
 
 namespace strata::net {
 namespace {
@@ -75,7 +78,7 @@ Result<std::optional<store::Bin::Place>> bin_place(const Page& page) {
 
 Result<Response> list_bin(const RouteContext& context, const Request& request) {
   const auto page = STRATA_TRY(page_of(request));
-  const auto project = STRATA_TRY(context.store.project(request.param("project")));
+  const auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
   const auto after = STRATA_TRY(bin_place(page));
   auto found = STRATA_TRY(context.store.bin().of_project(project.id, sight_of(context, request),
                                                          page.limit + 1, page.offset, after));
@@ -113,7 +116,7 @@ std::optional<std::vector<std::int64_t>> numbers_of(std::string_view text) {
 
 // `layer-3`, `model-7`, `record-5-17`.
 Result<BinEntry> find_entry(const RouteContext& context, const Request& request) {
-  const auto project = STRATA_TRY(context.store.project(request.param("project")));
+  const auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
   const std::string_view ref = request.param("entry");
   for (const auto kind : {BinEntry::Kind::layer, BinEntry::Kind::model, BinEntry::Kind::record}) {
     const std::string begin = std::string(name_of(kind)) + "-";

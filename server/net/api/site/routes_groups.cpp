@@ -1,4 +1,5 @@
 // Groups of people, and the roles that projects give them.
+#include "core/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/auth/project_gate.h"
@@ -6,6 +7,7 @@
 #include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
 #include "store/groups.h"
+#include "store/projects.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -33,7 +35,7 @@ Result<Response> list_groups(const RouteContext& context, const Request& request
   const int total = static_cast<int>(groups.size());
   const auto part =
       STRATA_TRY(slice_by_name(page, groups, context.store, [](const store::Group& group) {
-        return store::Store::NamedId{group.name, group.id};
+        return store::NamedId{group.name, group.id};
       }));
   for (std::size_t i = part.begin; i < part.end; ++i) {
     const auto& [id, group, people, projects] = groups[i];
@@ -77,7 +79,7 @@ Result<Response> delete_group(const RouteContext& context, const Request& reques
 
 Result<Response> put_role(const RouteContext& context, const Request& request) {
   const auto asked = STRATA_TRY(body_of<protocol::MemberPut>(request));
-  const auto project = STRATA_TRY(context.store.project(request.param("project")));
+  const auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
   const auto id = STRATA_TRY(id_of(request, "group"));
   const Role role = parse_role(protocol::name(asked.role)).value_or(Role::viewer);
   const auto put = STRATA_TRY(context.store.groups().put(project.id, id, role, request.user()));
@@ -86,7 +88,7 @@ Result<Response> put_role(const RouteContext& context, const Request& request) {
 }
 
 Result<Response> take_role(const RouteContext& context, const Request& request) {
-  const auto project = STRATA_TRY(context.store.project(request.param("project")));
+  const auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
   const auto id = STRATA_TRY(id_of(request, "group"));
   const auto people = STRATA_TRY(context.store.groups().take(project.id, id, request.user()));
   roles_changed(context, people);

@@ -1,6 +1,7 @@
 // Links for kiosks: what curators do with them, and what a kiosk asks.
 #include <memory>
 
+#include "core/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/auth/auth.h"
@@ -13,6 +14,7 @@
 #include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
 #include "store/kiosks.h"
+#include "store/models.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -67,7 +69,7 @@ Result<Response> list_kiosks(const RouteContext& context, const Request& request
 
 Result<Response> create_kiosk(const RouteContext& context, const Request& request) {
   const auto asked = STRATA_TRY(body_of<protocol::KioskCreate>(request));
-  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
   const auto tour = STRATA_TRY(context.store.tours().find(model.id, request.param("tour")));
   std::optional<std::chrono::seconds> lifetime;
   if (asked.days) lifetime = std::chrono::hours(24 * *asked.days);

@@ -1,6 +1,7 @@
 // Who may do more in a project than everywhere, and who sees it.
 #include <set>
 
+#include "core/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/auth/auth.h"
@@ -9,7 +10,11 @@
 #include "net/serialization/people_wire.h"
 #include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
+#include "store/accounts.h"
 #include "store/groups.h"
+#include "store/members.h"
+#include "store/people.h"
+#include "store/projects.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -24,20 +29,20 @@ nlohmann::json to_json(const store::Membership& member) {
 }
 
 Result<Project> project_of(const RouteContext& context, const Request& request) {
-  return context.store.project(request.param("project"));
+  return context.store.projects().find(request.param("project"));
 }
 
 Result<Response> list_members(const RouteContext& context, const Request& request) {
   const auto page = STRATA_TRY(page_of(request));
   const auto project = STRATA_TRY(project_of(context, request));
-  const auto members = STRATA_TRY(context.store.members(project.id));
+  const auto members = STRATA_TRY(context.store.members().of_project(project.id));
   const auto with_role = STRATA_TRY(context.store.groups().of_project(project.id));
   nlohmann::json list = nlohmann::json::array(), groups = nlohmann::json::array();
   for (const store::ProjectGroup& group : with_role) groups.push_back(net::to_json(group));
   const int total = static_cast<int>(members.size());
   const auto part =
       slice_by_name(page, members, context.store, [](const store::Membership& member) {
-        return store::Store::NamedId{member.person.name, member.person.id};
+        return store::NamedId{member.person.name, member.person.id};
       });
   if (!part) return tl::unexpected(part.error());
   for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json(members[i]));
@@ -52,14 +57,14 @@ Result<Response> list_people(const RouteContext& context, const Request& request
   const auto page = STRATA_TRY(page_of(request));
   const auto project = STRATA_TRY(project_of(context, request));
   const auto roles = STRATA_TRY(context.store.groups().people_with_role(project.id));
-  auto people = STRATA_TRY(context.store.people());
+  auto people = STRATA_TRY(context.store.accounts().all());
   const std::set<std::int64_t> with_role(roles.begin(), roles.end());
   std::erase_if(people, [&](const store::Person& person) {
     return person.disabled || (person.role < Role::viewer && !with_role.contains(person.id));
   });
   const auto part =
       STRATA_TRY(slice_by_name(page, people, context.store, [](const store::Person& person) {
-        return store::Store::NamedId{person.name, person.id};
+        return store::NamedId{person.name, person.id};
       }));
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t i = part.begin; i < part.end; ++i) {
@@ -77,7 +82,7 @@ Result<Response> put_member(const RouteContext& context, const Request& request)
   const auto project = STRATA_TRY(project_of(context, request));
   const Role role = parse_role(protocol::name(asked.role)).value_or(Role::viewer);
   const auto member =
-      context.store.put_member(project.id, request.param("user"), role, request.user());
+      context.store.members().put(project.id, request.param("user"), role, request.user());
   if (!member) return tl::unexpected(member.error());
   roles_changed(context, {member->person.name});
   return json_response(to_json(*member));
@@ -85,8 +90,8 @@ Result<Response> put_member(const RouteContext& context, const Request& request)
 
 Result<Response> remove_member(const RouteContext& context, const Request& request) {
   const auto project = STRATA_TRY(project_of(context, request));
-  const auto person = STRATA_TRY(context.store.person(request.param("user")));
-  STRATA_TRY(context.store.remove_member(project.id, person.name, request.user()));
+  const auto person = STRATA_TRY(context.store.accounts().find(request.param("user")));
+  STRATA_TRY(context.store.members().remove(project.id, person.name, request.user()));
   roles_changed(context, {person.name});
   return empty_response(204);
 }

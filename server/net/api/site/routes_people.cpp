@@ -1,4 +1,5 @@
 // Accounts: who there is, what they may do, and how they come in.
+#include "core/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/auth/auth.h"
@@ -9,8 +10,12 @@
 #include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
+#include "store/accounts.h"
 #include "store/password.h"
+#include "store/people.h"
+#include "store/projects.h"
 #include "store/store.h"
+#include "store/tokens.h"
 
 namespace strata::net {
 namespace {
@@ -35,11 +40,11 @@ nlohmann::json to_json(const Person& person) {
 
 Result<Response> list_people(const RouteContext& context, const Request& request) {
   auto page = STRATA_TRY(page_of(request));
-  auto people = STRATA_TRY(context.store.people());
+  auto people = STRATA_TRY(context.store.accounts().all());
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(people.size());
   const auto part = STRATA_TRY(slice_by_name(page, people, context.store, [](const Person& person) {
-    return store::Store::NamedId{person.name, person.id};
+    return store::NamedId{person.name, person.id};
   }));
   for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(people[i]));
   Response response = json_response({{"users", std::move(list)}, {"total", total}});
@@ -60,8 +65,8 @@ Result<Role> usable_role(const Request& request, std::optional<protocol::Role> a
 }
 
 Result<Response> with_invitation(const RouteContext& context, const Person& person, int status) {
-  const auto link =
-      context.store.create_link(TokenKind::invitation, person.name, store::kInvitationLifetime);
+  const auto link = context.store.tokens().create_link(TokenKind::invitation, person.name,
+                                                       store::kInvitationLifetime);
   if (!link) return tl::unexpected(link.error());
   // Behind a #, so that it is in no log: browsers keep that to themselves.
   return json_response({{"path", "/join#" + link->secret},
@@ -74,7 +79,7 @@ Result<Response> with_invitation(const RouteContext& context, const Person& pers
 Result<Response> invite(const RouteContext& context, const Request& request) {
   const auto asked = STRATA_TRY(body_of<protocol::PersonCreate>(request));
   const auto role = STRATA_TRY(usable_role(request, asked.role, Role::viewer));
-  const auto person = STRATA_TRY(context.store.create_person(
+  const auto person = STRATA_TRY(context.store.accounts().create(
       asked.user, asked.full_name.value_or(""), role,
       asked.groups.value_or(std::vector<std::int64_t>()), request.user()));
   auto response = with_invitation(context, person, 201);
@@ -85,7 +90,7 @@ Result<Response> invite(const RouteContext& context, const Request& request) {
 // Whom the caller may change: not themselves, so that no server is left without who runs it, and
 // not the owner.
 Result<Person> somebody_else(const RouteContext& context, const Request& request) {
-  auto person = STRATA_TRY(context.store.person(request.param("user")));
+  auto person = STRATA_TRY(context.store.accounts().find(request.param("user")));
   if (person.name == request.user())
     return fail(ErrorCode::conflict, "That is you",
                 "Nobody changes their own account here. Ask another administrator.");
@@ -104,7 +109,7 @@ Result<Response> change_person(const RouteContext& context, const Request& reque
   const auto role = STRATA_TRY(usable_role(request, asked.role, person.role));
   const store::PersonChange change{asked.full_name, asked.role ? std::optional(role) : std::nullopt,
                                    asked.disabled};
-  const auto changed = STRATA_TRY(context.store.change_person(person.id, change));
+  const auto changed = STRATA_TRY(context.store.accounts().update(person.id, change));
   context.auth.forget();
   if (changed.role != person.role || changed.disabled != person.disabled)
     context.live_sockets.close_user(changed.name, kClosePolicy, "your account was changed");
@@ -115,24 +120,24 @@ Result<Response> delete_person(const RouteContext& context, const Request& reque
   const auto person = STRATA_TRY(somebody_else(context, request));
   // Out first, so that nothing more is written under the name.
   const auto out =
-      context.store.change_person(person.id, {.full_name = {}, .role = {}, .disabled = true});
+      context.store.accounts().update(person.id, {.full_name = {}, .role = {}, .disabled = true});
   if (!out) return tl::unexpected(out.error());
   context.auth.forget();
   context.live_sockets.close_user(person.name, kClosePolicy, "your account was deleted");
   // What they drew last may be on its way to the journal still.
   STRATA_TRY(context.rooms.settle());
-  STRATA_TRY(context.store.delete_person(person.name));
+  STRATA_TRY(context.store.accounts().remove(person.name));
   return empty_response(204);
 }
 
 // --- from the other side of the link
 
 Result<Person> invited_by(const RouteContext& context, const std::string& invitation) {
-  const auto principal = STRATA_TRY(context.store.find_token(invitation));
+  const auto principal = STRATA_TRY(context.store.tokens().find(invitation));
   if (!principal || principal->kind != TokenKind::invitation)
     return fail(ErrorCode::unauthenticated, "Link not valid",
                 "This invitation was used, or is too old. Ask for a new one.", "invitation");
-  return context.store.person(principal->user);
+  return context.store.accounts().find(principal->user);
 }
 
 Result<Response> show_invitation(const RouteContext& context, const Request& request) {
@@ -146,7 +151,7 @@ Result<Response> accept_invitation(const RouteContext& context, const Request& r
   const auto person = STRATA_TRY(invited_by(context, asked.invitation));
   STRATA_TRY(store::check_password(asked.password, person.name, "password"));
   const auto hash = STRATA_TRY(store::hash_password(asked.password));
-  const auto session = STRATA_TRY(context.store.accept_invitation(
+  const auto session = STRATA_TRY(context.store.accounts().accept_invitation(
       asked.invitation, hash, asked.full_name, kSessionLifetime, agent_of(request)));
   if (!session)
     return fail(ErrorCode::unauthenticated, "Link not valid", "This invitation was used meanwhile.",
@@ -180,7 +185,7 @@ void add_people_routes(Router& router, const RouteContext& context) {
   add(
       Method::get, "/api/v1/users/{user}",
       [](const RouteContext& of, const Request& request) -> Result<Response> {
-        const auto person = STRATA_TRY(of.store.person(request.param("user")));
+        const auto person = STRATA_TRY(of.store.accounts().find(request.param("user")));
         return json_response(to_json(person));
       },
       Role::administrator);

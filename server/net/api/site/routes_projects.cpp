@@ -1,9 +1,11 @@
+#include "core/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
 #include "net/http/page.h"
 #include "net/transport/server_options.h"
 #include "store/groups.h"
+#include "store/projects.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -24,7 +26,7 @@ Result<std::map<std::int64_t, nlohmann::json>> groups_that_give(const RouteConte
 
 Result<Response> list_projects(const RouteContext& context, const Request& request) {
   auto page = STRATA_TRY(page_of(request));
-  auto projects = STRATA_TRY(context.store.projects());
+  auto projects = STRATA_TRY(context.store.projects().all());
   std::erase_if(projects,
                 [&](const Project& project) { return !request.principal->sees(project.id); });
   const auto groups = STRATA_TRY(groups_that_give(context, *request.principal));
@@ -58,13 +60,13 @@ Result<Response> create_project(const RouteContext& context, const Request& requ
         .with("ETag", etag_of(made.version));
   };
   auto created =
-      context.store.create_project(std::move(project), first_answer<Project>(request, answer));
+      context.store.projects().create(std::move(project), first_answer<Project>(request, answer));
   if (!created) return tl::unexpected(created.error());
   return answer(*created);
 }
 
 Result<Response> change_project(const RouteContext& context, const Request& request) {
-  auto project = STRATA_TRY(context.store.project(request.param("project")));
+  auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
   STRATA_TRY(check_if_match(request, project.version));
   auto asked = STRATA_TRY(body_of<protocol::ProjectPatch>(request));
   // Curators say how work goes on in their project, not what it is called.
@@ -78,7 +80,7 @@ Result<Response> change_project(const RouteContext& context, const Request& requ
     return json_response(to_json(now)).with("ETag", etag_of(now.version));
   };
   auto changed =
-      context.store.update_project(std::move(project), first_answer<Project>(request, answer));
+      context.store.projects().update(std::move(project), first_answer<Project>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   return answer(*changed);
 }
@@ -103,7 +105,7 @@ void add_project_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/projects/{project}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
-                auto project = STRATA_TRY(context.store.project(request.param("project")));
+                auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
                 return with_etag(json_response(to_json(project)), request, project.version);
               })});
   router.add({.method = Method::patch,
@@ -118,9 +120,9 @@ void add_project_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::remove,
               .pattern = "/api/v1/projects/{project}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
-                auto project = STRATA_TRY(context.store.project(request.param("project")));
+                auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
                 STRATA_TRY(check_if_match(request, project.version));
-                STRATA_TRY(context.store.delete_project(
+                STRATA_TRY(context.store.projects().remove(
                     project.id, first_answer<>(request, [] { return empty_response(204); })));
                 return empty_response(204);
               }),

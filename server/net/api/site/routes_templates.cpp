@@ -3,8 +3,12 @@
 #include "app/edits.h"
 #include "app/layers/new_layers.h"
 #include "app/template_shelf.h"
+#include "core/layer.h"
 #include "core/log.h"
+#include "core/model.h"
+#include "core/role.h"
 #include "core/search_text.h"
+#include "core/table.h"
 #include "core/term_list.h"
 #include "net/api/layers/layer_jobs.h"
 #include "net/api/route_help.h"
@@ -15,7 +19,11 @@
 #include "net/live/table_events.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
+#include "store/first_answer.h"
+#include "store/projects.h"
 #include "store/store.h"
+#include "store/table_changes.h"
+#include "store/tables.h"
 
 namespace strata::net {
 namespace {
@@ -86,7 +94,7 @@ Result<std::vector<WishedLayer>> wished_layers(const protocol::Template& of, con
 // Newest first, since columns of later tables name earlier ones.
 void take_back(const RouteContext& context, const std::vector<Table>& tables) {
   for (auto table = tables.rbegin(); table != tables.rend(); ++table)
-    if (auto gone = context.store.delete_table(table->id);
+    if (auto gone = context.store.tables().remove(table->id);
         !gone && gone.error().code != ErrorCode::not_found)
       log::warning("table " + std::to_string(table->id) +
                    " of a template that failed could not be removed: " + gone.error().detail);
@@ -127,7 +135,7 @@ Result<std::vector<Layer>> make_layers(const RouteContext& context, const Reques
 
 Result<Response> use_template(const RouteContext& context, const Request& request) {
   auto asked = STRATA_TRY(body_of<protocol::TemplateUse>(request));
-  auto project = STRATA_TRY(context.store.project(request.param("project")));
+  auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
   const protocol::Template* of = context.templates.find(request.param("template"));
   if (!of)
     return fail(ErrorCode::not_found, "Not found",
@@ -152,7 +160,7 @@ Result<Response> use_template(const RouteContext& context, const Request& reques
     for (const auto& change : changes) all.push_back(change.table);
     return answer_with(all, {});
   };
-  auto changes = STRATA_TRY(context.store.create_tables(
+  auto changes = STRATA_TRY(context.store.tables().create_several(
       tables, false, request.user(), "template",
       wished.empty() ? first_answer<std::vector<store::TableChange>>(request, tables_alone)
                      : store::FirstAnswer<std::vector<store::TableChange>>{

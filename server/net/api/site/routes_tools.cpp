@@ -1,13 +1,17 @@
 #include "core/mapped_file.h"
 #include "core/picture.h"
+#include "core/role.h"
 #include "core/slug.h"
+#include "core/tool.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
 #include "net/http/page.h"
 #include "net/live/live_sockets.h"
 #include "net/transport/server_options.h"
+#include "store/projects.h"
 #include "store/store.h"
+#include "store/tools.h"
 
 namespace strata::net {
 namespace {
@@ -28,9 +32,9 @@ void tell_everyone(const RouteContext& context, Event event, const Tool& tool) {
 
 Result<Response> list_tools(const RouteContext& context, const Request& request) {
   const auto page = STRATA_TRY(page_of(request, kMaxPage));
-  auto tools = STRATA_TRY(context.store.tools());
+  auto tools = STRATA_TRY(context.store.tools().all());
   const auto part = STRATA_TRY(slice_by_name(page, tools, context.store, [](const Tool& tool) {
-    return store::Store::NamedId{tool.name, tool.id};
+    return store::NamedId{tool.name, tool.id};
   }));
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(tools[i]));
@@ -73,14 +77,14 @@ Result<Response> create_tool(const RouteContext& context, const Request& request
         .with("ETag", etag_of(made.version));
   };
   auto created =
-      STRATA_TRY(context.store.create_tool(tool, shape, first_answer<Tool>(request, answer)));
+      STRATA_TRY(context.store.tools().create(tool, shape, first_answer<Tool>(request, answer)));
   tell_everyone(context, Event::created, created);
   return answer(created);
 }
 
 // One that can be changed: that is not deleted.
 Result<Tool> present_tool(const RouteContext& context, const Request& request) {
-  auto tool = context.store.tool(request.param("tool"));
+  auto tool = context.store.tools().find(request.param("tool"));
   if (tool && tool->deleted)
     return fail(ErrorCode::not_found, "Tool deleted",
                 "The tool `" + tool->name + "` was deleted: it can be read, but not changed.");
@@ -96,22 +100,23 @@ Result<Response> rename_tool(const RouteContext& context, const Request& request
   const auto answer = [](const Tool& now) {
     return json_response(to_json(now)).with("ETag", etag_of(now.version));
   };
-  auto changed = STRATA_TRY(context.store.update_tool(tool, first_answer<Tool>(request, answer)));
+  auto changed =
+      STRATA_TRY(context.store.tools().update(tool, first_answer<Tool>(request, answer)));
   tell_everyone(context, Event::changed, changed);
   return answer(changed);
 }
 
 Result<Response> delete_tool(const RouteContext& context, const Request& request) {
   auto tool = STRATA_TRY(present_tool(context, request));
-  STRATA_TRY(context.store.delete_tool(
+  STRATA_TRY(context.store.tools().remove(
       tool.id, first_answer<>(request, [] { return empty_response(204); })));
   tell_everyone(context, Event::deleted, tool);
   return empty_response(204);
 }
 
 Result<Response> tool_picture(const RouteContext& context, const Request& request) {
-  auto tool = STRATA_TRY(context.store.tool(request.param("tool")));
-  auto shape = STRATA_TRY(context.store.tool_shape(tool.id));
+  auto tool = STRATA_TRY(context.store.tools().find(request.param("tool")));
+  auto shape = STRATA_TRY(context.store.tools().shape(tool.id));
   const Picture picture = picture_of(shape);
   Response response =
       bytes_response(encode_png(picture.rgba, picture.width, picture.height), "image/png");
@@ -148,7 +153,7 @@ void add_tool_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = tools + "/{tool}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
-                auto tool = STRATA_TRY(context.store.tool(request.param("tool")));
+                auto tool = STRATA_TRY(context.store.tools().find(request.param("tool")));
                 return with_etag(json_response(to_json(tool)), request, tool.version);
               }),
               .role = Role::guest});

@@ -2,13 +2,19 @@
 #include <map>
 #include <set>
 
+#include "core/attachment.h"
 #include "core/column_value.h"
 #include "core/filename.h"
 #include "core/name_pattern.h"
+#include "core/role.h"
+#include "core/table.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/transport/server_options.h"
+#include "store/attachments.h"
+#include "store/records.h"
 #include "store/store.h"
+#include "store/tables.h"
 
 namespace strata::net {
 namespace {
@@ -50,7 +56,7 @@ Result<Names> attached_names(const RouteContext& context, const Author& who, con
         ids.push_back(id.get<std::int64_t>());
       }
     }
-  auto found = STRATA_TRY(context.store.attachments(table.id, who, ids));
+  auto found = STRATA_TRY(context.store.attachments().of_table(table.id, who, ids));
   Names names;
   for (const Attachment& attachment : found)
     for (const auto key : holders[attachment.id]) names[key].insert(attachment.name);
@@ -61,7 +67,7 @@ Result<Response> match(const RouteContext& context, const Request& request) {
   auto asked =
       STRATA_TRY(body_of<protocol::AttachmentMatch>(request, context.options.max_json_bytes));
   auto pattern = STRATA_TRY(NamePattern::parse(asked.pattern, "pattern"));
-  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   const Column* column = find_column(table.columns, asked.column);
   if (!column && asked.column != kKey)
     return fail(ErrorCode::invalid, "No such column",
@@ -71,9 +77,9 @@ Result<Response> match(const RouteContext& context, const Request& request) {
     return fail(ErrorCode::invalid, "Column not in the pattern",
                 "The pattern has no `{" + word + "}`, which says which record a file is of.",
                 "pattern");
-  store::Store::RecordQuery query;
+  store::RecordQuery query;
   query.limit = store::kMostRecords;
-  auto page = STRATA_TRY(context.store.records(table.id, request.role(), query));
+  auto page = STRATA_TRY(context.store.records().page(table.id, request.role(), query));
   Values values;
   for (const Record& record : page.records) {
     if (!column) values.add(std::to_string(record.key), record.key);

@@ -4,10 +4,13 @@
 #include <mutex>
 
 #include "app/change_notifier.h"
+#include "core/attachment.h"
 #include "core/filename.h"
 #include "core/media_type.h"
 #include "core/no_such.h"
 #include "core/picture.h"
+#include "core/role.h"
+#include "core/table.h"
 #include "core/thumbnail.h"
 #include "net/http/answer_book.h"
 #include "net/http/byte_range.h"
@@ -17,13 +20,16 @@
 #include "net/serialization/record_place.h"
 #include "net/serialization/table_wire.h"
 #include "net/transport/server_options.h"
+#include "store/attachments.h"
 #include "store/store.h"
+#include "store/table_changes.h"
+#include "store/tables.h"
 
 namespace strata::net {
 namespace {
 
-using Attached = store::Store::Attached;
-using NewAttachment = store::Store::NewAttachment;
+using Attached = store::Attached;
+using NewAttachment = store::NewAttachment;
 
 constexpr const char* kAccepted =
     "Send the file as the body, with its `name` in the address, or one or several files in a multipart/form-data form.";
@@ -122,9 +128,9 @@ Result<Response> attach(const RouteContext& context, const Request& request) {
         .with("Location", "/api/v1/attachments/" + std::to_string(attached.attachments.front().id))
         .with("ETag", etag_of(attached.change.records.front().version));
   };
-  auto attached =
-      STRATA_TRY(context.store.attach(place.table.id, key, column_id, files, version,
-                                      request.author(), first_answer<Attached>(request, answer)));
+  auto attached = STRATA_TRY(context.store.attachments().attach(
+      place.table.id, key, column_id, files, version, request.author(),
+      first_answer<Attached>(request, answer)));
   context.changes.records_changed(attached.change, request.user());
   return answer(attached);
 }
@@ -151,7 +157,7 @@ Result<Response> list_attachments(const RouteContext& context, const Request& re
       wanted.push_back(id.get<std::int64_t>());
     }
   }
-  auto found = STRATA_TRY(context.store.attachments(then.id, request.author(), wanted));
+  auto found = STRATA_TRY(context.store.attachments().of_table(then.id, request.author(), wanted));
   nlohmann::json list = nlohmann::json::array();
   for (const auto& [id, column] : ids)
     for (const Attachment& attachment : found)
@@ -183,7 +189,7 @@ Result<int> thumbnail_side(const Request& request) {
 Result<Response> thumbnail(const RouteContext& context, const Attachment& attachment, int side) {
   // Decoded pictures are large: one at a time, so that memory is bounded.
   static std::mutex decoding;
-  auto kept = STRATA_TRY(context.store.thumbnail(attachment, side));
+  auto kept = STRATA_TRY(context.store.attachments().thumbnail(attachment, side));
   if (kept) return bytes_response(std::move(*kept), "image/jpeg");
   constexpr std::array<std::string_view, 5> kTypes{"image/jpeg", "image/png", "image/tiff",
                                                    "image/webp", "image/bmp"};
@@ -200,18 +206,18 @@ Result<Response> thumbnail(const RouteContext& context, const Attachment& attach
   const std::lock_guard lock(decoding);
   std::vector<std::uint8_t> bytes;
   bytes.reserve(attachment.bytes);
-  STRATA_TRY(context.store.read_attachment(attachment, 0, attachment.bytes,
-                                           [&](std::span<const std::uint8_t> piece) {
-                                             bytes.insert(bytes.end(), piece.begin(), piece.end());
-                                             return true;
-                                           }));
+  STRATA_TRY(context.store.attachments().read(
+      attachment, 0, attachment.bytes, [&](std::span<const std::uint8_t> piece) {
+        bytes.insert(bytes.end(), piece.begin(), piece.end());
+        return true;
+      }));
   auto picture = make_thumbnail(bytes, side);
   if (!picture) {
     picture.error().field = "thumbnail";
     return tl::unexpected(picture.error());
   }
   // Where it cannot be kept (no room, database busy), it is made again next time.
-  (void)context.store.keep_thumbnail(attachment, side, *picture);
+  (void)context.store.attachments().keep_thumbnail(attachment, side, *picture);
   return bytes_response(std::move(*picture), "image/jpeg");
 }
 
@@ -229,12 +235,12 @@ Result<Response> content(const RouteContext& context, const Attachment& attachme
     response.stream = Response::Stream{
         length,
         [&store = context.store, attachment, range = asked.range](const Response::Sink& sink) {
-          return store.read_attachment(attachment, range.begin, range.end, sink).has_value();
+          return store.attachments().read(attachment, range.begin, range.end, sink).has_value();
         }};
     return response;
   }
   response.bytes.reserve(length);
-  STRATA_TRY(context.store.read_attachment(
+  STRATA_TRY(context.store.attachments().read(
       attachment, asked.range.begin, asked.range.end, [&](std::span<const std::uint8_t> piece) {
         response.bytes.insert(response.bytes.end(), piece.begin(), piece.end());
         return true;
@@ -244,7 +250,7 @@ Result<Response> content(const RouteContext& context, const Attachment& attachme
 
 Result<Response> read_attachment(const RouteContext& context, const Request& request) {
   auto id = STRATA_TRY(attachment_id(request));
-  auto attachment = STRATA_TRY(context.store.attachment(id, request.author()));
+  auto attachment = STRATA_TRY(context.store.attachments().find(id, request.author()));
   const bool small = request.query.contains("thumbnail");
   int side = 0;
   if (small) {
@@ -284,25 +290,25 @@ Result<Response> read_attachment(const RouteContext& context, const Request& req
 
 Result<Response> change_attachment(const RouteContext& context, const Request& request) {
   auto id = STRATA_TRY(attachment_id(request));
-  auto attachment = STRATA_TRY(context.store.attachment(id, request.author()));
+  auto attachment = STRATA_TRY(context.store.attachments().find(id, request.author()));
   if (request.role() < Role::curator && request.user() != attachment.user)
     return fail(ErrorCode::forbidden, "Not allowed",
                 "Who sees a file is said by curators and by who attached it.");
   auto asked = STRATA_TRY(body_of<protocol::AttachmentPatch>(request));
   const auto answer = [](const Attachment& now) { return json_response(to_json(now)); };
-  auto now = STRATA_TRY(context.store.show_attachment(id, asked.visibility,
-                                                      first_answer<Attachment>(request, answer)));
-  if (auto table = context.store.table(std::to_string(now.table_id), Role::owner))
+  auto now = STRATA_TRY(context.store.attachments().show(
+      id, asked.visibility, first_answer<Attachment>(request, answer)));
+  if (auto table = context.store.tables().find(std::to_string(now.table_id), Role::owner))
     tell_table(context.live_sockets, protocol::TableEventEvent::changed, *table, request.user());
   return answer(now);
 }
 
 Result<Response> detach(const RouteContext& context, const Request& request) {
   auto id = STRATA_TRY(attachment_id(request));
-  STRATA_TRY(context.store.attachment(id, request.author()));
+  STRATA_TRY(context.store.attachments().find(id, request.author()));
   const auto answer = [](const store::TableChange&) { return empty_response(204); };
-  auto change =
-      context.store.detach(id, request.user(), first_answer<store::TableChange>(request, answer));
+  auto change = context.store.attachments().detach(
+      id, request.user(), first_answer<store::TableChange>(request, answer));
   if (!change) return tl::unexpected(change.error());
   context.changes.records_changed(*change, request.user());
   return answer(*change);

@@ -7,6 +7,8 @@
 #include "app/records/record_csv.h"
 #include "app/records/record_measures.h"
 #include "app/records/workbook.h"
+#include "core/role.h"
+#include "core/table.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
@@ -17,7 +19,9 @@
 #include "net/transport/server_options.h"
 #include "query/expression_parser.h"
 #include "room/room.h"
+#include "store/records.h"
 #include "store/store.h"
+#include "store/table_changes.h"
 
 namespace strata::net {
 namespace {
@@ -51,11 +55,10 @@ Result<std::vector<std::pair<std::string, bool>>> order_of(const std::string& te
 
 // Sorted by what they measure, such as the area that they have on the layer: all other order is the
 // database's.
-Result<store::Store::RecordPage> page_by_measure(const RouteContext& context,
-                                                 const app::RecordPlace& place,
-                                                 const app::RecordMeasures& measures,
-                                                 std::size_t measure, Role seen_by,
-                                                 store::Store::RecordQuery query) {
+Result<store::RecordPage> page_by_measure(const RouteContext& context,
+                                          const app::RecordPlace& place,
+                                          const app::RecordMeasures& measures, std::size_t measure,
+                                          Role seen_by, store::RecordQuery query) {
   const bool descending = query.order.front().second;
   const auto limit = static_cast<std::size_t>(query.limit),
              offset = static_cast<std::size_t>(query.offset);
@@ -63,7 +66,7 @@ Result<store::Store::RecordPage> page_by_measure(const RouteContext& context,
   query.order.erase(query.order.begin());
   query.limit = store::kMostRecords;
   query.offset = 0;
-  auto page = STRATA_TRY(context.store.records(place.table.id, seen_by, query));
+  auto page = STRATA_TRY(context.store.records().page(place.table.id, seen_by, query));
   // worked out once: a line may have thousands of places
   std::vector<std::pair<double, Record>> by_value;
   by_value.reserve(page.records.size());
@@ -102,7 +105,7 @@ Result<store::Store::RecordPage> page_by_measure(const RouteContext& context,
 
 // The columns of `records_csv`, with values of their own types; under a layer the last one has
 // areas in a unit that people read.
-Result<Response> records_book(const RouteContext& context, const store::Store::RecordPage& page,
+Result<Response> records_book(const RouteContext& context, const store::RecordPage& page,
                               const app::RecordMeasures& measures,
                               const app::WordsOfTables& words) {
   std::vector<app::BookColumn> heads{{"key", {}}};
@@ -141,7 +144,7 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
   const auto format = STRATA_TRY(sheet_format(request));
   auto separator = STRATA_TRY(csv_separator(request));
   auto place = STRATA_TRY(record_place(context, request));
-  store::Store::RecordQuery query;
+  store::RecordQuery query;
   auto order = STRATA_TRY(order_of(request.query_or("sortby", {})));
   query.order = std::move(order);
   const auto language = STRATA_TRY(asked_language(request));
@@ -169,11 +172,11 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
   const auto& names = measures.names();
   const auto measure =
       query.order.empty() ? names.end() : std::ranges::find(names, query.order.front().first);
-  auto records = STRATA_TRY(measure == names.end()
-                                ? context.store.records(place.table.id, request.role(), query)
-                                : page_by_measure(context, place, measures,
-                                                  static_cast<std::size_t>(measure - names.begin()),
-                                                  request.role(), query));
+  auto records = STRATA_TRY(
+      measure == names.end() ? context.store.records().page(place.table.id, request.role(), query)
+                             : page_by_measure(context, place, measures,
+                                               static_cast<std::size_t>(measure - names.begin()),
+                                               request.role(), query));
   app::WordsOfTables words;
   if (format != SheetFormat::json && terms == "words") {
     auto known =
@@ -273,8 +276,8 @@ Result<Response> create_from_json(const RouteContext& context, const Request& re
     const std::size_t total = list.size();
     return json_response({{"records", std::move(list)}, {"total", total}}, 201);
   };
-  auto change = STRATA_TRY(context.store.write_records(place.table.id, write, request.user(),
-                                                       first_answer<TableChange>(request, answer)));
+  auto change = STRATA_TRY(context.store.records().write(
+      place.table.id, write, request.user(), first_answer<TableChange>(request, answer)));
   if (!change.problems.empty()) return tl::unexpected(first_problem(change, is_list));
   context.changes.records_changed(change, request.user());
   return answer(change);
@@ -328,8 +331,8 @@ Result<Response> import_csv(const RouteContext& context, const Request& request,
   const auto answer = [&rows](const TableChange& change) {
     return json_response(report_of(rows, change, false));
   };
-  auto change = STRATA_TRY(context.store.write_records(place.table.id, write, request.user(),
-                                                       first_answer<TableChange>(request, answer)));
+  auto change = STRATA_TRY(context.store.records().write(
+      place.table.id, write, request.user(), first_answer<TableChange>(request, answer)));
   const bool refused = !rows.mistakes.empty() || !change.problems.empty();
   if (tried == "true") return json_response(report_of(rows, change, true));
   if (refused) {
@@ -382,8 +385,8 @@ Result<Response> change_record(const RouteContext& context, const Request& reque
     return json_response(to_json(*same, seen_by(change.table, request.role()).columns))
         .with("ETag", etag_of(same->version));
   };
-  auto change = STRATA_TRY(context.store.write_records(place.table.id, write, request.user(),
-                                                       first_answer<TableChange>(request, keep)));
+  auto change = STRATA_TRY(context.store.records().write(place.table.id, write, request.user(),
+                                                         first_answer<TableChange>(request, keep)));
   if (!change.problems.empty()) return tl::unexpected(first_problem(change, false));
   context.changes.records_changed(change, request.user());
   return keep(change);
@@ -403,7 +406,7 @@ Result<Response> delete_retired(const RouteContext& context, const Request& requ
                 "texels");
   STRATA_TRY(app::repaint_key(context, painted, key, to, request.author()));
   const auto answer = [](const TableChange&) { return empty_response(204); };
-  auto change = STRATA_TRY(context.store.delete_record(
+  auto change = STRATA_TRY(context.store.records().remove(
       table.id, key, version, request.user(), false, first_answer<TableChange>(request, answer)));
   context.changes.records_changed(change, request.user());
   return answer(change);
@@ -423,7 +426,7 @@ Result<Response> delete_record(const RouteContext& context, const Request& reque
   const Table& table = place.table;
   if (texels == "reassign") {
     auto number = STRATA_TRY(parse_integer(request.query.at("to"), 0, kHighestKey, "to"));
-    auto missing = STRATA_TRY(context.store.missing_records(table.id, std::vector{number}));
+    auto missing = STRATA_TRY(context.store.records().missing(table.id, std::vector{number}));
     if (!missing.empty() || number == key)
       return fail(ErrorCode::invalid, "No such record",
                   "`to` is another record of " + table.name + ".", "to");
@@ -431,13 +434,13 @@ Result<Response> delete_record(const RouteContext& context, const Request& reque
   }
   auto version = STRATA_TRY(wished_record_version(context, request, table, key));
   // Before any texel is touched: may it go?
-  STRATA_TRY(context.store.delete_record(table.id, key, version, request.user(), true));
+  STRATA_TRY(context.store.records().remove(table.id, key, version, request.user(), true));
   // A stroke that began while there was a record must not paint it again.
   const auto retired = context.rooms.retire_key(table.id, key);
   auto deleted = retired ? delete_retired(context, request, table, key, version, texels, to)
                          : Result<Response>(tl::unexpected(retired.error()));
   if (!deleted)
-    if (const auto missing = context.store.missing_records(table.id, std::vector{key});
+    if (const auto missing = context.store.records().missing(table.id, std::vector{key});
         missing && missing->empty())
       context.rooms.admit_keys(table.id, std::vector{key});
   return deleted;

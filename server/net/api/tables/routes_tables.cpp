@@ -6,8 +6,13 @@
 #include "app/records/painted_keys.h"
 #include "core/classification.h"
 #include "core/compensated_sum.h"
+#include "core/expression.h"
 #include "core/key_colors.h"
+#include "core/key_numbers.h"
 #include "core/relation_cycles.h"
+#include "core/role.h"
+#include "core/table.h"
+#include "core/visibility.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
@@ -17,7 +22,11 @@
 #include "net/serialization/table_wire.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
+#include "store/projects.h"
+#include "store/records.h"
 #include "store/store.h"
+#include "store/table_changes.h"
+#include "store/tables.h"
 
 namespace strata::net {
 namespace {
@@ -26,12 +35,12 @@ using TableChange = store::TableChange;
 
 Result<Response> list_tables(const RouteContext& context, const Request& request) {
   auto page = STRATA_TRY(page_of(request));
-  auto project = STRATA_TRY(context.store.project(request.param("project")));
-  auto tables = STRATA_TRY(context.store.tables(project.id, request.role()));
+  auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
+  auto tables = STRATA_TRY(context.store.tables().of_project(project.id, request.role()));
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(tables.size());
   const auto part = STRATA_TRY(slice_by_name(page, tables, context.store, [](const Table& table) {
-    return store::Store::NamedId{table.name, table.id};
+    return store::NamedId{table.name, table.id};
   }));
   for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(tables[i]));
   Response response = json_response({{"tables", list}, {"total", total}});
@@ -41,7 +50,7 @@ Result<Response> list_tables(const RouteContext& context, const Request& request
 
 Result<Response> create_table(const RouteContext& context, const Request& request) {
   auto asked = STRATA_TRY(body_of<protocol::TableCreate>(request));
-  auto project = STRATA_TRY(context.store.project(request.param("project")));
+  auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
   auto slug = STRATA_TRY(slug_of(asked.slug, asked.name));
   Table table;
   table.project_id = project.id;
@@ -59,13 +68,13 @@ Result<Response> create_table(const RouteContext& context, const Request& reques
         .with("ETag", etag_of(made.version));
   };
   auto created =
-      STRATA_TRY(context.store.create_table(table, first_answer<Table>(request, answer)));
+      STRATA_TRY(context.store.tables().create(table, first_answer<Table>(request, answer)));
   tell_table(context.live_sockets, protocol::TableEventEvent::created, created, request.user());
   return answer(created);
 }
 
 Result<Response> change_table(const RouteContext& context, const Request& request) {
-  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   STRATA_TRY(check_if_match(request, table.version));
   auto asked = STRATA_TRY(body_of<protocol::TablePatch>(request));
   if (asked.name) table.name = *asked.name;
@@ -83,15 +92,15 @@ Result<Response> change_table(const RouteContext& context, const Request& reques
     return json_response(to_json(now)).with("ETag", etag_of(now.version));
   };
   auto changed =
-      STRATA_TRY(context.store.update_table(table, first_answer<Table>(request, answer)));
+      STRATA_TRY(context.store.tables().update(table, first_answer<Table>(request, answer)));
   tell_table(context.live_sockets, protocol::TableEventEvent::changed, changed, request.user());
   return answer(changed);
 }
 
 Result<Response> delete_table(const RouteContext& context, const Request& request) {
-  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   STRATA_TRY(check_if_match(request, table.version));
-  STRATA_TRY(context.store.delete_table(
+  STRATA_TRY(context.store.tables().remove(
       table.id, first_answer<>(request, [] { return empty_response(204); })));
   tell_table(context.live_sockets, protocol::TableEventEvent::deleted, table, request.user());
   return empty_response(204);
@@ -122,7 +131,7 @@ nlohmann::json column_json(const TableChange& change, std::int64_t id) {
 
 Result<Response> list_columns(const RouteContext& context, const Request& request) {
   const auto page = STRATA_TRY(page_of(request, kMaxPage));
-  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   const auto part = STRATA_TRY(slice_by(page, table.columns, [](const Column& column) {
     return NumberKey{column.order, column.id};
   }));
@@ -136,7 +145,7 @@ Result<Response> list_columns(const RouteContext& context, const Request& reques
 
 Result<Response> create_column(const RouteContext& context, const Request& request) {
   auto asked = STRATA_TRY(body_of<protocol::ColumnCreate>(request));
-  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   STRATA_TRY(check_if_match(request, table.version));
   auto column = STRATA_TRY(new_column(context.store, table.project_id, asked));
   for (const Column& other : table.columns) column.order = std::max(column.order, other.order + 1);
@@ -146,8 +155,8 @@ Result<Response> create_column(const RouteContext& context, const Request& reque
         .with("Location", "/api/v1/tables/" + change.table.slug + "/columns/" + std::to_string(id))
         .with("ETag", etag_of(change.table.version));
   };
-  auto change = STRATA_TRY(context.store.create_column(table.id, column, request.user(),
-                                                       first_answer<TableChange>(request, answer)));
+  auto change = STRATA_TRY(context.store.tables().create_column(
+      table.id, column, request.user(), first_answer<TableChange>(request, answer)));
   context.changes.records_changed(change, request.user());
   return answer(change);
 }
@@ -198,8 +207,8 @@ Result<Response> show_column(const RouteContext& context, const Request& request
     shown.table = now;
     return json_response(column_json(shown, id)).with("ETag", etag_of(now.version));
   };
-  auto now = STRATA_TRY(context.store.show_column(table.id, column.id, visibility, table.version,
-                                                  first_answer<Table>(request, answer)));
+  auto now = STRATA_TRY(context.store.tables().show_column(
+      table.id, column.id, visibility, table.version, first_answer<Table>(request, answer)));
   // Colours, lines and points that are drawn from it are others for who does not see it any more.
   context.rooms.records_changed(now.id);
   tell_table(context.live_sockets, protocol::TableEventEvent::changed, now, request.user());
@@ -207,7 +216,7 @@ Result<Response> show_column(const RouteContext& context, const Request& request
 }
 
 Result<Response> change_column(const RouteContext& context, const Request& request) {
-  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   auto found = STRATA_TRY(column_of(table, request));
   STRATA_TRY(check_if_match(request, table.version));
   auto asked = STRATA_TRY(body_of<protocol::ColumnPatch>(request));
@@ -225,21 +234,22 @@ Result<Response> change_column(const RouteContext& context, const Request& reque
     const auto now = done.record.is_object() ? done.record.value("column", id) : id;
     return json_response(column_json(done, now)).with("ETag", etag_of(done.table.version));
   };
-  auto done =
-      context.store.update_column(table.id, column, wished_version(request, table), request.user(),
-                                  first_answer<TableChange>(request, answer));
+  auto done = context.store.tables().update_column(table.id, column, wished_version(request, table),
+                                                   request.user(),
+                                                   first_answer<TableChange>(request, answer));
   if (!done) return tl::unexpected(done.error());
   context.changes.records_changed(*done, request.user());
   return answer(*done);
 }
 
 Result<Response> drop_column(const RouteContext& context, const Request& request) {
-  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   auto column = STRATA_TRY(column_of(table, request));
   STRATA_TRY(check_if_match(request, table.version));
   const auto answer = [](const TableChange&) { return empty_response(204); };
-  auto done = context.store.drop_column(table.id, column->id, wished_version(request, table),
-                                        request.user(), first_answer<TableChange>(request, answer));
+  auto done = context.store.tables().drop_column(table.id, column->id,
+                                                 wished_version(request, table), request.user(),
+                                                 first_answer<TableChange>(request, answer));
   if (!done) return tl::unexpected(done.error());
   context.changes.records_changed(*done, request.user());
   return answer(*done);
@@ -248,15 +258,15 @@ Result<Response> drop_column(const RouteContext& context, const Request& request
 // A record that lies above itself cannot be: told, not refused, since excavation drawings have such
 // things to be found.
 Result<Response> cycles(const RouteContext& context, const Request& request) {
-  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   auto column = STRATA_TRY(column_of(table, request));
   if (column->target != table.id)
     return fail(ErrorCode::invalid, "No relation of its own",
                 "Cycles are those of a relation or term that names records of its own table.",
                 "column");
-  store::Store::RecordQuery query;
+  store::RecordQuery query;
   query.limit = store::kMostRecords;
-  auto page = STRATA_TRY(context.store.records(table.id, request.role(), query));
+  auto page = STRATA_TRY(context.store.records().page(table.id, request.role(), query));
   Relation relation;
   for (const Record& record : page.records)
     if (const auto named = record.values.find(column->id); named != record.values.end())
@@ -270,7 +280,7 @@ Result<Response> cycles(const RouteContext& context, const Request& request) {
 // --- history
 
 Result<Response> classes(const RouteContext& context, const Request& request) {
-  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   auto column = STRATA_TRY(column_of(table, request));
   const auto asked = request.query.find("method");
   const std::string method = asked == request.query.end() ? "unique" : asked->second;
@@ -287,7 +297,7 @@ Result<Response> classes(const RouteContext& context, const Request& request) {
   nlohmann::json list = nlohmann::json::array();
   std::uint64_t with_value = 0, classified = 0;
   if (unique) {
-    auto cells = context.store.record_texts(table.id, request.role(), column->slug, "column");
+    auto cells = context.store.records().texts(table.id, request.role(), column->slug, "column");
     if (!cells) return tl::unexpected(cells.error());
     std::vector<std::string> values;
     for (KeyText& cell : *cells) values.push_back(std::move(cell.text));
@@ -306,7 +316,7 @@ Result<Response> classes(const RouteContext& context, const Request& request) {
     number.op = Expression::Op::column;
     number.path = {column->slug};
     auto cells =
-        context.store.record_numbers(table.id, request.role(), number, std::nullopt, "column");
+        context.store.records().numbers(table.id, request.role(), number, std::nullopt, "column");
     if (!cells) return tl::unexpected(cells.error());
     std::vector<double> values;
     for (const KeyNumber& cell : *cells) values.push_back(cell.number);
@@ -325,15 +335,15 @@ Result<Response> classes(const RouteContext& context, const Request& request) {
 
 Result<Response> history(const RouteContext& context, const Request& request) {
   auto page = STRATA_TRY(page_of(request));
-  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   std::optional<std::int64_t> key;
   if (const std::string text = request.query_or("key", {}); !text.empty()) {
     auto number = STRATA_TRY(parse_integer(text, 0, kHighestKey, "key"));
     key = number;
   }
   const auto before = STRATA_TRY(number_after(page, INT64_MAX));
-  auto rows = STRATA_TRY(context.store.table_history(table.id, request.role(), key, page.limit + 1,
-                                                     page.offset, before));
+  auto rows = STRATA_TRY(context.store.tables().history(table.id, request.role(), key,
+                                                        page.limit + 1, page.offset, before));
   const auto last =
       end_page(rows.rows, page, [](const auto& row) { return ListPlace::array({row.sequence}); });
   nlohmann::json list = nlohmann::json::array();
@@ -345,8 +355,8 @@ Result<Response> history(const RouteContext& context, const Request& request) {
 
 Result<Response> undo(const RouteContext& context, const Request& request, bool redo) {
   if (!request.body.empty()) STRATA_TRY(body_of<protocol::Empty>(request));
-  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
-  auto plan = STRATA_TRY(context.store.plan_table_undo(table.id, request.user(), redo));
+  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
+  auto plan = STRATA_TRY(context.store.tables().plan_undo(table.id, request.user(), redo));
   if (!plan.vanishing.empty()) {
     auto painted = STRATA_TRY(app::painted_layers(context, table.id, request.role()));
     if (const std::string where = app::where_painted(painted, plan.vanishing); !where.empty())
@@ -362,8 +372,8 @@ Result<Response> undo(const RouteContext& context, const Request& request, bool 
                           {"columns_changed", done.columns_changed}});
   };
   auto done =
-      STRATA_TRY(context.store.undo_table(table.id, request.user(), redo, plan.table_sequence,
-                                          first_answer<TableChange>(request, answer)));
+      STRATA_TRY(context.store.tables().undo(table.id, request.user(), redo, plan.table_sequence,
+                                             first_answer<TableChange>(request, answer)));
   context.changes.records_changed(done, request.user());
   return answer(done);
 }
@@ -371,7 +381,7 @@ Result<Response> undo(const RouteContext& context, const Request& request, bool 
 // --- surface of its keys
 
 Result<Response> areas(const RouteContext& context, const Request& request) {
-  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   auto painted = STRATA_TRY(app::painted_layers(context, table.id, request.role()));
   struct Sum {
     CompensatedSum area_m2;
@@ -389,7 +399,7 @@ Result<Response> areas(const RouteContext& context, const Request& request) {
     }
   std::vector<std::int64_t> keys;
   for (const auto& [key, sum] : sums) keys.push_back(key);
-  auto missing = STRATA_TRY(context.store.missing_records(table.id, keys));
+  auto missing = STRATA_TRY(context.store.records().missing(table.id, keys));
   nlohmann::json list = nlohmann::json::array();
   for (auto& [key, sum] : sums) {
     nlohmann::json models = nlohmann::json::array();
@@ -437,7 +447,7 @@ void add_table_routes(Router& router, const RouteContext& context) {
   read(tables, list_tables, {"limit", "offset", "after"});
   write(Method::post, tables, create_table);
   read(table, [](const RouteContext& c, const Request& request) -> Result<Response> {
-    auto found = STRATA_TRY(c.store.table(request.param("table"), request.role()));
+    auto found = STRATA_TRY(c.store.tables().find(request.param("table"), request.role()));
     return with_etag(json_response(to_json(found)), request, found.version);
   });
   write(Method::patch, table, change_table);

@@ -1,6 +1,8 @@
 #include <algorithm>
 
 #include "app/change_notifier.h"
+#include "core/role.h"
+#include "core/term.h"
 #include "core/term_list.h"
 #include "core/terms_csv.h"
 #include "core/terms_skos.h"
@@ -11,7 +13,11 @@
 #include "net/live/live_sockets.h"
 #include "net/live/table_events.h"
 #include "net/serialization/sheet_response.h"
+#include "store/projects.h"
+#include "store/records.h"
 #include "store/store.h"
+#include "store/table_changes.h"
+#include "store/tables.h"
 
 namespace strata::net {
 namespace {
@@ -90,14 +96,14 @@ Result<Response> refusal(const TermList& list, const TableChange& change) {
 
 Result<Response> create_terms(const RouteContext& context, const Request& request) {
   auto dry_run = STRATA_TRY(is_dry_run(request));
-  store::Store::NewTable wished;
+  store::NewTable wished;
   wished.table.name = request.query_or("name", {});
   if (wished.table.name.empty() || wished.table.name.size() > kLongestListName)
     return fail(ErrorCode::invalid, "Name missing",
                 "`name` tells what the list is called, in 1 to 200 bytes.", "name");
   auto slug = STRATA_TRY(slug_of({}, wished.table.name));
   wished.table.slug = slug;
-  auto project = STRATA_TRY(context.store.project(request.param("project")));
+  auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
   wished.table.project_id = project.id;
   auto list = STRATA_TRY(read_terms(request));
   std::vector<std::string> languages;
@@ -113,9 +119,9 @@ Result<Response> create_terms(const RouteContext& context, const Request& reques
     return json_response(report_of(list, changes.front(), false), 201)
         .with("Location", "/api/v1/tables/" + changes.front().table.slug);
   };
-  auto changes =
-      context.store.create_tables({wished}, dry_run, request.user(), "import",
-                                  first_answer<std::vector<TableChange>>(request, answer));
+  auto changes = context.store.tables().create_several(
+      {wished}, dry_run, request.user(), "import",
+      first_answer<std::vector<TableChange>>(request, answer));
   if (!changes) return tl::unexpected(changes.error());
   if (dry_run) return json_response(report_of(list, changes->front(), true));
   if (!changes->front().problems.empty()) return refusal(list, changes->front());
@@ -126,7 +132,7 @@ Result<Response> create_terms(const RouteContext& context, const Request& reques
 
 Result<Response> import_terms(const RouteContext& context, const Request& request) {
   auto dry_run = STRATA_TRY(is_dry_run(request));
-  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   auto list = STRATA_TRY(read_terms(request));
   if (!list.mistakes.empty()) {
     if (dry_run) return json_response(report_of(list, {}, true));
@@ -135,8 +141,8 @@ Result<Response> import_terms(const RouteContext& context, const Request& reques
   const auto answer = [&list](const TableChange& change) {
     return json_response(report_of(list, change, false));
   };
-  auto change = STRATA_TRY(context.store.import_terms(table.id, list, dry_run, request.user(),
-                                                      first_answer<TableChange>(request, answer)));
+  auto change = STRATA_TRY(context.store.tables().import_terms(
+      table.id, list, dry_run, request.user(), first_answer<TableChange>(request, answer)));
   if (dry_run) return json_response(report_of(list, change, true));
   if (!change.problems.empty()) return refusal(list, change);
   context.changes.records_changed(change, request.user());
@@ -207,13 +213,13 @@ Result<Response> list_terms_of(const RouteContext& context, const Request& reque
   auto separator = STRATA_TRY(csv_separator(request));
   auto shown = STRATA_TRY(page_of(request));
   const auto language = STRATA_TRY(asked_language(request));
-  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   if (!term_columns(table))
     return fail(ErrorCode::conflict, "No list of terms",
                 table.name + " is a table of records. Read `/records` of it.");
-  store::Store::RecordQuery all;
+  store::RecordQuery all;
   all.limit = store::kMostRecords;
-  auto page = STRATA_TRY(context.store.records(table.id, request.role(), all));
+  auto page = STRATA_TRY(context.store.records().page(table.id, request.role(), all));
   const auto columns = term_columns(page.table);
   if (!columns)
     return fail(ErrorCode::conflict, "No list of terms", table.name + " was changed meanwhile.");
