@@ -105,7 +105,7 @@ export class StrataTrashDialog extends LitElement {
       ${trash ? html`<p class="hint">${trash.days === 0 ? words.not_kept_lead : words.lead(trash.days)}</p>` : nothing}
       <p class=${note?.kind ?? "done"} role=${note?.kind === "error" ? "alert" : "status"} tabindex="-1" ?hidden=${!note}>${note?.text}</p>
       ${
-        bin
+        trash
           ? this.entries(trash)
           : html`<p class="hint" role="status" ?hidden=${note !== null}>${texts.loading}</p>
             ${note ? html`<div><button @click=${() => void this.attempt(() => this.read())}>${texts.try_again}</button></div>` : nothing}`
