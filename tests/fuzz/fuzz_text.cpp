@@ -80,7 +80,7 @@ void read_numbers(std::string_view text) {
     demand(again.has_value() && again->x_per_column == world->x_per_column && again->y == world->y);
   }
   if (const auto id = parse_uuid(text)) demand(parse_uuid(to_string(*id)) == id);
-  if (const auto number = net::parse_integer(text, -1000, 1000, "field"))
+  if (const auto number = parse_integer(text, -1000, 1000, "field"))
     demand(*number >= -1000 && *number <= 1000);
 }
 
