@@ -103,12 +103,13 @@ void apply_edit(const RouteContext& context, const Request& request,
   if (keyed)
     if (auto same = context.edit_book.begin(room->model().id, edit); !same)
       return respond(same.error());
+  const Uuid id = edit.id;
   room->edit(
       std::move(edit),
       [&metrics = context.metrics](const room::EditAnswer& answer) {
         if (!answer.repeated) ++metrics.edits.applied;
       },
-      [&context, keyed, id = edit.id, respond,
+      [&context, keyed, id, respond,
        body_of = std::move(body_of)](Result<room::EditAnswer> answer) {
         if (keyed) context.edit_book.end(id);
         if (!answer) {

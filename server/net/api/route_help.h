@@ -55,7 +55,7 @@ Uuid edit_id(const Request& request, const Layer& layer, std::string_view operat
 void apply_edit(
     const RouteContext& context, const Request& request, const std::shared_ptr<room::Room>& room,
     room::EditRequest edit, const Respond& respond,
-    std::function<nlohmann::json(nlohmann::json)> body_of = [](nlohmann::json of_edit) {
+    std::function<nlohmann::json(nlohmann::json)> body_of = [](const nlohmann::json& of_edit) {
       return of_edit;
     });
 

@@ -10,7 +10,6 @@
 #include "core/role.h"
 #include "net/api/route_help.h"
 #include "store/activity.h"
-#include "store/store.h"
 
 namespace strata::net {
 

@@ -7,7 +7,6 @@
 #include "net/serialization/map_query.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
-#include "store/store.h"
 
 namespace strata::net {
 namespace {

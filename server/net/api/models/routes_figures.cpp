@@ -6,7 +6,6 @@
 #include "net/api/models/figure_request.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
-#include "store/store.h"
 
 namespace strata::net {
 namespace {
