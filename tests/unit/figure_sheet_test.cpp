@@ -11,9 +11,6 @@
 #include "figure/layout.h"
 #include "figure/text.h"
 
-// Fontconfig keeps what it knows of fonts until the process ends.
-extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig\n"; }
-
 namespace strata::figure {
 namespace {
 
