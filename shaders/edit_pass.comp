@@ -135,7 +135,7 @@ float depth_bias(ivec2 pixel, float here, float w) {
   return base + min(edit.bias.z * slope, edit.bias.w * base);
 }
 
-// render/facing_limit.h says how. At the window's border the neighbour that is there decides; where a pixel shows no surface,
+// render/edit/facing_limit.h says how. At the window's border the neighbour that is there decides; where a pixel shows no surface,
 // nothing is painted.
 bool is_facing(ivec2 pixel, float here) {
   ivec2 last = textureSize(depth, 0) - 1;

@@ -5,7 +5,7 @@
 #include <mutex>
 #include <thread>
 
-#include "store/bin.h"
+#include "store/content/bin.h"
 
 namespace strata::app {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "store/table_changes.h"
+#include "store/tables/table_changes.h"
 
 namespace strata::app {
 

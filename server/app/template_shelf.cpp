@@ -5,10 +5,10 @@
 #include <iterator>
 #include <set>
 
-#include "core/slug.h"
-#include "core/term_list.h"
+#include "core/text/slug.h"
+#include "domain/tables/term_list.h"
 #include "protocol/parse.h"
-#include "store/tables.h"
+#include "store/tables/tables.h"
 
 namespace strata::app {
 namespace {

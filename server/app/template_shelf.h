@@ -6,7 +6,7 @@
 
 #include "protocol/messages.h"
 #include "store/store.h"
-#include "store/tables.h"
+#include "store/tables/tables.h"
 
 namespace strata::app {
 

@@ -5,8 +5,8 @@
 #include "cli/install_dirs.h"
 #include "cli/open_database.h"
 #include "cli/progress_line.h"
-#include "store/backup.h"
-#include "store/inspect.h"
+#include "store/cluster/backup.h"
+#include "store/cluster/inspect.h"
 
 namespace strata::cli {
 namespace {

@@ -4,8 +4,8 @@
 #include "cli/open_database.h"
 #include "cli/progress_line.h"
 #include "jobs/import_job.h"
-#include "store/models.h"
-#include "store/projects.h"
+#include "store/content/models.h"
+#include "store/content/projects.h"
 
 namespace strata::cli {
 

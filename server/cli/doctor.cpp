@@ -8,7 +8,7 @@
 #include "cli/install_dirs.h"
 #include "cli/open_database.h"
 #include "render/renderer.h"
-#include "store/inspect.h"
+#include "store/cluster/inspect.h"
 
 namespace strata::cli {
 namespace {

@@ -9,7 +9,7 @@
 #include "cli/remote_import.h"
 #include "jobs/companions.h"
 #include "jobs/import_job.h"
-#include "store/projects.h"
+#include "store/content/projects.h"
 
 namespace strata::cli {
 namespace {

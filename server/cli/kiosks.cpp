@@ -4,9 +4,9 @@
 #include <iostream>
 
 #include "cli/subcommands.h"
-#include "store/kiosks.h"
-#include "store/models.h"
-#include "store/named_parts.h"
+#include "store/content/models.h"
+#include "store/content/named_parts.h"
+#include "store/people/kiosks.h"
 
 namespace strata::cli {
 namespace {

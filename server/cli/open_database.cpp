@@ -3,8 +3,8 @@
 #include <iostream>
 
 #include "cli/install_dirs.h"
-#include "store/inspect.h"
-#include "store/sql_readers.h"
+#include "store/cluster/inspect.h"
+#include "store/cluster/sql_readers.h"
 
 namespace strata::cli {
 

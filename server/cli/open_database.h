@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "store/cluster.h"
+#include "store/cluster/cluster.h"
 #include "store/store.h"
 
 namespace strata::cli {

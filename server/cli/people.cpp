@@ -5,12 +5,12 @@
 #include <iterator>
 
 #include "cli/subcommands.h"
-#include "store/accounts.h"
-#include "store/groups.h"
-#include "store/members.h"
-#include "store/password.h"
-#include "store/projects.h"
-#include "store/tokens.h"
+#include "store/content/projects.h"
+#include "store/people/accounts.h"
+#include "store/people/groups.h"
+#include "store/people/members.h"
+#include "store/people/password.h"
+#include "store/people/tokens.h"
 
 namespace strata::cli {
 namespace {

@@ -14,9 +14,9 @@
 #include "net/transport/server.h"
 #include "render/renderer.h"
 #include "room/room.h"
-#include "store/accounts.h"
-#include "store/attachments.h"
-#include "store/tokens.h"
+#include "store/people/accounts.h"
+#include "store/people/tokens.h"
+#include "store/tables/attachments.h"
 #include "stream/jpeg_pool.h"
 
 namespace strata::cli {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/up.h"
+#include "domain/scene/up.h"
 #include "figure/paper.h"
 
 namespace strata::figure {

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/camera.h"
-#include "core/model.h"
+#include "domain/scene/camera.h"
+#include "domain/scene/model.h"
 
 namespace strata::figure {
 

@@ -4,9 +4,9 @@
 #include <string>
 
 #include "core/error.h"
-#include "core/picture.h"
 #include "core/progress.h"
 #include "figure/sheet.h"
+#include "media/picture.h"
 
 namespace strata::figure {
 

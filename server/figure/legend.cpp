@@ -1,7 +1,7 @@
 #include "figure/legend.h"
 
-#include "core/label_text.h"
-#include "core/number_text.h"
+#include "core/text/number_text.h"
+#include "domain/tables/label_text.h"
 
 namespace strata::figure {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/layer.h"
-#include "core/palette.h"
+#include "domain/layers/layer.h"
+#include "domain/layers/palette.h"
 
 namespace strata::figure {
 

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/palette.h"
+#include "domain/layers/palette.h"
 
 namespace strata::figure {
 

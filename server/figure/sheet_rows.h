@@ -4,9 +4,9 @@
 #include <functional>
 #include <span>
 
-#include "core/picture.h"
 #include "core/progress.h"
 #include "figure/sheet.h"
+#include "media/picture.h"
 
 namespace strata::figure {
 

@@ -5,9 +5,9 @@
 #include <cstdarg>
 #include <memory>
 
-#include "core/guarded_png.h"
 #include "figure/sheet_rows.h"
 #include "figure/writers.h"
+#include "media/guarded_png.h"
 
 namespace strata::figure {
 namespace {

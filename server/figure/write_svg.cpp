@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "core/number_text.h"
+#include "core/text/number_text.h"
 #include "figure/text.h"
 #include "figure/writers.h"
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "mesh/input_files.h"
+#include "mesh/io/input_files.h"
 
 namespace strata::jobs {
 

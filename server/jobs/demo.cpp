@@ -3,19 +3,19 @@
 #include <future>
 #include <utility>
 
-#include "core/slug.h"
+#include "core/text/slug.h"
 #include "jobs/demo_rules.h"
 #include "jobs/import_job.h"
 #include "jobs/model_geometry.h"
-#include "mesh/atlas.h"
-#include "mesh/demo_pot.h"
-#include "mesh/geometry.h"
-#include "mesh/surface_map.h"
-#include "store/journal_reads.h"
-#include "store/journal_writer.h"
-#include "store/layers.h"
-#include "store/models.h"
-#include "store/projects.h"
+#include "mesh/atlas/atlas.h"
+#include "mesh/demo/demo_pot.h"
+#include "mesh/surface/geometry.h"
+#include "mesh/texels/surface_map.h"
+#include "store/content/layers.h"
+#include "store/content/models.h"
+#include "store/content/projects.h"
+#include "store/journal/journal_reads.h"
+#include "store/journal/journal_writer.h"
 
 namespace strata::jobs {
 namespace {

@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include "mesh/demo_pot_noise.h"
+#include "mesh/demo/demo_pot_noise.h"
 
 namespace strata::jobs {
 namespace {

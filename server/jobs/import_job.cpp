@@ -6,17 +6,17 @@
 #include <span>
 #include <utility>
 
-#include "core/filename.h"
-#include "core/picture.h"
-#include "core/slug.h"
-#include "core/up.h"
+#include "core/text/filename.h"
+#include "core/text/slug.h"
+#include "domain/scene/up.h"
 #include "jobs/model_geometry.h"
-#include "mesh/base_color.h"
-#include "mesh/geometry.h"
-#include "mesh/load.h"
-#include "mesh/scale_proposal.h"
-#include "store/models.h"
-#include "store/projects.h"
+#include "media/picture.h"
+#include "mesh/io/load.h"
+#include "mesh/repair/scale_proposal.h"
+#include "mesh/surface/geometry.h"
+#include "mesh/texture/base_color.h"
+#include "store/content/models.h"
+#include "store/content/projects.h"
 
 namespace strata::jobs {
 namespace {

@@ -5,10 +5,10 @@
 #include <string_view>
 
 #include "core/memory_ledger.h"
-#include "core/model.h"
 #include "core/progress.h"
-#include "mesh/input_files.h"
-#include "store/first_answer.h"
+#include "domain/scene/model.h"
+#include "mesh/io/input_files.h"
+#include "store/content/first_answer.h"
 #include "store/store.h"
 
 namespace strata::jobs {
@@ -22,7 +22,7 @@ struct ImportRequest {
   std::string name;  // of the model; empty: from the name of the mesh
   std::string project = "default";
   std::optional<Unit> unit;  // empty: as the file says, or else metres, `unit_assumed`
-  // what the file does not say is as proposed (mesh/scale_proposal.h), `unit_assumed`
+  // what the file does not say is as proposed (mesh/repair/scale_proposal.h), `unit_assumed`
   bool unit_proposed = false;
   std::string up;  // "" (as the file says, or else z) or of kUpDirections
   bool up_proposed = false;

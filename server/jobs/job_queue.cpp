@@ -12,7 +12,7 @@
 
 #include "core/give_back_memory.h"
 #include "core/log.h"
-#include "store/jobs.h"
+#include "store/content/jobs.h"
 
 namespace strata::jobs {
 namespace {

@@ -1,7 +1,7 @@
 #include "jobs/model_geometry.h"
 
-#include "mesh/detail_levels.h"
-#include "store/models.h"
+#include "mesh/surface/detail_levels.h"
+#include "store/content/models.h"
 
 namespace strata::jobs {
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/progress.h"
-#include "mesh/geometry.h"
-#include "store/models.h"
+#include "mesh/surface/geometry.h"
+#include "store/content/models.h"
 #include "store/store.h"
 
 namespace strata::jobs {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "core/mask_texels.h"
-#include "mesh/gutter_fill.h"
+#include "domain/layers/mask_texels.h"
+#include "mesh/texture/gutter_fill.h"
 
 namespace strata::jobs {
 namespace {

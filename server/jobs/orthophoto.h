@@ -3,12 +3,12 @@
 #include <glm/glm.hpp>
 #include <optional>
 
-#include "core/model.h"
-#include "core/picture.h"
-#include "core/tile_mirror.h"
-#include "mesh/surface_map.h"
-#include "query/placed_picture.h"
-#include "render/look_image.h"
+#include "domain/layers/tile_mirror.h"
+#include "domain/scene/model.h"
+#include "media/picture.h"
+#include "mesh/texels/surface_map.h"
+#include "query/rasters/placed_picture.h"
+#include "render/memory/look_image.h"
 
 namespace strata::jobs {
 

@@ -5,16 +5,16 @@
 #include <limits>
 #include <mutex>
 
-#include "core/compass.h"
-#include "core/up.h"
-#include "mesh/boundary.h"
-#include "mesh/curvature.h"
-#include "mesh/model_distance.h"
-#include "mesh/openness.h"
-#include "mesh/sampled_field.h"
-#include "mesh/texel_owners.h"
-#include "mesh/vertex_properties.h"
-#include "store/models.h"
+#include "domain/scene/compass.h"
+#include "domain/scene/up.h"
+#include "mesh/analysis/curvature.h"
+#include "mesh/analysis/model_distance.h"
+#include "mesh/analysis/openness.h"
+#include "mesh/analysis/sampled_field.h"
+#include "mesh/io/vertex_properties.h"
+#include "mesh/surface/boundary.h"
+#include "mesh/texels/texel_owners.h"
+#include "store/content/models.h"
 
 namespace strata::jobs {
 namespace {

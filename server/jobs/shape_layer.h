@@ -2,11 +2,11 @@
 
 #include <memory>
 
-#include "core/model.h"
 #include "core/progress.h"
-#include "core/tile_mirror.h"
+#include "domain/layers/tile_mirror.h"
+#include "domain/scene/model.h"
 #include "jobs/shape_recipe.h"
-#include "mesh/geometry.h"
+#include "mesh/surface/geometry.h"
 #include "store/store.h"
 
 namespace strata::jobs {

@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "core/number_text.h"
-#include "mesh/surface_samples.h"
+#include "core/text/number_text.h"
+#include "mesh/analysis/surface_samples.h"
 
 namespace strata::jobs {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/error.h"
-#include "core/model.h"
-#include "core/palette.h"
+#include "domain/layers/palette.h"
+#include "domain/scene/model.h"
 
 namespace strata::jobs {
 

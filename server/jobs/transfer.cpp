@@ -6,11 +6,11 @@
 #include <numeric>
 #include <utility>
 
-#include "core/texel_lookup.h"
-#include "mesh/surface_normals.h"
-#include "mesh/texel_owners.h"
-#include "store/journal_reads.h"
-#include "store/models.h"
+#include "domain/layers/texel_lookup.h"
+#include "mesh/surface/surface_normals.h"
+#include "mesh/texels/texel_owners.h"
+#include "store/content/models.h"
+#include "store/journal/journal_reads.h"
 
 namespace strata::jobs {
 namespace {

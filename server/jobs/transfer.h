@@ -4,12 +4,12 @@
 #include <memory>
 #include <vector>
 
-#include "core/layer.h"
-#include "core/model.h"
 #include "core/progress.h"
-#include "core/tile_mirror.h"
-#include "mesh/search_tree.h"
-#include "mesh/surface_map.h"
+#include "domain/layers/layer.h"
+#include "domain/layers/tile_mirror.h"
+#include "domain/scene/model.h"
+#include "mesh/surface/search_tree.h"
+#include "mesh/texels/surface_map.h"
 #include "store/store.h"
 
 namespace strata::jobs {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "core/mark.h"
+#include "domain/tables/mark.h"
 #include "jobs/transfer.h"
 
 namespace strata::jobs {

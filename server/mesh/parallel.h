@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/question.h"
+#include "domain/people/question.h"
 
 namespace strata::mesh {
 
@@ -21,8 +21,8 @@ inline int hardware_threads() {
 }
 
 // Runs work(0) … work(count - 1) on up to `threads` threads (this one among them), each index once,
-// in any order. Between them the current question (core/question.h) is asked whether it goes on.
-// What one of them throws ends all and is thrown here.
+// in any order. Between them the current question (domain/people/question.h) is asked whether it
+// goes on. What one of them throws ends all and is thrown here.
 template <class Work>
 void parallel_for(int threads, int count, Work&& work) {
   const QuestionTurn turn;

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "core/log.h"
-#include "render/frame_job.h"
-#include "render/frame_queue.h"
-#include "render/gpu_scene.h"
-#include "render/gpu_thread.h"
-#include "render/paint_job.h"
-#include "render/upload_jobs.h"
+#include "render/thread/frame_job.h"
+#include "render/thread/frame_queue.h"
+#include "render/thread/gpu_scene.h"
+#include "render/thread/gpu_thread.h"
+#include "render/thread/paint_job.h"
+#include "render/thread/upload_jobs.h"
 
 namespace strata::render {
 

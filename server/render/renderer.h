@@ -8,18 +8,18 @@
 #include <string>
 #include <vector>
 
-#include "core/background.h"
-#include "core/camera.h"
 #include "core/error.h"
-#include "core/light.h"
-#include "core/palette.h"
-#include "core/stroke.h"
-#include "core/tile.h"
-#include "core/tile_mirror.h"
-#include "mesh/geometry.h"
-#include "mesh/surface_map.h"
-#include "render/look_image.h"
-#include "render/marks.h"
+#include "domain/layers/palette.h"
+#include "domain/layers/tile.h"
+#include "domain/layers/tile_mirror.h"
+#include "domain/scene/background.h"
+#include "domain/scene/camera.h"
+#include "domain/scene/light.h"
+#include "domain/scene/stroke.h"
+#include "mesh/surface/geometry.h"
+#include "mesh/texels/surface_map.h"
+#include "render/memory/look_image.h"
+#include "render/view/marks.h"
 
 namespace strata::render {
 
@@ -206,7 +206,7 @@ class Renderer {
 
   // Views keep a g-buffer and the last picture. Requests of one view replace each other while they
   // wait ("latest wins"): the replaced request's callback gets the Error `superseded`.
-  // Views take turns by what drawing for them has taken (render/frame_queue).
+  // Views take turns by what drawing for them has taken (render/thread/frame_queue).
   void add_view(ModelHandle model, Done<ViewHandle> done);
   void remove_view(ViewHandle view);
   void draw(FrameRequest request, Done<SharedFrame> done);

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "core/error.h"
-#include "core/question.h"
+#include "domain/people/question.h"
 
 namespace strata::room {
 

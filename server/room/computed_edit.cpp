@@ -8,7 +8,7 @@
 #include "mesh/parallel.h"
 #include "room/expression_binding.h"
 #include "room/tile_past.h"
-#include "store/journal_reads.h"
+#include "store/journal/journal_reads.h"
 
 namespace strata::room {
 namespace {

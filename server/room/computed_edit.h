@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/layer.h"
+#include "domain/layers/layer.h"
 #include "room/region.h"
-#include "store/journal.h"
+#include "store/journal/journal.h"
 #include "store/store.h"
 
 namespace strata::room {

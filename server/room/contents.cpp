@@ -7,9 +7,9 @@
 #include "room/await.h"
 #include "room/provisional.h"
 #include "room/tile_changes.h"
-#include "store/journal_reads.h"
-#include "store/layers.h"
-#include "store/models.h"
+#include "store/content/layers.h"
+#include "store/content/models.h"
+#include "store/journal/journal_reads.h"
 
 namespace strata::room {
 

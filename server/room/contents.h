@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "core/layer.h"
-#include "core/tile_mirror.h"
-#include "mesh/geometry.h"
+#include "domain/layers/layer.h"
+#include "domain/layers/tile_mirror.h"
+#include "mesh/surface/geometry.h"
 #include "room/layer_state.h"
 #include "store/store.h"
 

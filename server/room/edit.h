@@ -7,16 +7,16 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/expression.h"
-#include "core/layer.h"
-#include "core/question.h"
-#include "core/review.h"
-#include "core/role.h"
-#include "core/stroke.h"
-#include "core/tile_mirror.h"
 #include "core/uuid.h"
-#include "query/values.h"
-#include "store/journal.h"
+#include "domain/layers/layer.h"
+#include "domain/layers/review.h"
+#include "domain/layers/tile_mirror.h"
+#include "domain/people/question.h"
+#include "domain/people/role.h"
+#include "domain/scene/stroke.h"
+#include "expression/expression.h"
+#include "query/sampling/values.h"
+#include "store/journal/journal.h"
 
 namespace strata::room {
 

@@ -11,7 +11,7 @@
 #include "core/overloaded.h"
 #include "room/gpu_problem.h"
 #include "room/provisional.h"
-#include "store/journal_reads.h"
+#include "store/journal/journal_reads.h"
 
 namespace strata::room {
 namespace {

@@ -17,8 +17,8 @@
 #include "room/room.h"
 #include "room/surface_maps.h"
 #include "room/tile_changes.h"
-#include "store/journal_reads.h"
-#include "store/journal_writer.h"
+#include "store/journal/journal_reads.h"
+#include "store/journal/journal_writer.h"
 
 namespace strata::room {
 

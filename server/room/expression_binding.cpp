@@ -1,6 +1,6 @@
 #include "room/expression_binding.h"
-#include "store/records.h"
-#include "store/tables.h"
+#include "store/tables/records.h"
+#include "store/tables/tables.h"
 
 #include <algorithm>
 

@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include "core/expression.h"
-#include "core/role.h"
-#include "core/visibility.h"
-#include "query/expression_evaluator.h"
+#include "domain/people/role.h"
+#include "domain/people/visibility.h"
+#include "expression/expression.h"
+#include "query/conditions/expression_evaluator.h"
 #include "store/store.h"
 
 namespace strata::room {

@@ -3,9 +3,9 @@
 #include <memory>
 #include <optional>
 
-#include "core/layer.h"
-#include "core/tile_mirror.h"
-#include "query/tile_sums.h"
+#include "domain/layers/layer.h"
+#include "domain/layers/tile_mirror.h"
+#include "query/statistics/tile_sums.h"
 #include "render/renderer.h"
 
 namespace strata::room {

@@ -5,10 +5,10 @@
 
 #include "core/log.h"
 #include "core/no_such.h"
-#include "core/picture.h"
-#include "core/slug.h"
+#include "core/text/slug.h"
+#include "media/picture.h"
 #include "room/await.h"
-#include "store/looks.h"
+#include "store/content/looks.h"
 
 namespace strata::room {
 namespace {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "core/look.h"
 #include "core/memory_ledger.h"
-#include "core/picture.h"
+#include "domain/scene/look.h"
+#include "media/picture.h"
 #include "render/renderer.h"
 #include "room/room.h"
 #include "store/store.h"

@@ -1,9 +1,9 @@
 // What maps and measurements paint: found from the shape alone, whatever the layer holds.
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "core/mask_texels.h"
-#include "mesh/slot_bits.h"
-#include "query/dabs.h"
+#include "domain/layers/mask_texels.h"
+#include "mesh/texels/slot_bits.h"
+#include "query/maps/dabs.h"
 #include "room/gpu_problem.h"
 #include "room/open_room.h"
 #include "room/seen_texels.h"

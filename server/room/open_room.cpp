@@ -7,14 +7,14 @@
 
 #include "core/log.h"
 #include "core/no_such.h"
-#include "core/slug.h"
+#include "core/text/slug.h"
 #include "room/expression_binding.h"
 #include "room/gpu_problem.h"
 #include "room/seen_room.h"
 #include "room/tile_changes.h"
-#include "store/layers.h"
-#include "store/looks.h"
-#include "store/models.h"
+#include "store/content/layers.h"
+#include "store/content/looks.h"
+#include "store/content/models.h"
 
 namespace strata::room {
 namespace {

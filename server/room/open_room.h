@@ -6,14 +6,14 @@
 #include <memory>
 #include <mutex>
 
-#include "core/expression.h"
-#include "core/layer.h"
-#include "core/look.h"
-#include "core/model.h"
-#include "core/role.h"
-#include "core/table.h"
-#include "core/tile_mirror.h"
-#include "core/visibility.h"
+#include "domain/layers/layer.h"
+#include "domain/layers/tile_mirror.h"
+#include "domain/people/role.h"
+#include "domain/people/visibility.h"
+#include "domain/scene/look.h"
+#include "domain/scene/model.h"
+#include "domain/tables/table.h"
+#include "expression/expression.h"
 #include "room/contents.h"
 #include "room/edit_pipeline.h"
 #include "room/followers.h"
@@ -23,7 +23,7 @@
 #include "room/record_marks.h"
 #include "room/retired_keys.h"
 #include "room/room.h"
-#include "store/first_answer.h"
+#include "store/content/first_answer.h"
 
 namespace strata::room {
 

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <optional>
 
-#include "core/picture_writer.h"
-#include "core/question.h"
+#include "domain/people/question.h"
+#include "media/picture_writer.h"
 #include "room/await.h"
 #include "room/gpu_problem.h"
 #include "room/open_room.h"
 #include "room/provisional.h"
-#include "store/journal_reads.h"
+#include "store/journal/journal_reads.h"
 
 namespace strata::room {
 namespace {

@@ -1,8 +1,8 @@
 #include "room/provisional.h"
 
-#include "core/mask_texels.h"
+#include "domain/layers/mask_texels.h"
 #include "room/tile_past.h"
-#include "store/journal_reads.h"
+#include "store/journal/journal_reads.h"
 
 namespace strata::room {
 

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/layer.h"
-#include "core/palette.h"
-#include "core/tile_mirror.h"
+#include "domain/layers/layer.h"
+#include "domain/layers/palette.h"
+#include "domain/layers/tile_mirror.h"
 #include "render/renderer.h"
 #include "room/tile_changes.h"
 #include "store/store.h"

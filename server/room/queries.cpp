@@ -4,17 +4,17 @@
 #include <map>
 #include <set>
 
-#include "core/question.h"
+#include "domain/people/question.h"
 #include "mesh/parallel.h"
-#include "mesh/slot_bits.h"
-#include "query/expression_evaluator.h"
-#include "query/flood.h"
-#include "query/nearest_points.h"
-#include "query/texel_values.h"
+#include "mesh/texels/slot_bits.h"
+#include "query/conditions/expression_evaluator.h"
+#include "query/conditions/flood.h"
+#include "query/conditions/texel_values.h"
+#include "query/sampling/nearest_points.h"
 #include "room/expression_binding.h"
 #include "room/open_room.h"
 #include "room/region.h"
-#include "store/journal_reads.h"
+#include "store/journal/journal_reads.h"
 
 namespace strata::room {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <boost/asio/post.hpp>
 
-#include "core/key_colors.h"
-#include "store/records.h"
-#include "store/tables.h"
+#include "domain/layers/key_colors.h"
+#include "store/tables/records.h"
+#include "store/tables/tables.h"
 
 namespace strata::room {
 namespace {

@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/palette.h"
-#include "core/role.h"
-#include "core/visibility.h"
+#include "domain/layers/palette.h"
+#include "domain/people/role.h"
+#include "domain/people/visibility.h"
 #include "room/room.h"
 #include "store/store.h"
 

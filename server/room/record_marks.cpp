@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/log.h"
-#include "store/records.h"
-#include "store/tables.h"
+#include "store/tables/records.h"
+#include "store/tables/tables.h"
 
 namespace strata::room {
 

@@ -7,9 +7,9 @@
 #include <mutex>
 #include <vector>
 
-#include "core/mark.h"
-#include "core/palette.h"
-#include "core/visibility.h"
+#include "domain/layers/palette.h"
+#include "domain/people/visibility.h"
+#include "domain/tables/mark.h"
 #include "render/renderer.h"
 #include "store/store.h"
 

@@ -1,10 +1,10 @@
 #include "room/region.h"
 
-#include "core/mask_texels.h"
 #include "core/overloaded.h"
 #include "core/polygon_area.h"
-#include "mesh/slot_bits.h"
-#include "query/flood.h"
+#include "domain/layers/mask_texels.h"
+#include "mesh/texels/slot_bits.h"
+#include "query/conditions/flood.h"
 #include "room/expression_binding.h"
 #include "room/gpu_problem.h"
 

@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "core/role.h"
-#include "core/tile_mirror.h"
-#include "core/visibility.h"
-#include "query/values.h"
+#include "domain/layers/tile_mirror.h"
+#include "domain/people/role.h"
+#include "domain/people/visibility.h"
+#include "query/sampling/values.h"
 #include "room/edit.h"
 #include "room/seen_texels.h"
 #include "room/surface_lookup.h"

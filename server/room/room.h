@@ -10,29 +10,29 @@
 #include <variant>
 #include <vector>
 
-#include "core/expression.h"
-#include "core/layer.h"
-#include "core/look.h"
 #include "core/memory_ledger.h"
-#include "core/model.h"
-#include "core/person_color.h"
-#include "core/picture.h"
-#include "core/role.h"
-#include "core/table.h"
-#include "core/tile_mirror.h"
-#include "core/visibility.h"
-#include "query/cross_table.h"
-#include "query/key_areas.h"
-#include "query/perimeter.h"
-#include "query/profile.h"
-#include "query/quantities.h"
-#include "query/seen_layers.h"
-#include "query/statistics.h"
-#include "query/texel_samples.h"
-#include "query/values.h"
+#include "domain/layers/layer.h"
+#include "domain/layers/tile_mirror.h"
+#include "domain/people/person_color.h"
+#include "domain/people/role.h"
+#include "domain/people/visibility.h"
+#include "domain/scene/look.h"
+#include "domain/scene/model.h"
+#include "domain/tables/table.h"
+#include "expression/expression.h"
+#include "media/picture.h"
+#include "query/sampling/profile.h"
+#include "query/sampling/seen_layers.h"
+#include "query/sampling/texel_samples.h"
+#include "query/sampling/values.h"
+#include "query/statistics/cross_table.h"
+#include "query/statistics/key_areas.h"
+#include "query/statistics/perimeter.h"
+#include "query/statistics/quantities.h"
+#include "query/statistics/statistics.h"
 #include "room/edit.h"
-#include "store/bin.h"
-#include "store/first_answer.h"
+#include "store/content/bin.h"
+#include "store/content/first_answer.h"
 #include "store/store.h"
 #include "stream/viewer.h"
 
@@ -338,8 +338,8 @@ class Room {
   // A layer with the places of its texels where the selection holds, to be read at leisure.
   virtual Result<query::SurfaceTexels> surface_texels(const std::string& layer,
                                                       const Selection& selection = {}) = 0;
-  // What maps and measurements paint (query/flat_map, query/dabs), for an ImportEdit `over` the
-  // layer. Values are bits of its type.
+  // What maps and measurements paint (query/maps/flat_map, query/maps/dabs), for an ImportEdit
+  // `over` the layer. Values are bits of its type.
   struct PlacedValue {
     glm::dvec3 world{0};
     std::uint32_t bits = 0;

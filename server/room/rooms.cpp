@@ -11,10 +11,10 @@
 
 #include "core/give_back_memory.h"
 #include "core/log.h"
-#include "core/slug.h"
+#include "core/text/slug.h"
 #include "room/open_room.h"
 #include "room/seen_room.h"
-#include "store/models.h"
+#include "store/content/models.h"
 
 namespace strata::room {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <map>
 
-#include "core/camera.h"
-#include "core/tile.h"
-#include "mesh/surface_map.h"
+#include "domain/layers/tile.h"
+#include "domain/scene/camera.h"
+#include "mesh/texels/surface_map.h"
 #include "render/renderer.h"
 
 namespace strata::room {

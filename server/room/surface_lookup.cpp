@@ -1,6 +1,6 @@
 #include "room/surface_lookup.h"
 
-#include "core/question.h"
+#include "domain/people/question.h"
 
 namespace strata::room {
 

@@ -6,8 +6,8 @@
 
 #include "core/memory_ledger.h"
 #include "core/progress.h"
-#include "mesh/search_tree.h"
-#include "mesh/texel_graph.h"
+#include "mesh/surface/search_tree.h"
+#include "mesh/texels/texel_graph.h"
 
 namespace strata::room {
 

@@ -11,7 +11,7 @@
 
 #include "core/memory_ledger.h"
 #include "core/progress.h"
-#include "mesh/surface_map.h"
+#include "mesh/texels/surface_map.h"
 #include "render/renderer.h"
 
 namespace strata::room {

@@ -3,9 +3,9 @@
 #include <cstring>
 #include <set>
 
-#include "core/mask_texels.h"
-#include "mesh/slot_bits.h"
-#include "query/surface_keys.h"
+#include "domain/layers/mask_texels.h"
+#include "mesh/texels/slot_bits.h"
+#include "query/statistics/surface_keys.h"
 
 namespace strata::room {
 namespace {

@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include "core/layer.h"
-#include "core/tile_mirror.h"
-#include "mesh/surface_map.h"
-#include "query/texel_selection.h"
-#include "store/journal.h"
+#include "domain/layers/layer.h"
+#include "domain/layers/tile_mirror.h"
+#include "mesh/texels/surface_map.h"
+#include "query/conditions/texel_selection.h"
+#include "store/journal/journal.h"
 
 namespace strata::room {
 

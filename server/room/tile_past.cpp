@@ -1,5 +1,5 @@
 #include "room/tile_past.h"
-#include "store/journal_reads.h"
+#include "store/journal/journal_reads.h"
 
 #include <limits>
 

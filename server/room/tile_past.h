@@ -2,8 +2,8 @@
 
 #include <functional>
 
-#include "core/history.h"
-#include "core/layer.h"
+#include "domain/layers/history.h"
+#include "domain/layers/layer.h"
 #include "store/store.h"
 
 namespace strata::room {

@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "store/migrations.h"
+#include "store/cluster/migrations.h"
 #include "store/store_impl.h"
 
 namespace strata::store {

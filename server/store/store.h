@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "store/pg_limits.h"
+#include "store/pg/pg_limits.h"
 
 namespace strata::store {
 
@@ -62,8 +62,8 @@ class Store {
   // asks, the last answer.
   bool ready();
 
-  // The parts, each with a header of its own: store/projects.h has Projects. They live as long as
-  // this.
+  // The parts, each with a header of its own: store/content/projects.h has Projects. They live as
+  // long as this.
   Projects& projects();
   Models& models();
   Looks& looks();
@@ -71,7 +71,7 @@ class Store {
   Tables& tables();
   Records& records();
   Attachments& attachments();
-  Journal& journal();  // store/journal_reads.h
+  Journal& journal();  // store/journal/journal_reads.h
   Accounts& accounts();
   Members& members();
   Tokens& tokens();
@@ -79,7 +79,7 @@ class Store {
   Tools& tools();
   Answers& answers();
   Comments& comments();
-  NamedParts& views();  // of models (store/named_parts.h)
+  NamedParts& views();  // of models (store/content/named_parts.h)
   NamedParts& tours();  // the same
   Jobs& jobs();
   Kiosks& kiosks();

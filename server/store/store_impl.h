@@ -4,29 +4,29 @@
 #include <mutex>
 
 #include "core/no_such.h"
-#include "core/slug.h"
-#include "store/accounts.h"
-#include "store/answers.h"
-#include "store/attachments.h"
-#include "store/bin.h"
-#include "store/comments.h"
-#include "store/groups.h"
-#include "store/jobs.h"
-#include "store/journal_reads.h"
-#include "store/kiosks.h"
-#include "store/layers.h"
-#include "store/looks.h"
-#include "store/members.h"
-#include "store/models.h"
-#include "store/named_parts.h"
-#include "store/personal_views.h"
-#include "store/pool.h"
-#include "store/projects.h"
-#include "store/records.h"
+#include "core/text/slug.h"
+#include "store/content/answers.h"
+#include "store/content/bin.h"
+#include "store/content/comments.h"
+#include "store/content/jobs.h"
+#include "store/content/layers.h"
+#include "store/content/looks.h"
+#include "store/content/models.h"
+#include "store/content/named_parts.h"
+#include "store/content/projects.h"
+#include "store/content/tools.h"
+#include "store/journal/journal_reads.h"
+#include "store/people/accounts.h"
+#include "store/people/groups.h"
+#include "store/people/kiosks.h"
+#include "store/people/members.h"
+#include "store/people/personal_views.h"
+#include "store/people/tokens.h"
+#include "store/pg/pool.h"
 #include "store/store.h"
-#include "store/tables.h"
-#include "store/tokens.h"
-#include "store/tools.h"
+#include "store/tables/attachments.h"
+#include "store/tables/records.h"
+#include "store/tables/tables.h"
 
 namespace strata::store {
 
@@ -129,7 +129,7 @@ struct Store::Impl {
   std::atomic<bool> was_ready = true;
 };
 
-// With all that hangs on it, in the transaction at hand, in the Bin or not (store/bin.cpp).
+// With all that hangs on it, in the transaction at hand, in the Bin or not (store/content/bin.cpp).
 Result<void> erase_layer(PgConnection& connection, std::int64_t id);
 Result<void> erase_model(PgConnection& connection, std::int64_t id);
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "render/screen_rect.h"
+#include "render/thread/screen_rect.h"
 
 namespace strata::stream {
 

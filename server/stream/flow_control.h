@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/camera.h"
+#include "domain/scene/camera.h"
 #include "render/renderer.h"
 
 namespace strata::stream {

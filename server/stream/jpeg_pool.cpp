@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "core/log.h"
-#include "render/screen_rect.h"
+#include "render/thread/screen_rect.h"
 
 namespace strata::stream {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/picture.h"
+#include "media/picture.h"
 #include "render/renderer.h"
 
 namespace strata::stream {

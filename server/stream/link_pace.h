@@ -6,7 +6,7 @@
 #include <deque>
 #include <optional>
 
-#include "core/picture.h"
+#include "media/picture.h"
 
 namespace strata::stream {
 

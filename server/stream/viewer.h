@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/camera.h"
+#include "domain/scene/camera.h"
 #include "render/renderer.h"
 #include "stream/flow_control.h"
 #include "stream/jpeg_pool.h"
@@ -31,8 +31,8 @@ using FrameMessages = std::vector<FrameBytes>;
 // camera is followed by a full-quality one within 250 ms of the last input; quality never falls
 // while painting; viewers with the same picture share its drawing and its encoding; over a slow
 // link pictures of a moving camera are reduced (stream/link_pace); who just moved the camera or
-// edited is not held up by onlookers (render/frame_queue). Thread-safe; `send` is called on encoder
-// threads, in frame order, `refused` on the GPU thread; never concurrently.
+// edited is not held up by onlookers (render/thread/frame_queue). Thread-safe; `send` is called on
+// encoder threads, in frame order, `refused` on the GPU thread; never concurrently.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
   struct Options {

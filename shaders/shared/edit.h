@@ -2,21 +2,23 @@
 #include "shared/section.h"
 #include "shared/types.h"
 STRATA_SHARED_BEGIN
-// One piece of a stroke in window pixels, origin lower left. `tool` is: radius at the start, radius at the end, how far along
-// the axis a point's nearest disc centre is moved per unit of distance from the axis (0 for equal radii), length.
+// One piece of a stroke in window pixels, origin lower left. `tool` is: radius at the start, radius
+// at the end, how far along the axis a point's nearest disc centre is moved per unit of distance
+// from the axis (0 for equal radii), length.
 struct EditSegment {
   vec4 ends;  // start x, y, end x, y
   vec4 tool;
 };
 
-// A part of the block tree (mesh/block_tree.h): a block or some of its texels. `place` is the tile, row-major, with the block's x
-// above bit 16 and its y above bit 20.
+// A part of the block tree (mesh/surface/block_tree.h): a block or some of its texels. `place` is
+// the tile, row-major, with the block's x above bit 16 and its y above bit 20.
 struct EditPart {
   uint slot;
   uint place;
 };
 
-// A part that the stroke may touch. Bit i of `segments` stands for segments i * segments_per_bit and on.
+// A part that the stroke may touch. Bit i of `segments` stands for segments i * segments_per_bit
+// and on.
 struct TouchedPart {
   uint part;
   uint segments;
@@ -24,8 +26,8 @@ struct TouchedPart {
 
 const uint kEditMostTiles = 16384u;  // 16384 / 128 squared
 
-// How many parts and tiles the stroke may touch, and which tiles in no order. `number_of_tile` is 0 where it touches none, else
-// one above the tile's place in the list.
+// How many parts and tiles the stroke may touch, and which tiles in no order. `number_of_tile` is 0
+// where it touches none, else one above the tile's place in the list.
 struct EditTiles {
   uint part_count;
   uint tile_count;
@@ -33,8 +35,9 @@ struct EditTiles {
   uint number_of_tile[kEditMostTiles];
 };
 
-// What the edit wrote in a tile: 128 rows of texels, a bit each, lowest first; and the box around the spheres of the parts it
-// wrote in, as numbers that grow with the float (`low`: that shrink), 0 where it wrote nothing.
+// What the edit wrote in a tile: 128 rows of texels, a bit each, lowest first; and the box around
+// the spheres of the parts it wrote in, as numbers that grow with the float (`low`: that shrink), 0
+// where it wrote nothing.
 struct EditedTile {
   uint texels[512];
   uint low[3];
@@ -54,16 +57,18 @@ struct EditUniforms {
   mat4 clip_from_model;
   vec4 window;    // width, height in pixels; then 0
   vec4 tool_box;  // of all segments in window pixels: x0, y0, x1, y1
-  vec4 bias;      // fixed; scale of 1/w^2; slope factor; limit of the slope part, in units of the scaled part
+  vec4 bias;      // fixed; scale of 1/w^2; slope factor; limit of the slope part, in units of the
+                  // scaled part
   uint value;
   uint flags;
   uint section_count;
   uint segment_count;
   uint segments_per_bit;
   uint part_count;
-  uint table_offset;  // of the layer in the page tables
+  uint table_offset;   // of the layer in the page tables
   float inner_radius;  // share of the tool's radius that it fills wholly
-  vec4 facing[4];      // kEditFacing. render/facing_limit.h: rows x, y, w, far; the last number of the first is the limit
+  vec4 facing[4];  // kEditFacing. render/edit/facing_limit.h: rows x, y, w, far; the last number of
+                   // the first is the limit
   vec4 section[kSectionPlanes];  // section_count are used
 };
 

@@ -9,8 +9,8 @@
 #include "bench/bench_mesh.h"
 #include "bench/harness.h"
 #include "bench/step_watch.h"
-#include "mesh/atlas.h"
-#include "mesh/atlas_report.h"
+#include "mesh/atlas/atlas.h"
+#include "mesh/atlas/atlas_report.h"
 
 namespace strata::bench {
 namespace {

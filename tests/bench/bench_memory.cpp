@@ -7,8 +7,8 @@
 #include "bench/bench_commands.h"
 #include "bench/bench_mesh.h"
 #include "bench/harness.h"
-#include "core/revision.h"
-#include "query/dabs.h"
+#include "domain/layers/revision.h"
+#include "query/maps/dabs.h"
 
 namespace strata::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "jobs/companions.h"
-#include "mesh/demo_pot.h"
+#include "mesh/demo/demo_pot.h"
 #include "strata_dirs.h"
 
 namespace strata::bench {

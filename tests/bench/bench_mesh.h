@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "bench/standing.h"
-#include "mesh/geometry.h"
-#include "mesh/input_files.h"
-#include "mesh/load.h"
+#include "mesh/io/input_files.h"
+#include "mesh/io/load.h"
+#include "mesh/surface/geometry.h"
 
 namespace strata::bench {
 

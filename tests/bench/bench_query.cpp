@@ -10,12 +10,12 @@
 #include "bench/frame_client.h"
 #include "bench/harness.h"
 #include "bench/http_client.h"
+#include "expression/expression_parser.h"
 #include "jobs/import_job.h"
 #include "jobs/job_queue.h"
 #include "net/transport/server.h"
-#include "query/expression_parser.h"
-#include "store/records.h"
-#include "store/tables.h"
+#include "store/tables/records.h"
+#include "store/tables/tables.h"
 #include "strata_dirs.h"
 
 namespace strata::bench {

@@ -7,8 +7,8 @@
 #include "bench/bench_commands.h"
 #include "bench/bench_mesh.h"
 #include "bench/harness.h"
-#include "core/picture.h"
-#include "mesh/texture_sampler.h"
+#include "media/picture.h"
+#include "mesh/texture/texture_sampler.h"
 
 namespace strata::bench {
 namespace {

@@ -14,9 +14,9 @@
 #include "bench/harness.h"
 #include "bench/wander.h"
 #include "jobs/import_job.h"
-#include "store/journal_reads.h"
-#include "store/models.h"
-#include "store/projects.h"
+#include "store/content/models.h"
+#include "store/content/projects.h"
+#include "store/journal/journal_reads.h"
 
 namespace strata::bench {
 namespace {

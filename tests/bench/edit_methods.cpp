@@ -9,9 +9,9 @@
 #include "bench/peers/paper.h"
 #include "gl/program.h"
 #include "mesh/parallel.h"
-#include "render/depth_bias.h"
-#include "render/depth_buffers.h"
-#include "render/mesh_buffers.h"
+#include "render/edit/depth_bias.h"
+#include "render/memory/mesh_buffers.h"
+#include "render/view/depth_buffers.h"
 #include "support/shader_dirs.h"
 
 namespace strata::bench {

@@ -6,7 +6,7 @@
 
 #include "bench/bench_mesh.h"
 #include "bench/harness.h"
-#include "render/depth_copy.h"
+#include "render/view/depth_copy.h"
 
 namespace strata::bench {
 

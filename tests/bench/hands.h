@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bench/live_client.h"
-#include "core/camera.h"
+#include "domain/scene/camera.h"
 
 namespace strata::bench {
 

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "mesh/geometry.h"
+#include "mesh/surface/geometry.h"
 #include "render/renderer.h"
 #include "room/room.h"
-#include "store/cluster.h"
+#include "store/cluster/cluster.h"
 #include "stream/jpeg_pool.h"
 
 namespace strata::bench {

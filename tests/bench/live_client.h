@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "core/camera.h"
 #include "core/uuid.h"
+#include "domain/scene/camera.h"
 #include "protocol/messages.h"
 
 namespace strata::bench {

@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "bench/harness.h"
-#include "store/cluster_process.h"
+#include "store/cluster/cluster_process.h"
 
 namespace strata::bench {
 namespace {

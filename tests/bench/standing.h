@@ -3,8 +3,8 @@
 #include <glm/glm.hpp>
 #include <string>
 
-#include "core/camera.h"
-#include "mesh/geometry.h"
+#include "domain/scene/camera.h"
+#include "mesh/surface/geometry.h"
 
 namespace strata::bench {
 

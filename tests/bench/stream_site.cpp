@@ -11,7 +11,7 @@
 #include "bench/bench_mesh.h"
 #include "bench/harness.h"
 #include "bench/http_client.h"
-#include "query/vertex_ply.h"
+#include "query/sampling/vertex_ply.h"
 
 namespace strata::bench {
 namespace {

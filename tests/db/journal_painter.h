@@ -4,10 +4,10 @@
 #include <map>
 #include <random>
 
-#include "core/revision.h"
-#include "store/journal_writer.h"
-#include "store/layers.h"
-#include "store/models.h"
+#include "domain/layers/revision.h"
+#include "store/content/layers.h"
+#include "store/content/models.h"
+#include "store/journal/journal_writer.h"
 #include "support/test_cluster.h"
 
 namespace strata::test {

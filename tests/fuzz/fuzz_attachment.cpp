@@ -4,10 +4,10 @@
 #include <cstdlib>
 #include <span>
 
-#include "core/jpeg_facts.h"
-#include "core/media_type.h"
-#include "core/picture.h"
-#include "core/thumbnail.h"
+#include "media/jpeg_facts.h"
+#include "media/media_type.h"
+#include "media/picture.h"
+#include "media/thumbnail.h"
 
 namespace {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/column_value.h"
-#include "core/utf8.h"
+#include "core/text/utf8.h"
+#include "domain/tables/column_value.h"
 
 namespace {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/csv.h"
-#include "core/utf8.h"
+#include "core/text/csv.h"
+#include "core/text/utf8.h"
 
 namespace {
 

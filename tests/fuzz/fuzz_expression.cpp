@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
-#include "query/expression_evaluator.h"
-#include "query/expression_parser.h"
+#include "expression/expression_parser.h"
+#include "query/conditions/expression_evaluator.h"
 
 namespace {
 

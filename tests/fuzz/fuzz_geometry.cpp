@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "mesh/search_tree.h"
+#include "mesh/surface/search_tree.h"
 
 // Stored geometry comes back from a database that others can write to. The input is tried as it is,
 // and as the content of a frame whose checksum is right: a fuzzer does not find checksums.

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "query/geojson.h"
-#include "query/map_tiff.h"
-#include "query/shapefile.h"
+#include "query/maps/geojson.h"
+#include "query/maps/map_tiff.h"
+#include "query/maps/shapefile.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 #include <string_view>
 
-#include "core/picture.h"
 #include "fuzz/mesh_invariants.h"
+#include "media/picture.h"
 
 // The materials of a fixed OBJ, and the bytes once more as the picture they may name.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

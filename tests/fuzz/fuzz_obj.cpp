@@ -1,5 +1,5 @@
 #include "fuzz/mesh_invariants.h"
-#include "mesh/geometry.h"
+#include "mesh/surface/geometry.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   strata::Progress progress;

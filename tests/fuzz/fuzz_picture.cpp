@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <span>
 
-#include "core/picture.h"
-#include "core/shape_texture.h"
+#include "media/picture.h"
+#include "media/shape_texture.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "query/raster.h"
+#include "query/rasters/raster.h"
 
 namespace {
 

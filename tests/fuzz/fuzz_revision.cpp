@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/revision.h"
+#include "domain/layers/revision.h"
 
 namespace {
 

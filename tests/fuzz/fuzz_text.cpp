@@ -7,15 +7,15 @@
 #include <string>
 #include <string_view>
 
-#include "core/utf8.h"
+#include "core/text/utf8.h"
 #include "core/uuid.h"
 #include "net/http/http_types.h"
 #include "net/http/origin.h"
 #include "net/http/page.h"
 #include "net/serialization/point_text.h"
-#include "query/color_keys.h"
-#include "query/readings.h"
-#include "query/world_file.h"
+#include "query/maps/color_keys.h"
+#include "query/maps/readings.h"
+#include "query/rasters/world_file.h"
 
 namespace {
 

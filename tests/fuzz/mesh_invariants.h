@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "mesh/load.h"
+#include "mesh/io/load.h"
 #include "support/manifold_check.h"
 
 namespace strata::test {

@@ -9,8 +9,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
-#include "render/depth_bias.h"
-#include "render/tool_path.h"
+#include "media/shape_texture.h"
+#include "render/edit/depth_bias.h"
+#include "render/edit/tool_path.h"
 
 namespace strata::test {
 namespace {

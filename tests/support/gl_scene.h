@@ -5,10 +5,10 @@
 #include <memory>
 #include <string>
 
-#include "mesh/geometry.h"
-#include "mesh/surface_map.h"
-#include "render/depth_buffers.h"
+#include "mesh/surface/geometry.h"
+#include "mesh/texels/surface_map.h"
 #include "render/renderer.h"
+#include "render/view/depth_buffers.h"
 
 namespace strata::test {
 

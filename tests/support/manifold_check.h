@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/triangle_mesh.h"
+#include "mesh/surface/triangle_mesh.h"
 
 namespace strata::test {
 

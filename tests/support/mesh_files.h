@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/load.h"
+#include "mesh/io/load.h"
 
 namespace strata::test {
 

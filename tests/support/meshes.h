@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/triangle_mesh.h"
+#include "mesh/surface/triangle_mesh.h"
 
 namespace strata::test {
 

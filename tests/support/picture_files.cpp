@@ -9,7 +9,7 @@
 #include <cstring>
 #include <utility>
 
-#include "core/tiff_memory.h"
+#include "media/tiff_memory.h"
 
 namespace strata::test {
 namespace {

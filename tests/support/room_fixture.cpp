@@ -3,11 +3,11 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <thread>
 
-#include "mesh/demo_pot.h"
-#include "mesh/geometry.h"
-#include "store/journal_reads.h"
-#include "store/models.h"
-#include "store/projects.h"
+#include "mesh/demo/demo_pot.h"
+#include "mesh/surface/geometry.h"
+#include "store/content/models.h"
+#include "store/content/projects.h"
+#include "store/journal/journal_reads.h"
 #include "support/shader_dirs.h"
 
 namespace strata::test {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <map>
 
-#include "mesh/load.h"
+#include "mesh/io/load.h"
 #include "strata_dirs.h"
 
 namespace strata::test {

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "core/error.h"
-#include "mesh/atlas.h"
-#include "mesh/triangle_mesh.h"
+#include "mesh/atlas/atlas.h"
+#include "mesh/surface/triangle_mesh.h"
 
 namespace strata::test {
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <memory>
 
-#include "core/shape_texture.h"
+#include "media/shape_texture.h"
 
 namespace strata::test {
 

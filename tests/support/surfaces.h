@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
-#include "core/tile_mirror.h"
-#include "mesh/atlas.h"
-#include "mesh/texel_graph.h"
+#include "domain/layers/tile_mirror.h"
+#include "mesh/atlas/atlas.h"
+#include "mesh/texels/texel_graph.h"
 
 // A mesh with all that questions about its surface need, and layers on it.
 namespace strata::test {

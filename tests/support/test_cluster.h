@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "store/cluster.h"
+#include "store/cluster/cluster.h"
 #include "store/store.h"
 
 namespace strata::test {

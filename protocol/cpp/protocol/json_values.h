@@ -9,12 +9,12 @@
 #include <variant>
 #include <vector>
 
-#include "core/camera.h"
 #include "core/error.h"
-#include "core/layer.h"
-#include "core/light.h"
-#include "core/model.h"
 #include "core/uuid.h"
+#include "domain/layers/layer.h"
+#include "domain/scene/camera.h"
+#include "domain/scene/light.h"
+#include "domain/scene/model.h"
 
 // What the generated reading and writing is made of. JSON that comes in here has passed `validate`,
 // so that no type is in doubt; for anything else nlohmann-json throws.

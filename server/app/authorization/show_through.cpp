@@ -5,10 +5,10 @@
 #include <set>
 
 #include "app/layers/formula_layers.h"
-#include "core/expression.h"
-#include "store/layers.h"
+#include "expression/expression.h"
+#include "store/content/layers.h"
 #include "store/store.h"
-#include "store/tables.h"
+#include "store/tables/tables.h"
 
 namespace strata::app {
 namespace {

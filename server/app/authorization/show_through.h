@@ -1,9 +1,9 @@
 #pragma once
 
-#include "core/layer.h"
-#include "core/role.h"
-#include "core/table.h"
-#include "core/visibility.h"
+#include "domain/layers/layer.h"
+#include "domain/people/role.h"
+#include "domain/people/visibility.h"
+#include "domain/tables/table.h"
 #include "store/store.h"
 
 // Who sees a layer or a column must see all that it is made of and coloured by, or what few people

@@ -1,9 +1,9 @@
 #include "app/figures/class_names.h"
 
 #include "app/records/record_words.h"
-#include "core/csv.h"
-#include "core/term_list.h"
-#include "store/records.h"
+#include "core/text/csv.h"
+#include "domain/tables/term_list.h"
+#include "store/tables/records.h"
 
 namespace strata::app {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/layer.h"
-#include "core/role.h"
-#include "query/quantities.h"
+#include "domain/layers/layer.h"
+#include "domain/people/role.h"
+#include "query/statistics/quantities.h"
 #include "store/store.h"
 
 // What the values of layers are called in tables that people read.

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <set>
 
-#include "core/label_text.h"
+#include "domain/tables/label_text.h"
 #include "room/provisional.h"
-#include "store/records.h"
-#include "store/tables.h"
+#include "store/tables/records.h"
+#include "store/tables/tables.h"
 
 namespace strata::app {
 namespace {

@@ -7,10 +7,10 @@
 #include <set>
 
 #include "app/figures/figure_legend.h"
-#include "core/compass.h"
-#include "core/number_text.h"
+#include "core/text/number_text.h"
 #include "core/uuid.h"
-#include "store/records.h"
+#include "domain/scene/compass.h"
+#include "store/tables/records.h"
 
 namespace strata::app {
 namespace {

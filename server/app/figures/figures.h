@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "core/byte_budget.h"
-#include "core/layer.h"
 #include "core/progress.h"
-#include "core/role.h"
-#include "core/table.h"
 #include "core/temporary_file.h"
+#include "domain/layers/layer.h"
+#include "domain/people/role.h"
+#include "domain/tables/table.h"
 #include "figure/files.h"
 #include "figure/layout.h"
 #include "room/room.h"

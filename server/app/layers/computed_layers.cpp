@@ -1,6 +1,6 @@
 #include "app/layers/computed_layers.h"
-#include "store/models.h"
-#include "store/personal_views.h"
+#include "store/content/models.h"
+#include "store/people/personal_views.h"
 
 namespace strata::app {
 namespace {

@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "app/layers/new_layers.h"
-#include "core/layer.h"
-#include "core/model.h"
 #include "core/progress.h"
+#include "domain/layers/layer.h"
+#include "domain/scene/model.h"
 #include "jobs/shape_layer.h"
 #include "store/store.h"
 

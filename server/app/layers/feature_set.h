@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "query/flat_area.h"
+#include "query/maps/flat_area.h"
 
 // What a layer has on its model, as programs for maps know it: areas, lines and points with
 // attributes.

@@ -4,17 +4,17 @@
 #include <tuple>
 
 #include "app/edits.h"
-#include "core/layer.h"
-#include "core/model.h"
-#include "core/role.h"
-#include "core/tile_mirror.h"
-#include "core/visibility.h"
+#include "domain/layers/layer.h"
+#include "domain/layers/tile_mirror.h"
+#include "domain/people/role.h"
+#include "domain/people/visibility.h"
+#include "domain/scene/model.h"
+#include "expression/expression_parser.h"
 #include "jobs/shape_layer.h"
-#include "query/expression_parser.h"
 #include "room/expression_binding.h"
 #include "room/room.h"
-#include "store/layers.h"
-#include "store/personal_views.h"
+#include "store/content/layers.h"
+#include "store/people/personal_views.h"
 #include "store/store.h"
 
 namespace strata::app {

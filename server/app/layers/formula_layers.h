@@ -7,8 +7,8 @@
 
 #include "app/layers/new_layers.h"
 #include "app/services.h"
-#include "core/expression.h"
 #include "core/progress.h"
+#include "expression/expression.h"
 #include "room/room.h"
 
 namespace strata::app {

@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "core/log.h"
-#include "core/question.h"
 #include "core/uuid.h"
+#include "domain/people/question.h"
 
 namespace strata::app {
 namespace fs = std::filesystem;

@@ -7,10 +7,10 @@
 
 #include "app/figures/class_names.h"
 #include "app/records/record_csv.h"
-#include "core/column_value.h"
-#include "core/mark.h"
-#include "store/records.h"
-#include "store/tables.h"
+#include "domain/tables/column_value.h"
+#include "domain/tables/mark.h"
+#include "store/tables/records.h"
+#include "store/tables/tables.h"
 
 namespace strata::app {
 namespace {

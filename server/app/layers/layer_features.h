@@ -1,9 +1,9 @@
 #pragma once
 
 #include "app/layers/feature_set.h"
-#include "core/layer.h"
-#include "core/role.h"
-#include "query/plane_outlines.h"
+#include "domain/layers/layer.h"
+#include "domain/people/role.h"
+#include "query/maps/plane_outlines.h"
 #include "room/room.h"
 #include "store/store.h"
 

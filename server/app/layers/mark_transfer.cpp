@@ -4,14 +4,14 @@
 #include <set>
 
 #include "app/change_notifier.h"
-#include "core/layer.h"
-#include "core/mark.h"
-#include "core/role.h"
-#include "core/table.h"
+#include "domain/layers/layer.h"
+#include "domain/people/role.h"
+#include "domain/tables/mark.h"
+#include "domain/tables/table.h"
 #include "jobs/transfer_marks.h"
-#include "store/records.h"
 #include "store/store.h"
-#include "store/table_changes.h"
+#include "store/tables/records.h"
+#include "store/tables/table_changes.h"
 
 namespace strata::app {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "app/edits.h"
-#include "core/tile_mirror.h"
-#include "store/first_answer.h"
+#include "domain/layers/tile_mirror.h"
+#include "store/content/first_answer.h"
 
 namespace strata::app {
 

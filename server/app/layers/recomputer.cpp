@@ -4,11 +4,11 @@
 #include <exception>
 
 #include "app/layers/formula_layers.h"
-#include "core/layer.h"
 #include "core/log.h"
-#include "core/role.h"
+#include "domain/layers/layer.h"
+#include "domain/people/role.h"
 #include "room/room.h"
-#include "store/layers.h"
+#include "store/content/layers.h"
 #include "store/store.h"
 
 namespace strata::app {

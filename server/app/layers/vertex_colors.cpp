@@ -1,11 +1,11 @@
 #include "app/layers/vertex_colors.h"
 
-#include "core/picture.h"
-#include "core/role.h"
+#include "domain/people/role.h"
+#include "media/picture.h"
 #include "room/look_shelf.h"
 #include "room/record_colors.h"
 #include "room/room.h"
-#include "store/looks.h"
+#include "store/content/looks.h"
 #include "store/store.h"
 
 namespace strata::app {

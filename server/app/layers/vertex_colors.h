@@ -2,7 +2,7 @@
 
 #include "app/services.h"
 #include "core/memory_ledger.h"
-#include "query/vertex_colors.h"
+#include "query/sampling/vertex_colors.h"
 #include "room/room.h"
 
 namespace strata::app {

@@ -9,7 +9,7 @@
 
 #include "app/maps/map_values.h"
 #include "core/byte_budget.h"
-#include "query/color_keys.h"
+#include "query/maps/color_keys.h"
 
 namespace strata::app {
 

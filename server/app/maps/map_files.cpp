@@ -5,13 +5,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "core/ascii.h"
 #include "core/digest.h"
 #include "core/mapped_file.h"
-#include "core/picture.h"
-#include "mesh/unpack.h"
-#include "query/map_tiff.h"
-#include "query/shapefile.h"
+#include "core/text/ascii.h"
+#include "media/picture.h"
+#include "mesh/io/unpack.h"
+#include "query/maps/map_tiff.h"
+#include "query/maps/shapefile.h"
 
 namespace strata::app {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "mesh/input_files.h"
+#include "mesh/io/input_files.h"
 
 namespace strata::app {
 

@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "query/key_names.h"
+#include "query/maps/key_names.h"
 #include "room/room.h"
 
 namespace strata::app {

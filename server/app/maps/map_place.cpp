@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "core/value_type.h"
-#include "query/map_features.h"
+#include "domain/layers/value_type.h"
+#include "query/maps/map_features.h"
 
 namespace strata::app {
 

@@ -7,10 +7,10 @@
 #include <string_view>
 
 #include "app/maps/map_files.h"
-#include "core/layer.h"
-#include "core/model.h"
-#include "query/color_keys.h"
-#include "query/map_tiff.h"
+#include "domain/layers/layer.h"
+#include "domain/scene/model.h"
+#include "query/maps/color_keys.h"
+#include "query/maps/map_tiff.h"
 
 // Where flat maps lie on a model, and what users say of them.
 namespace strata::app {

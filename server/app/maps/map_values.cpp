@@ -1,10 +1,10 @@
 #include "app/maps/map_values.h"
 
 #include "app/maps/map_legend.h"
-#include "query/color_keys.h"
-#include "query/geojson.h"
-#include "query/placed_picture.h"
-#include "query/shapefile.h"
+#include "query/maps/color_keys.h"
+#include "query/maps/geojson.h"
+#include "query/maps/shapefile.h"
+#include "query/rasters/placed_picture.h"
 
 namespace strata::app {
 namespace {

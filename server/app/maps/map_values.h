@@ -5,8 +5,8 @@
 
 #include "app/maps/map_place.h"
 #include "core/byte_budget.h"
-#include "query/key_names.h"
-#include "query/map_features.h"
+#include "query/maps/key_names.h"
+#include "query/maps/map_features.h"
 #include "room/room.h"
 
 namespace strata::app {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "app/services.h"
-#include "core/layer.h"
-#include "core/role.h"
+#include "domain/layers/layer.h"
+#include "domain/people/role.h"
 #include "room/room.h"
 #include "store/store.h"
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <set>
 
-#include "core/column_value.h"
-#include "core/csv.h"
-#include "core/number_text.h"
+#include "core/text/csv.h"
+#include "core/text/number_text.h"
+#include "domain/tables/column_value.h"
 
 namespace strata::app {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "app/records/record_words.h"
-#include "core/table.h"
-#include "store/table_changes.h"
+#include "domain/tables/table.h"
+#include "store/tables/table_changes.h"
 
 // Records as CSV, the way spreadsheets have it: the first row names the columns.
 namespace strata::app {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-#include "core/mark.h"
-#include "core/model.h"
-#include "core/role.h"
-#include "core/table.h"
+#include "domain/people/role.h"
+#include "domain/scene/model.h"
+#include "domain/tables/mark.h"
+#include "domain/tables/table.h"
 #include "room/room.h"
-#include "store/models.h"
+#include "store/content/models.h"
 #include "store/store.h"
 
 namespace strata::app {

@@ -6,7 +6,7 @@
 
 #include "app/records/record_place.h"
 #include "app/services.h"
-#include "query/key_areas.h"
+#include "query/statistics/key_areas.h"
 
 namespace strata::app {
 

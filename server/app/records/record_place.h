@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "core/layer.h"
-#include "core/model.h"
-#include "core/table.h"
+#include "domain/layers/layer.h"
+#include "domain/scene/model.h"
+#include "domain/tables/table.h"
 
 namespace strata::app {
 

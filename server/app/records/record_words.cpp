@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "core/column_value.h"
-#include "core/number_text.h"
-#include "core/slug.h"
-#include "core/term_list.h"
-#include "store/records.h"
+#include "core/text/number_text.h"
+#include "core/text/slug.h"
+#include "domain/tables/column_value.h"
+#include "domain/tables/term_list.h"
+#include "store/tables/records.h"
 
 namespace strata::app {
 namespace {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "core/role.h"
-#include "core/table.h"
+#include "domain/people/role.h"
+#include "domain/tables/table.h"
 #include "store/store.h"
 
 namespace strata::app {

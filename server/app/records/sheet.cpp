@@ -4,7 +4,7 @@
 
 #include "app/records/readable_area.h"
 #include "app/records/workbook.h"
-#include "core/csv.h"
+#include "core/text/csv.h"
 
 namespace strata::app {
 namespace {

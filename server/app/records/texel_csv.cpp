@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "app/records/record_csv.h"
-#include "core/csv.h"
+#include "core/text/csv.h"
 
 namespace strata::app {
 

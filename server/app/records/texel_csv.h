@@ -4,9 +4,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/model.h"
-#include "core/table.h"
-#include "query/texel_samples.h"
+#include "domain/scene/model.h"
+#include "domain/tables/table.h"
+#include "query/sampling/texel_samples.h"
 
 namespace strata::app {
 

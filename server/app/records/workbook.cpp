@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "app/records/sheet.h"
-#include "core/column_value.h"
 #include "core/log.h"
 #include "core/uuid.h"
+#include "domain/tables/column_value.h"
 
 namespace strata::app {
 namespace fs = std::filesystem;

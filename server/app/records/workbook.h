@@ -6,8 +6,8 @@
 #include <variant>
 #include <vector>
 
-#include "core/table.h"
 #include "core/temporary_file.h"
+#include "domain/tables/table.h"
 
 namespace strata::app {
 

@@ -10,8 +10,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/stroke.h"
 #include "core/uuid.h"
+#include "domain/scene/stroke.h"
 
 namespace strata::app {
 

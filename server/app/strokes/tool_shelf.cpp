@@ -1,5 +1,5 @@
 #include "app/strokes/tool_shelf.h"
-#include "store/tools.h"
+#include "store/content/tools.h"
 
 namespace strata::app {
 

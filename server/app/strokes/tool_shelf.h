@@ -5,7 +5,7 @@
 #include <memory>
 #include <mutex>
 
-#include "core/shape_texture.h"
+#include "media/shape_texture.h"
 #include "store/store.h"
 
 namespace strata::app {

@@ -16,10 +16,10 @@
 #include "net/http/origin.h"
 #include "net/http/precondition.h"
 #include "net/serialization/people_wire.h"
-#include "store/accounts.h"
-#include "store/projects.h"
-#include "store/records.h"
-#include "store/tables.h"
+#include "store/content/projects.h"
+#include "store/people/accounts.h"
+#include "store/tables/records.h"
+#include "store/tables/tables.h"
 
 namespace strata::net {
 namespace {

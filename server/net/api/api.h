@@ -9,7 +9,7 @@
 #include "app/layers/recomputer.h"
 #include "app/strokes/tool_shelf.h"
 #include "app/template_shelf.h"
-#include "core/role.h"
+#include "domain/people/role.h"
 #include "jobs/job_queue.h"
 #include "net/api/metrics.h"
 #include "net/api/route_context.h"

@@ -2,15 +2,15 @@
 
 #include "app/records/painted_keys.h"
 #include "core/digest.h"
-#include "core/slug.h"
+#include "core/text/slug.h"
 #include "core/uuid.h"
 #include "jobs/job_queue.h"
 #include "net/api/metrics.h"
 #include "net/http/edit_book.h"
 #include "net/serialization/wire.h"
 #include "room/room.h"
-#include "store/layers.h"
-#include "store/models.h"
+#include "store/content/layers.h"
+#include "store/content/models.h"
 #include "store/store.h"
 
 namespace strata::net {

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/layer.h"
-#include "core/model.h"
 #include "core/uuid.h"
+#include "domain/layers/layer.h"
+#include "domain/scene/model.h"
 #include "net/api/route_context.h"
 #include "net/http/router.h"
 #include "protocol/parse.h"

@@ -2,10 +2,10 @@
 
 #include "core/digest.h"
 #include "net/http/origin.h"
-#include "store/accounts.h"
-#include "store/kiosks.h"
-#include "store/password.h"
-#include "store/tokens.h"
+#include "store/people/accounts.h"
+#include "store/people/kiosks.h"
+#include "store/people/password.h"
+#include "store/people/tokens.h"
 
 namespace strata::net {
 namespace {

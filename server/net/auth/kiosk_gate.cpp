@@ -4,16 +4,16 @@
 #include <limits>
 #include <set>
 
-#include "core/layer.h"
-#include "core/role.h"
-#include "core/table.h"
+#include "domain/layers/layer.h"
+#include "domain/people/role.h"
+#include "domain/tables/table.h"
 #include "net/auth/project_gate.h"
-#include "store/attachments.h"
-#include "store/layers.h"
-#include "store/models.h"
-#include "store/named_parts.h"
+#include "store/content/layers.h"
+#include "store/content/models.h"
+#include "store/content/named_parts.h"
 #include "store/store.h"
-#include "store/tables.h"
+#include "store/tables/attachments.h"
+#include "store/tables/tables.h"
 
 namespace strata::net {
 namespace {

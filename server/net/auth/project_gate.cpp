@@ -2,15 +2,15 @@
 
 #include <limits>
 
-#include "core/role.h"
+#include "domain/people/role.h"
 #include "jobs/job_queue.h"
-#include "store/attachments.h"
-#include "store/comments.h"
-#include "store/kiosks.h"
-#include "store/models.h"
-#include "store/projects.h"
+#include "store/content/comments.h"
+#include "store/content/models.h"
+#include "store/content/projects.h"
+#include "store/people/kiosks.h"
 #include "store/store.h"
-#include "store/tables.h"
+#include "store/tables/attachments.h"
+#include "store/tables/tables.h"
 
 namespace strata::net {
 namespace {

@@ -1,7 +1,7 @@
 #include "net/http/answer_book.h"
 
 #include "core/digest.h"
-#include "store/answers.h"
+#include "store/content/answers.h"
 
 namespace strata::net {
 

@@ -7,7 +7,7 @@
 #include <unordered_set>
 
 #include "net/http/http_types.h"
-#include "store/first_answer.h"
+#include "store/content/first_answer.h"
 #include "store/store.h"
 
 namespace strata::net {

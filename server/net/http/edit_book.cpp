@@ -1,5 +1,5 @@
 #include "net/http/edit_book.h"
-#include "store/journal_reads.h"
+#include "store/journal/journal_reads.h"
 
 namespace strata::net {
 namespace {

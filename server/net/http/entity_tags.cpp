@@ -3,18 +3,18 @@
 #include <set>
 
 #include "core/digest.h"
-#include "core/layer.h"
-#include "core/look.h"
-#include "core/model.h"
 #include "core/uuid.h"
+#include "domain/layers/layer.h"
+#include "domain/scene/look.h"
+#include "domain/scene/model.h"
 #include "net/api/route_help.h"
 #include "room/room.h"
-#include "store/layers.h"
-#include "store/looks.h"
-#include "store/models.h"
-#include "store/projects.h"
+#include "store/content/layers.h"
+#include "store/content/looks.h"
+#include "store/content/models.h"
+#include "store/content/projects.h"
 #include "store/store.h"
-#include "store/tables.h"
+#include "store/tables/tables.h"
 
 namespace strata::net {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "core/filename.h"
+#include "core/text/filename.h"
 #include "net/http/http_types.h"
 
 namespace strata::net {

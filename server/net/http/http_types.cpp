@@ -1,6 +1,6 @@
 #include "net/http/http_types.h"
 
-#include "core/utf8.h"
+#include "core/text/utf8.h"
 #include "protocol/parse.h"
 #include "protocol/problem.h"
 

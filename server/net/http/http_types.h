@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/ascii.h"
 #include "core/error.h"
-#include "core/number_text.h"
-#include "core/role.h"
 #include "core/temporary_file.h"
+#include "core/text/ascii.h"
+#include "core/text/number_text.h"
+#include "domain/people/role.h"
 
 namespace strata::net {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/digest.h"
-#include "store/projects.h"
+#include "store/content/projects.h"
 
 namespace strata::net {
 namespace {

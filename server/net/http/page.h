@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "net/http/http_types.h"
-#include "store/list_place.h"
-#include "store/projects.h"
+#include "store/content/projects.h"
 #include "store/store.h"
+#include "store/tables/list_place.h"
 
 // Pages of lists: `limit`, and where the page begins: behind the entry at which another page ended
 // (`after`), which stays right while others write, or behind so many entries (`offset`).

@@ -1,7 +1,7 @@
 #include "net/http/precondition.h"
 
 #include "net/auth/project_gate.h"
-#include "store/projects.h"
+#include "store/content/projects.h"
 #include "store/store.h"
 
 namespace strata::net {

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/question.h"
+#include "domain/people/question.h"
 #include "net/http/http_types.h"
 
 namespace strata::net {
@@ -21,7 +21,7 @@ namespace strata::net {
 // Where questions wait and are answered: those that read many texels or draw pictures
 // (Route::is_question). One person's questions do not hold up another's: few of a person are
 // answered at once, and whose next one begins is who has the fewest under way, then who waited
-// longest. While they compute they share the processors by time (core/question_turns.h).
+// longest. While they compute they share the processors by time (domain/people/question_turns.h).
 // Thread-safe.
 class QuestionDesk {
  public:

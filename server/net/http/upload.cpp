@@ -2,8 +2,8 @@
 
 #include <fstream>
 
-#include "core/filename.h"
 #include "core/mapped_file.h"
+#include "core/text/filename.h"
 #include "core/uuid.h"
 #include "net/http/form_files.h"
 

@@ -9,7 +9,7 @@
 #include "net/serialization/wire.h"
 #include "protocol/problem.h"
 #include "room/room.h"
-#include "store/journal_reads.h"
+#include "store/journal/journal_reads.h"
 
 namespace strata::net {
 namespace {

@@ -2,8 +2,8 @@
 
 #include "net/auth/still_welcome.h"
 #include "net/serialization/activity_wire.h"
-#include "store/models.h"
-#include "store/projects.h"
+#include "store/content/models.h"
+#include "store/content/projects.h"
 #include "store/store.h"
 
 namespace strata::net {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "core/model.h"
-#include "core/role.h"
+#include "domain/people/role.h"
+#include "domain/scene/model.h"
 #include "net/api/route_help.h"
-#include "store/activity.h"
+#include "store/people/activity.h"
 
 namespace strata::net {
 

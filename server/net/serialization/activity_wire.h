@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "store/activity.h"
+#include "store/people/activity.h"
 
 namespace strata::net {
 

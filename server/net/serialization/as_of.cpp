@@ -2,9 +2,9 @@
 
 #include <charconv>
 
-#include "core/timestamp.h"
+#include "core/text/timestamp.h"
 #include "room/room.h"
-#include "store/journal_reads.h"
+#include "store/journal/journal_reads.h"
 #include "store/store.h"
 
 namespace strata::net {

@@ -3,7 +3,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "core/question.h"
+#include "domain/people/question.h"
 
 namespace strata::net {
 namespace {

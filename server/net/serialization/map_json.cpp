@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "core/overloaded.h"
-#include "core/value_type.h"
+#include "domain/layers/value_type.h"
 
 namespace strata::net {
 namespace {

@@ -3,8 +3,8 @@
 #include <functional>
 #include <set>
 
-#include "core/person_color.h"
-#include "store/accounts.h"
+#include "domain/people/person_color.h"
+#include "store/people/accounts.h"
 
 namespace strata::net {
 namespace {

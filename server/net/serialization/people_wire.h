@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "room/room.h"
-#include "store/people.h"
+#include "store/people/people.h"
 #include "store/store.h"
 
 namespace strata::net {

@@ -3,7 +3,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "core/model.h"
+#include "domain/scene/model.h"
 #include "net/http/http_types.h"
 
 namespace strata::net {

@@ -1,13 +1,13 @@
 #include "net/serialization/record_place.h"
 
 #include "core/no_such.h"
-#include "core/role.h"
-#include "core/table.h"
-#include "store/layers.h"
-#include "store/models.h"
-#include "store/records.h"
+#include "domain/people/role.h"
+#include "domain/tables/table.h"
+#include "store/content/layers.h"
+#include "store/content/models.h"
 #include "store/store.h"
-#include "store/tables.h"
+#include "store/tables/records.h"
+#include "store/tables/tables.h"
 
 namespace strata::net {
 

@@ -1,11 +1,11 @@
 #include "net/serialization/table_wire.h"
 
-#include "core/slug.h"
-#include "core/timestamp.h"
-#include "core/utf8.h"
+#include "core/text/slug.h"
+#include "core/text/timestamp.h"
+#include "core/text/utf8.h"
 #include "net/http/http_types.h"
 #include "net/serialization/wire.h"
-#include "store/tables.h"
+#include "store/tables/tables.h"
 
 namespace strata::net {
 Result<Table> table_of_project(store::Store& store, std::int64_t project_id,

@@ -2,11 +2,11 @@
 
 #include <string>
 
-#include "core/attachment.h"
-#include "core/table.h"
+#include "domain/tables/attachment.h"
+#include "domain/tables/table.h"
 #include "protocol/parse.h"
 #include "store/store.h"
-#include "store/table_changes.h"
+#include "store/tables/table_changes.h"
 
 // Between the protocol's tables and the domain's.
 namespace strata::net {

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <set>
 
-#include "core/layer.h"
-#include "core/table.h"
+#include "domain/layers/layer.h"
+#include "domain/tables/table.h"
 #include "net/serialization/at_field.h"
 #include "net/serialization/table_wire.h"
 #include "net/serialization/wire.h"
-#include "store/layers.h"
-#include "store/records.h"
+#include "store/content/layers.h"
 #include "store/store.h"
-#include "store/tables.h"
+#include "store/tables/records.h"
+#include "store/tables/tables.h"
 
 namespace strata::net {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "core/model.h"
-#include "core/role.h"
+#include "domain/people/role.h"
+#include "domain/scene/model.h"
 #include "net/api/route_help.h"
-#include "store/named_parts.h"
+#include "store/content/named_parts.h"
 #include "store/store.h"
 
 namespace strata::net {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-#include "core/layer.h"
-#include "query/expression_parser.h"
+#include "domain/layers/layer.h"
+#include "expression/expression_parser.h"
 #include "room/room.h"
-#include "store/records.h"
 #include "store/store.h"
-#include "store/tables.h"
+#include "store/tables/records.h"
+#include "store/tables/tables.h"
 
 namespace strata::net {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <memory>
 
-#include "core/role.h"
+#include "domain/people/role.h"
 #include "net/api/route_help.h"
 #include "net/serialization/wire.h"
 #include "room/room.h"
-#include "store/named_parts.h"
+#include "store/content/named_parts.h"
 #include "store/store.h"
 
 namespace strata::net {

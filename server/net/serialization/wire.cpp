@@ -6,10 +6,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/csv.h"
+#include "core/text/csv.h"
+#include "expression/expression_parser.h"
 #include "mesh/parallel.h"
 #include "protocol/problem.h"
-#include "query/expression_parser.h"
 
 namespace strata::net {
 namespace {

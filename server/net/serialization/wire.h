@@ -8,15 +8,15 @@
 
 #include "app/strokes/stroke_book.h"
 #include "app/strokes/tool_shelf.h"
-#include "core/layer.h"
-#include "core/model.h"
+#include "domain/layers/layer.h"
+#include "domain/scene/model.h"
 #include "jobs/job_queue.h"
 #include "protocol/parse.h"
-#include "query/statistics.h"
-#include "query/values.h"
+#include "query/sampling/values.h"
+#include "query/statistics/statistics.h"
 #include "room/room.h"
-#include "store/groups.h"
-#include "store/journal.h"
+#include "store/journal/journal.h"
+#include "store/people/groups.h"
 
 // Between the protocol's values and the domain's. Values outside a layer's type are refused, not
 // clamped.

@@ -5,7 +5,7 @@
 #include <functional>
 #include <memory>
 
-#include "core/question.h"
+#include "domain/people/question.h"
 
 namespace strata::net {
 

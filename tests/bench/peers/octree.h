@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "mesh/geometry.h"
+#include "mesh/surface/geometry.h"
 
 namespace strata::bench {
 

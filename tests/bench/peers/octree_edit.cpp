@@ -7,7 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "mesh/parallel.h"
-#include "render/tool_path.h"
+#include "render/edit/tool_path.h"
 #include "shared/depth_probe.h"
 
 namespace strata::bench {

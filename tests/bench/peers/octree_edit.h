@@ -3,8 +3,8 @@
 #include <span>
 
 #include "bench/peers/octree.h"
-#include "core/camera.h"
-#include "render/depth_copy.h"
+#include "domain/scene/camera.h"
+#include "render/view/depth_copy.h"
 
 namespace strata::bench {
 

@@ -2,11 +2,11 @@
 
 #include <memory>
 
-#include "core/stroke.h"
+#include "domain/scene/stroke.h"
 #include "gl/framebuffer.h"
 #include "gl/program.h"
 #include "gl/vertex_array.h"
-#include "mesh/geometry.h"
+#include "mesh/surface/geometry.h"
 
 namespace strata::bench {
 

@@ -3,11 +3,11 @@
 #include "app/edits.h"
 #include "app/layers/computed_layers.h"
 #include "app/layers/formula_layers.h"
-#include "core/layer.h"
-#include "core/role.h"
+#include "domain/layers/layer.h"
+#include "domain/people/role.h"
 #include "net/http/answer_book.h"
 #include "room/room.h"
-#include "store/layers.h"
+#include "store/content/layers.h"
 #include "store/store.h"
 
 namespace strata::net {

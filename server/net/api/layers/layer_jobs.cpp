@@ -1,12 +1,12 @@
 #include "net/api/layers/layer_jobs.h"
 
 #include "app/edits.h"
-#include "core/layer.h"
+#include "domain/layers/layer.h"
 #include "jobs/job_queue.h"
 #include "net/http/answer_book.h"
 #include "room/room.h"
-#include "store/first_answer.h"
-#include "store/models.h"
+#include "store/content/first_answer.h"
+#include "store/content/models.h"
 #include "store/store.h"
 
 namespace strata::net {

@@ -1,7 +1,7 @@
 #include "app/authorization/show_through.h"
 #include "app/strokes/tool_shelf.h"
-#include "core/layer.h"
-#include "core/role.h"
+#include "domain/layers/layer.h"
+#include "domain/people/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/page.h"
@@ -9,7 +9,7 @@
 #include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
-#include "store/journal_reads.h"
+#include "store/journal/journal_reads.h"
 #include "store/store.h"
 
 namespace strata::net {

@@ -7,8 +7,8 @@
 #include "net/transport/server_options.h"
 #include "room/record_colors.h"
 #include "room/room.h"
-#include "store/records.h"
 #include "store/store.h"
+#include "store/tables/records.h"
 
 namespace strata::net {
 namespace {

@@ -1,18 +1,18 @@
 #include "app/figures/class_names.h"
 #include "app/records/readable_area.h"
 #include "core/compensated_sum.h"
-#include "core/layer.h"
-#include "core/role.h"
+#include "domain/layers/layer.h"
+#include "domain/people/role.h"
+#include "expression/expression_parser.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
 #include "net/serialization/sheet_response.h"
 #include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
-#include "query/expression_parser.h"
 #include "room/room.h"
 #include "store/store.h"
-#include "store/tables.h"
+#include "store/tables/tables.h"
 
 namespace strata::net {
 namespace {

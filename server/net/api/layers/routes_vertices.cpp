@@ -3,7 +3,7 @@
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
 #include "net/serialization/sheet_response.h"
-#include "query/vertex_ply.h"
+#include "query/sampling/vertex_ply.h"
 #include "room/room.h"
 
 namespace strata::net {

@@ -1,15 +1,15 @@
 #include "net/api/models/figure_request.h"
 
-#include "core/layer.h"
-#include "core/model.h"
-#include "core/table.h"
+#include "domain/layers/layer.h"
+#include "domain/scene/model.h"
+#include "domain/tables/table.h"
 #include "net/serialization/as_of.h"
 #include "net/serialization/at_field.h"
 #include "net/serialization/view_wire.h"
 #include "room/room.h"
-#include "store/named_parts.h"
+#include "store/content/named_parts.h"
 #include "store/store.h"
-#include "store/tables.h"
+#include "store/tables/tables.h"
 
 namespace strata::net {
 namespace {

@@ -1,6 +1,6 @@
 #include "net/api/models/picture_response.h"
 
-#include "core/picture.h"
+#include "media/picture.h"
 
 namespace strata::net {
 

@@ -2,14 +2,14 @@
 // changes oneself, and curators may delete it.
 #include <set>
 
-#include "core/layer.h"
 #include "core/log.h"
-#include "core/model.h"
 #include "core/no_such.h"
-#include "core/role.h"
-#include "core/table.h"
-#include "core/timestamp.h"
-#include "core/visibility.h"
+#include "core/text/timestamp.h"
+#include "domain/layers/layer.h"
+#include "domain/people/role.h"
+#include "domain/people/visibility.h"
+#include "domain/scene/model.h"
+#include "domain/tables/table.h"
 #include "net/api/annotated_routes.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
@@ -20,10 +20,10 @@
 #include "net/serialization/people_wire.h"
 #include "net/serialization/wire.h"
 #include "room/room.h"
-#include "store/comments.h"
-#include "store/models.h"
-#include "store/records.h"
+#include "store/content/comments.h"
+#include "store/content/models.h"
 #include "store/store.h"
+#include "store/tables/records.h"
 
 namespace strata::net {
 namespace {

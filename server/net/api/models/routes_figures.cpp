@@ -1,7 +1,7 @@
 // Measured figures: drawings to scale as files.
 #include <boost/algorithm/string/predicate.hpp>
 
-#include "core/model.h"
+#include "domain/scene/model.h"
 #include "jobs/job_queue.h"
 #include "net/api/models/figure_request.h"
 #include "net/transport/server_options.h"

@@ -1,11 +1,11 @@
 #include <charconv>
 #include <memory>
 
-#include "core/filename.h"
-#include "core/model.h"
-#include "core/role.h"
 #include "core/temporary_file.h"
+#include "core/text/filename.h"
 #include "core/uuid.h"
+#include "domain/people/role.h"
+#include "domain/scene/model.h"
 #include "jobs/import_job.h"
 #include "jobs/job_queue.h"
 #include "net/api/route_help.h"
@@ -16,8 +16,8 @@
 #include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
-#include "store/first_answer.h"
-#include "store/projects.h"
+#include "store/content/first_answer.h"
+#include "store/content/projects.h"
 #include "store/store.h"
 
 namespace strata::net {

@@ -2,19 +2,19 @@
 #include <span>
 #include <vector>
 
-#include "core/look.h"
 #include "core/mapped_file.h"
-#include "core/picture.h"
-#include "core/role.h"
-#include "core/thumbnail.h"
+#include "domain/people/role.h"
+#include "domain/scene/look.h"
+#include "media/picture.h"
+#include "media/thumbnail.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
 #include "net/http/page.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
-#include "store/looks.h"
-#include "store/models.h"
+#include "store/content/looks.h"
+#include "store/content/models.h"
 #include "store/store.h"
 
 namespace strata::net {

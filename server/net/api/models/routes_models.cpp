@@ -1,15 +1,15 @@
 #include <map>
 
 #include "app/bin_keeper.h"
-#include "core/model.h"
-#include "core/role.h"
+#include "domain/people/role.h"
+#include "domain/scene/model.h"
 #include "net/auth/project_gate.h"
 #include "net/http/answer_book.h"
 #include "net/http/page.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
-#include "store/models.h"
-#include "store/projects.h"
+#include "store/content/models.h"
+#include "store/content/projects.h"
 #include "store/store.h"
 
 namespace strata::net {

@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <bit>
 
-#include "core/layer.h"
-#include "core/look.h"
-#include "core/model.h"
-#include "core/role.h"
+#include "domain/layers/layer.h"
+#include "domain/people/role.h"
+#include "domain/scene/look.h"
+#include "domain/scene/model.h"
 #include "jobs/job_queue.h"
 #include "jobs/orthophoto.h"
 #include "net/api/route_help.h"
@@ -15,8 +15,8 @@
 #include "net/serialization/map_query.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
-#include "store/first_answer.h"
-#include "store/models.h"
+#include "store/content/first_answer.h"
+#include "store/content/models.h"
 #include "store/store.h"
 
 namespace strata::net {

@@ -1,11 +1,11 @@
 // How a person shows the layers of a model, kept for them alone.
-#include "core/role.h"
+#include "domain/people/role.h"
 #include "net/api/models/personal_view.h"
 #include "net/serialization/view_wire.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
-#include "store/models.h"
-#include "store/personal_views.h"
+#include "store/content/models.h"
+#include "store/people/personal_views.h"
 #include "store/store.h"
 
 namespace strata::net {

@@ -1,6 +1,6 @@
 // Tours of a model. Everybody reads them, curators make and change them.
-#include "core/model.h"
-#include "core/role.h"
+#include "domain/people/role.h"
+#include "domain/scene/model.h"
 #include "net/api/annotated_routes.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
@@ -8,9 +8,9 @@
 #include "net/http/page.h"
 #include "net/serialization/tour_wire.h"
 #include "net/serialization/wire.h"
-#include "store/kiosks.h"
-#include "store/models.h"
-#include "store/named_parts.h"
+#include "store/content/models.h"
+#include "store/content/named_parts.h"
+#include "store/people/kiosks.h"
 #include "store/store.h"
 
 namespace strata::net {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/role.h"
+#include "domain/people/role.h"
 #include "net/api/annotated_routes.h"
 #include "net/api/models/picture_response.h"
 #include "net/api/route_help.h"
@@ -14,7 +14,7 @@
 #include "net/serialization/view_wire.h"
 #include "protocol/json_values.h"
 #include "room/room.h"
-#include "store/named_parts.h"
+#include "store/content/named_parts.h"
 #include "store/store.h"
 
 namespace strata::net {

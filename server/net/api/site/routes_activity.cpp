@@ -1,12 +1,12 @@
 // What was done in a project.
-#include "core/role.h"
+#include "domain/people/role.h"
 #include "net/http/page.h"
 #include "net/live/model_events.h"
 #include "net/serialization/activity_wire.h"
 #include "net/serialization/people_wire.h"
-#include "store/activity.h"
-#include "store/models.h"
-#include "store/projects.h"
+#include "store/content/models.h"
+#include "store/content/projects.h"
+#include "store/people/activity.h"
 #include "store/store.h"
 
 namespace strata::net {

@@ -1,8 +1,8 @@
 // Signing in and out, and what people change of themselves.
 #include <memory>
 
-#include "core/role.h"
-#include "core/utf8.h"
+#include "core/text/utf8.h"
+#include "domain/people/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/auth/auth.h"
@@ -14,12 +14,12 @@
 #include "net/serialization/people_wire.h"
 #include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
-#include "store/accounts.h"
-#include "store/password.h"
-#include "store/people.h"
-#include "store/projects.h"
+#include "store/content/projects.h"
+#include "store/people/accounts.h"
+#include "store/people/password.h"
+#include "store/people/people.h"
+#include "store/people/tokens.h"
 #include "store/store.h"
-#include "store/tokens.h"
 
 namespace strata::net {
 

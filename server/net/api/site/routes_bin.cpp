@@ -3,7 +3,7 @@
 
 #include "app/bin_keeper.h"
 #include "app/change_notifier.h"
-#include "core/role.h"
+#include "domain/people/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
@@ -12,9 +12,9 @@
 #include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
-#include "store/projects.h"
+#include "store/content/projects.h"
 #include "store/store.h"
-#include "store/table_changes.h"
+#include "store/tables/table_changes.h"
 
 namespace strata::net {
 namespace {

@@ -1,13 +1,13 @@
 // Groups of people, and the roles that projects give them.
-#include "core/role.h"
+#include "domain/people/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/auth/project_gate.h"
 #include "net/http/page.h"
 #include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
-#include "store/groups.h"
-#include "store/projects.h"
+#include "store/content/projects.h"
+#include "store/people/groups.h"
 #include "store/store.h"
 
 namespace strata::net {

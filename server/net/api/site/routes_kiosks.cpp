@@ -1,7 +1,7 @@
 // Links for kiosks: what curators do with them, and what a kiosk asks.
 #include <memory>
 
-#include "core/role.h"
+#include "domain/people/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/auth/auth.h"
@@ -13,8 +13,8 @@
 #include "net/serialization/tour_wire.h"
 #include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
-#include "store/kiosks.h"
-#include "store/models.h"
+#include "store/content/models.h"
+#include "store/people/kiosks.h"
 #include "store/store.h"
 
 namespace strata::net {

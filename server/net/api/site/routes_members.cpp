@@ -1,7 +1,7 @@
 // Who may do more in a project than everywhere, and who sees it.
 #include <set>
 
-#include "core/role.h"
+#include "domain/people/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/auth/auth.h"
@@ -10,11 +10,11 @@
 #include "net/serialization/people_wire.h"
 #include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
-#include "store/accounts.h"
-#include "store/groups.h"
-#include "store/members.h"
-#include "store/people.h"
-#include "store/projects.h"
+#include "store/content/projects.h"
+#include "store/people/accounts.h"
+#include "store/people/groups.h"
+#include "store/people/members.h"
+#include "store/people/people.h"
 #include "store/store.h"
 
 namespace strata::net {

@@ -1,5 +1,5 @@
 // Accounts: who there is, what they may do, and how they come in.
-#include "core/role.h"
+#include "domain/people/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/auth/auth.h"
@@ -10,12 +10,12 @@
 #include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
-#include "store/accounts.h"
-#include "store/password.h"
-#include "store/people.h"
-#include "store/projects.h"
+#include "store/content/projects.h"
+#include "store/people/accounts.h"
+#include "store/people/password.h"
+#include "store/people/people.h"
+#include "store/people/tokens.h"
 #include "store/store.h"
-#include "store/tokens.h"
 
 namespace strata::net {
 namespace {

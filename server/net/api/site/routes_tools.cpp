@@ -1,17 +1,17 @@
 #include "core/mapped_file.h"
-#include "core/picture.h"
-#include "core/role.h"
-#include "core/slug.h"
-#include "core/tool.h"
+#include "core/text/slug.h"
+#include "domain/people/role.h"
+#include "domain/scene/tool.h"
+#include "media/picture.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
 #include "net/http/page.h"
 #include "net/live/live_sockets.h"
 #include "net/transport/server_options.h"
-#include "store/projects.h"
+#include "store/content/projects.h"
+#include "store/content/tools.h"
 #include "store/store.h"
-#include "store/tools.h"
 
 namespace strata::net {
 namespace {

@@ -2,19 +2,19 @@
 #include <map>
 #include <set>
 
-#include "core/attachment.h"
-#include "core/column_value.h"
-#include "core/filename.h"
-#include "core/name_pattern.h"
-#include "core/role.h"
-#include "core/table.h"
+#include "core/text/filename.h"
+#include "core/text/name_pattern.h"
+#include "domain/people/role.h"
+#include "domain/tables/attachment.h"
+#include "domain/tables/column_value.h"
+#include "domain/tables/table.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/transport/server_options.h"
-#include "store/attachments.h"
-#include "store/records.h"
 #include "store/store.h"
-#include "store/tables.h"
+#include "store/tables/attachments.h"
+#include "store/tables/records.h"
+#include "store/tables/tables.h"
 
 namespace strata::net {
 namespace {

@@ -4,14 +4,14 @@
 #include <mutex>
 
 #include "app/change_notifier.h"
-#include "core/attachment.h"
-#include "core/filename.h"
-#include "core/media_type.h"
 #include "core/no_such.h"
-#include "core/picture.h"
-#include "core/role.h"
-#include "core/table.h"
-#include "core/thumbnail.h"
+#include "core/text/filename.h"
+#include "domain/people/role.h"
+#include "domain/tables/attachment.h"
+#include "domain/tables/table.h"
+#include "media/media_type.h"
+#include "media/picture.h"
+#include "media/thumbnail.h"
 #include "net/http/answer_book.h"
 #include "net/http/byte_range.h"
 #include "net/http/upload.h"
@@ -20,10 +20,10 @@
 #include "net/serialization/record_place.h"
 #include "net/serialization/table_wire.h"
 #include "net/transport/server_options.h"
-#include "store/attachments.h"
 #include "store/store.h"
-#include "store/table_changes.h"
-#include "store/tables.h"
+#include "store/tables/attachments.h"
+#include "store/tables/table_changes.h"
+#include "store/tables/tables.h"
 
 namespace strata::net {
 namespace {

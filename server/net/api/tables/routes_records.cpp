@@ -7,8 +7,9 @@
 #include "app/records/record_csv.h"
 #include "app/records/record_measures.h"
 #include "app/records/workbook.h"
-#include "core/role.h"
-#include "core/table.h"
+#include "domain/people/role.h"
+#include "domain/tables/table.h"
+#include "expression/expression_parser.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
@@ -17,11 +18,10 @@
 #include "net/serialization/sheet_response.h"
 #include "net/serialization/table_wire.h"
 #include "net/transport/server_options.h"
-#include "query/expression_parser.h"
 #include "room/room.h"
-#include "store/records.h"
 #include "store/store.h"
-#include "store/table_changes.h"
+#include "store/tables/records.h"
+#include "store/tables/table_changes.h"
 
 namespace strata::net {
 namespace {

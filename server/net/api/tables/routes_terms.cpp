@@ -1,11 +1,9 @@
 #include <algorithm>
 
 #include "app/change_notifier.h"
-#include "core/role.h"
-#include "core/term.h"
-#include "core/term_list.h"
-#include "core/terms_csv.h"
-#include "core/terms_skos.h"
+#include "domain/people/role.h"
+#include "domain/tables/term.h"
+#include "domain/tables/term_list.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
@@ -13,11 +11,13 @@
 #include "net/live/live_sockets.h"
 #include "net/live/table_events.h"
 #include "net/serialization/sheet_response.h"
-#include "store/projects.h"
-#include "store/records.h"
+#include "store/content/projects.h"
 #include "store/store.h"
-#include "store/table_changes.h"
-#include "store/tables.h"
+#include "store/tables/records.h"
+#include "store/tables/table_changes.h"
+#include "store/tables/tables.h"
+#include "vocabulary/terms_csv.h"
+#include "vocabulary/terms_skos.h"
 
 namespace strata::net {
 namespace {

@@ -1,0 +1,29 @@
+# strata_module(NAME SOURCES… [PUBLIC libs…] [PRIVATE libs…]): one module of the server, a static library `strata_NAME`.
+# What a module links is what it may include: the arrows of ARCHITECTURE.md are these link lines.
+function(strata_module name)
+  cmake_parse_arguments(MODULE "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(strata_${name} STATIC ${MODULE_SOURCES})
+  target_include_directories(strata_${name} PUBLIC ${PROJECT_BINARY_DIR}/modules/${name})
+  # A module sees its own headers and those of the modules it links, because each room exports only its own folder.
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/modules/${name})
+  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/modules/${name}/${name} SYMBOLIC)
+  if(name MATCHES "^(net|cli)$")
+    strata_shared_headers(strata_${name} net)
+  elseif(name MATCHES "^(domain|mesh|render|query)$")
+    strata_shared_headers(strata_${name} standard COMPUTES)
+  elseif(NOT name STREQUAL "figure")  # pango's flags are not those that the shared headers are compiled with
+    strata_shared_headers(strata_${name} standard)
+  endif()
+  target_link_libraries(strata_${name} PUBLIC ${MODULE_PUBLIC} PRIVATE ${MODULE_PRIVATE} strata_warnings)
+endfunction()
+
+add_library(strata_warnings INTERFACE)
+target_compile_options(strata_warnings INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)
+# False alarms of GCC 12: members of std::string (its bug 105651), frames of Asio's coroutines.
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  target_compile_options(strata_warnings INTERFACE -Wno-array-bounds -Wno-mismatched-new-delete -Wno-restrict -Wno-stringop-overflow)
+endif()
+# And of the standard library's own members, as soon as a sanitizer's checks stand between their statements.
+if(CMAKE_CXX_FLAGS MATCHES "-fsanitize" AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  target_compile_options(strata_warnings INTERFACE -Wno-maybe-uninitialized)
+endif()

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "domain/layers/tile_mirror.h"
+
+namespace strata {
+
+// Bits of the texel that holds a texture coordinate (clamped to the atlas; row 0 is v = 0); nothing
+// where it is not valid.
+std::optional<std::uint32_t> bits_at(const TileMap& tiles, int resolution, glm::vec2 uv);
+
+}  // namespace strata

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "domain/layers/palette.h"
+
+namespace strata {
+
+// What a picture has behind the model: a gradient from its top row to its lowest.
+struct Background {
+  Rgba top{242, 240, 236, 255};
+  Rgba bottom{214, 211, 205, 255};
+  bool operator==(const Background&) const = default;
+};
+
+}  // namespace strata

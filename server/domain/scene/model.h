@@ -1,0 +1,128 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "domain/people/role.h"
+
+namespace strata {
+
+struct Project {
+  std::int64_t id = 0;
+  std::string name;
+  std::string slug;
+  std::string description;
+  std::int64_t version = 1;
+  // what has a version is changed only by who names the one that they read
+  bool require_if_match = false;
+};
+
+enum class Unit { mm, cm, m };
+double metres_per(Unit unit);
+std::string_view name(Unit unit);
+std::optional<Unit> parse_unit(std::string_view name);
+
+// What `atlas` reports of a model (GET /models/{model}).
+struct AtlasReport {
+  // How much surface one texel of a layer holds: the precision of what is painted.
+  struct TexelSize {
+    int resolution = 0;
+    double area_mean = 0, area_max = 0;  // unit²
+  };
+  // Why less than 60 % of the texels are used; `code` is stable, `text` says it in words.
+  struct Limit {
+    std::string code;  // "long_triangles", "many_charts", "hollow_charts", "file_coordinates"
+    std::string text;
+  };
+  std::string source;  // "file": UVs of the scan were kept; "made": unwrapped here
+  int lowest_resolution = 2048;
+  int charts = 0;
+  double coverage = 0;  // share of texels that lie on the surface, at lowest_resolution
+  // share of covered texels with more than one owner, at lowest_resolution
+  double overlap = 0;
+  double stretch_mean = 0;  // area-weighted surface area per uv area, relative to the mean
+  double stretch_p99 = 0;
+  // unit², largest surface area of one texel at lowest_resolution
+  double texel_area_max = 0;
+  // from lowest_resolution up; empty in models of before it was measured
+  std::vector<TexelSize> texel_sizes;
+  // empty where 60 % and more are used, and in models of before it was said
+  std::vector<Limit> limits{};
+};
+
+// Why a unit or an up direction is proposed.
+enum class ScaleReason { given, format, comment, coordinates, size, shape };
+std::string_view name(ScaleReason reason);
+std::optional<ScaleReason> parse_scale_reason(std::string_view name);
+
+// Which unit and up direction the file states or lets one guess (mesh/repair/scale_proposal.h).
+struct ScaleProposal {
+  Unit unit = Unit::m;
+  ScaleReason unit_reason = ScaleReason::size;
+  double unit_confidence = 1;  // 0…1
+  std::string unit_comment;    // that names it
+  std::string up = "z";        // of kUpDirections
+  ScaleReason up_reason = ScaleReason::shape;
+  double up_confidence = 1;
+  std::string up_comment;
+};
+nlohmann::json to_json(const ScaleProposal& proposal);
+// of our own stored form
+std::optional<ScaleProposal> scale_proposal_from_json(const nlohmann::json& json);
+
+struct Repair {
+  std::string what;  // "dropped degenerate faces"
+  std::uint64_t count = 0;
+};
+
+struct SourceFile {
+  std::string name;
+  std::string sha256;  // lower-case hex
+  std::uint64_t bytes = 0;
+};
+
+struct Model {
+  std::int64_t id = 0;
+  std::int64_t project_id = 0;
+  std::string name;
+  std::string slug;
+  Unit unit = Unit::m;
+  bool unit_assumed = true;
+  bool scale_verified = false;
+  std::string up = "z";  // of kUpDirections (domain/scene/up.h)
+  // none for models that were imported before there were any
+  std::optional<ScaleProposal> proposal;
+  std::string north;     // free: degrees from +y, or empty
+  std::string crs;       // "EPSG:n" or empty
+  glm::dvec3 origin{0};  // model space is world minus origin
+  std::uint64_t triangles = 0;
+  std::uint64_t vertices = 0;
+  glm::dvec3 bounds_min{0};  // world
+  glm::dvec3 bounds_max{0};
+  double area = 0;  // unit²
+  AtlasReport atlas;
+  std::vector<Repair> repairs;
+  std::vector<SourceFile> source_files;
+  // the least that gets them, and what is as good as they are
+  Role source_download = Role::annotator;
+  int default_resolution = 2048;  // of new layers
+  std::string inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri,
+      credit;
+  std::int64_t sequence = 0;  // of the last journal entry
+  std::int64_t version = 1;
+
+  double metres() const { return metres_per(unit); }
+  double area_m2() const { return area * metres() * metres(); }
+};
+
+nlohmann::json to_json(const Project& project);
+nlohmann::json to_json(const Model& model, const std::string& project_slug);
+nlohmann::json to_json(const AtlasReport& atlas, double metres_per_unit);
+AtlasReport atlas_from_json(const nlohmann::json& json);  // of our own stored form, see store
+
+}  // namespace strata

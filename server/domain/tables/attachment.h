@@ -1,0 +1,34 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "domain/people/visibility.h"
+
+namespace strata {
+
+// A file that records of a table have. Its content never changes.
+struct Attachment {
+  std::int64_t id = 0;
+  std::int64_t table_id = 0;
+  std::string name;        // a file's, without folders
+  std::string media_type;  // by its bytes
+  std::uint64_t bytes = 0;
+  std::string sha256;  // hexadecimal
+  // of pictures that can be read, before they are turned as Exif says
+  std::optional<int> width, height;
+  std::string user;
+  std::chrono::system_clock::time_point time;
+  Visibility visibility = Visibility::everyone;
+};
+
+// As domain/people/visibility has it; who may attach files sees those that they attached
+// themselves, too.
+inline bool sees(const Author& who, const Attachment& attachment) {
+  return sees(who.role, attachment.visibility) ||
+         (who.role >= Role::annotator && who.user == attachment.user);
+}
+
+}  // namespace strata

@@ -1,0 +1,34 @@
+#include "expression/expression.h"
+
+#include <algorithm>
+
+namespace strata {
+namespace {
+
+void collect(const Expression& expression, std::vector<std::string>& layers) {
+  if (!expression.name.empty() &&
+      std::find(layers.begin(), layers.end(), expression.name) == layers.end())
+    layers.push_back(expression.name);
+  for (const Expression& part : expression.parts) collect(part, layers);
+}
+
+}  // namespace
+
+Error expression_problem(const std::string& what, std::size_t at, const std::string& field) {
+  Error problem{ErrorCode::invalid, "Expression not understood",
+                what + " (at character " + std::to_string(at + 1) + ").", field};
+  problem.offset = at;
+  return problem;
+}
+
+std::vector<std::string> layers_of(const Expression& expression) {
+  std::vector<std::string> layers;
+  collect(expression, layers);
+  return layers;
+}
+
+bool reads_records(const Expression& expression) {
+  return expression.is_column() || std::ranges::any_of(expression.parts, reads_records);
+}
+
+}  // namespace strata

@@ -1,0 +1,130 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+
+namespace strata {
+
+// A formula: what a fill, a selection, a filter of records or a computed layer is given by, once
+// its text was read (expression/expression_parser). A condition, a number, a text or a time at each
+// texel or record.
+//
+// Where a layer or a column has no value it is unknown, and so is what is computed from it: also
+// what has no finite value (1/0). Conditions are of three values as in SQL: a comparison with an
+// unknown number is unknown, `false and unknown` is false, `true or unknown` is true. Only
+// `valid(layer)` and `known` are always known. Nothing is done where a condition is unknown.
+struct Expression {
+  enum class Op {
+    // numbers
+    number,          // `number`; NaN: unknown
+    layer,           // the value of the layer whose slug is `name`
+    add,             // of two parts, as the next ones
+    subtract,        //
+    multiply,        //
+    divide,          //
+    negate,          // of one part
+    absolute,        // of one part
+    least,           // of two or more parts
+    greatest,        // of two or more parts
+    choose,          // parts: a condition, the number where it holds, the number where it does not
+    power,           // of two parts, as the next ones
+    remainder,       // of a division towards zero
+    whole_division,  // the quotient without its fraction
+    square_root,     // of one part, as the next ones
+    exponential,     //
+    natural_log,     //
+    decimal_log,     //
+    floor,           //
+    ceiling,         //
+    round,           // halves away from zero
+    sine,            // of radians, as the next ones
+    cosine,          //
+    tangent,         //
+    arc_sine,        // in radians, as the next ones
+    arc_cosine,      //
+    arc_tangent,     //
+    radians,         // of degrees
+    degrees,         // of radians
+    x,               // of the texel's place in the world, model units, as the next ones
+    y,               //
+    z,               //
+    area,            // of the texel, m²
+    // the number at place `index` of what was read from records (expression/record_parts), by the
+    // key
+    // that `name` holds
+    record_number,
+    // of any kind
+    // `path` of a record: that whose key the layer `name` holds, or, without a name, the one that
+    // is filtered
+    column,
+    // texts, which also write times: ISO 8601, EDTF
+    text,          // `text`
+    fold_case,     // of one part
+    fold_accents,  // of one part
+    keys,          // of records: parts are numbers
+    // conditions
+    truth,          // `number` is 1 or 0
+    valid,          // the layer has a value
+    known,          // the part is known
+    less,           // of two parts of one kind, as the next ones
+    less_equal,     //
+    greater,        //
+    greater_equal,  //
+    equal,          //
+    not_equal,      //
+    // of a text and a pattern: % for any characters, _ for one, \ before one that is meant itself
+    like,
+    all,           // of two or more conditions
+    any,           // of two or more conditions
+    negation,      // of one condition
+    holds,         // of a column of truths
+    before,        // of two times, as the next ones: all of the first is before all of the second
+    after,         //
+    during,        // the first lies within the second
+    contains,      // the second lies within the first
+    intersects,    // they have a moment in common
+    disjoint,      // they have none
+    coincides,     // they begin and end together
+    has_all,       // of a relation and keys: all of them are in it
+    has_any,       // one of them is
+    has_only,      // nothing else is
+    has_exactly,   // they are the same
+    record_truth,  // as record_number
+  };
+
+  // Of the text that it was read from: no part of what it means.
+  struct Position {
+    std::size_t at = 0;  // characters (Unicode code points) before it
+    bool operator==(const Position&) const { return true; }
+  };
+
+  Op op = Op::number;
+  double number = 0;
+  std::string name;  // slug of a layer
+  // slugs of columns: of the record, then of the record whose key the column before holds
+  std::vector<std::string> path;
+  std::string text;
+  std::size_t index = 0;
+  std::vector<Expression> parts;
+  Position position;
+
+  bool is_condition() const { return op >= Op::truth; }
+  bool is_text() const { return op == Op::text || op == Op::fold_case || op == Op::fold_accents; }
+  bool is_column() const { return op == Op::column; }
+  bool operator==(const Expression&) const = default;
+};
+
+// What is wrong at a character (from 0) of the text of an expression: an Error (invalid) that says
+// where.
+Error expression_problem(const std::string& what, std::size_t at, const std::string& field);
+
+// Slugs of the layers that it reads, each once, in order of their first use.
+std::vector<std::string> layers_of(const Expression& expression);
+
+// Whether it reads a column of a record.
+bool reads_records(const Expression& expression);
+
+}  // namespace strata

@@ -1,0 +1,761 @@
+#include "expression/expression_parser.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "core/text/edtf.h"
+#include "core/text/timestamp.h"
+#include "core/text/utf8.h"
+
+namespace strata::query {
+namespace {
+
+using Op = Expression::Op;
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+struct Token {
+  enum class Kind { end, number, word, quoted, text, symbol };
+  Kind kind = Kind::end;
+  std::size_t at = 0;  // position in the text
+  std::string text;    // words in lower case
+  double number = 0;
+};
+
+constexpr std::array kKeywords{"and",  "or",  "not", "true",    "false", "case", "when", "then",
+                               "else", "end", "is",  "between", "in",    "null", "like", "div"};
+
+// Of numbers; `least` and `greatest` take two or more. A word is the name of a function where a
+// bracket follows it.
+struct Function {
+  std::string_view name;
+  Op op;
+};
+constexpr std::array kFunctions{
+    Function{"min", Op::least},         Function{"max", Op::greatest},
+    Function{"abs", Op::absolute},      Function{"sqrt", Op::square_root},
+    Function{"exp", Op::exponential},   Function{"ln", Op::natural_log},
+    Function{"log10", Op::decimal_log}, Function{"floor", Op::floor},
+    Function{"ceil", Op::ceiling},      Function{"round", Op::round},
+    Function{"sin", Op::sine},          Function{"cos", Op::cosine},
+    Function{"tan", Op::tangent},       Function{"asin", Op::arc_sine},
+    Function{"acos", Op::arc_cosine},   Function{"atan", Op::arc_tangent},
+    Function{"radians", Op::radians},   Function{"degrees", Op::degrees}};
+
+// Of a text; of two times; of a relation and keys.
+constexpr std::array kTextFunctions{Function{"casei", Op::fold_case},
+                                    Function{"accenti", Op::fold_accents}};
+constexpr std::array kTimeFunctions{
+    Function{"t_before", Op::before},         Function{"t_after", Op::after},
+    Function{"t_during", Op::during},         Function{"t_contains", Op::contains},
+    Function{"t_intersects", Op::intersects}, Function{"t_disjoint", Op::disjoint},
+    Function{"t_equals", Op::coincides}};
+constexpr std::array kKeyFunctions{
+    Function{"a_contains", Op::has_all}, Function{"a_overlaps", Op::has_any},
+    Function{"a_containedby", Op::has_only}, Function{"a_equals", Op::has_exactly}};
+
+struct Comparison {
+  std::string_view symbol;
+  Op op;
+};
+constexpr std::array kComparisons{
+    Comparison{"=", Op::equal},      Comparison{"==", Op::equal},
+    Comparison{"<>", Op::not_equal}, Comparison{"!=", Op::not_equal},
+    Comparison{"<", Op::less},       Comparison{"<=", Op::less_equal},
+    Comparison{">", Op::greater},    Comparison{">=", Op::greater_equal}};
+
+// Recursive descent. The first refusal is kept and ends the text, so that every level returns,
+// whatever it holds by then.
+class Parser {
+ public:
+  Parser(std::string_view text, const std::string& field, Names names)
+      : text_(text), field_(field), names_(names) {
+    advance();
+  }
+
+  Result<Expression> whole(bool wants_condition) {
+    Expression expression = disjunction();
+    if (token_.kind != Token::Kind::end) refuse("'" + token_.text + "' was not expected here");
+    if (wants_condition) {
+      if (!expression.is_condition() && !expression.is_column())
+        refuse("A condition is wanted, not a number: compare it with something", 0);
+      expression = condition(std::move(expression), 0);
+    } else if (expression.is_condition()) {
+      refuse("A number is wanted, not a condition: if(condition, 1, 0) makes one of it", 0);
+    } else {
+      expression = numeric(std::move(expression), 0);
+    }
+    if (problem_) return tl::unexpected(*problem_);
+    return expression;
+  }
+
+ private:
+  Expression refuse(const std::string& what, std::optional<std::size_t> at = {}) {
+    if (!problem_)
+      problem_ = expression_problem(what, characters_before(at.value_or(token_.at)), field_);
+    at_ = text_.size();
+    token_ = Token{};
+    return {};
+  }
+
+  std::size_t characters_before(std::size_t byte) const {
+    return static_cast<std::size_t>(std::ranges::count_if(text_.substr(0, byte), [](char c) {
+      return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u;
+    }));
+  }
+
+  // --- tokens
+
+  void advance() {
+    while (at_ < text_.size() && is_space(text_[at_])) ++at_;
+    token_ = Token{};
+    token_.at = at_;
+    if (at_ == text_.size()) {
+      token_.text = "the end";
+      return;
+    }
+    const char c = text_[at_];
+    if (is_digit(c) || (c == '.' && at_ + 1 < text_.size() && is_digit(text_[at_ + 1])))
+      return take_number();
+    if (is_letter(c)) return take_word();
+    if (c == '"') return take_quoted();
+    if (c == '\'') return take_text();
+    take_symbol();
+  }
+
+  void take_number() {
+    token_.kind = Token::Kind::number;
+    const char* begin = text_.data() + at_;
+    const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), token_.number);
+    if (error != std::errc() || !std::isfinite(token_.number)) {
+      refuse("This number is too large");
+      return;
+    }
+    token_.text = std::string(begin, end);
+    at_ += static_cast<std::size_t>(end - begin);
+    if (at_ < text_.size() && (is_letter(text_[at_]) || text_[at_] == '.'))
+      refuse("A number ends here; a layer whose name begins with a digit stands in double quotes",
+             at_);
+  }
+
+  void take_word() {
+    token_.kind = Token::Kind::word;
+    for (; at_ < text_.size(); ++at_) {
+      const char c = text_[at_];
+      const bool hyphen = c == '-' && at_ + 1 < text_.size() &&
+                          (is_letter(text_[at_ + 1]) || is_digit(text_[at_ + 1]));
+      if (!is_letter(c) && !is_digit(c) && !hyphen) break;
+      token_.text += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    }
+  }
+
+  void take_quoted() {
+    token_.kind = Token::Kind::quoted;
+    const auto end = text_.find('"', at_ + 1);
+    if (end == std::string_view::npos || end == at_ + 1) {
+      refuse(end == at_ + 1 ? "A name is missing between the quotes"
+                            : "The double quote is never closed");
+      return;
+    }
+    token_.text = std::string(text_.substr(at_ + 1, end - at_ - 1));
+    at_ = end + 1;
+  }
+
+  // A quote within is written twice.
+  void take_text() {
+    token_.kind = Token::Kind::text;
+    std::size_t at = at_ + 1;
+    for (;; ++at) {
+      if (at == text_.size()) {
+        refuse("The quote is never closed");
+        return;
+      }
+      if (text_[at] == '\'') {
+        if (at + 1 == text_.size() || text_[at + 1] != '\'') break;
+        ++at;
+      }
+      token_.text += text_[at];
+    }
+    if (!is_utf8(token_.text) || token_.text.find('\0') != std::string::npos) {
+      refuse("This text is not UTF-8");
+      return;
+    }
+    at_ = at + 1;
+  }
+
+  void take_symbol() {
+    token_.kind = Token::Kind::symbol;
+    std::size_t length = 1;
+    for (const Comparison& comparison : kComparisons)
+      if (comparison.symbol.size() == 2 && text_.substr(at_, 2) == comparison.symbol) length = 2;
+    token_.text = std::string(text_.substr(at_, length));
+    at_ += length;
+    if (length == 1 &&
+        std::string_view("()+-*/%^,<>=.").find(token_.text) == std::string_view::npos)
+      refuse("This character has no meaning in an expression");
+  }
+
+  bool is(std::string_view text) const {
+    return (token_.kind == Token::Kind::word || token_.kind == Token::Kind::symbol) &&
+           token_.text == text;
+  }
+  bool take(std::string_view text) {
+    if (!is(text)) return false;
+    advance();
+    return true;
+  }
+  bool is_call() const {
+    if (token_.kind != Token::Kind::word) return false;
+    std::size_t next = at_;
+    while (next < text_.size() && is_space(text_[next])) ++next;
+    return next < text_.size() && text_[next] == '(';
+  }
+  void expect(std::string_view text) {
+    if (!take(text))
+      refuse("Expected '" + std::string(text) + "' instead of '" + token_.text + "'");
+  }
+
+  // --- grammar; each level reads what binds more tightly
+
+  Expression disjunction() {
+    const Nesting nesting(*this);
+    Expression left = conjunction();
+    while (is("or")) left = join(Op::any, std::move(left), [&] { return conjunction(); });
+    return left;
+  }
+
+  Expression conjunction() {
+    Expression left = negation();
+    while (is("and")) left = join(Op::all, std::move(left), [&] { return negation(); });
+    return left;
+  }
+
+  Expression negation() {
+    const Nesting nesting(*this);
+    if (!is("not")) return comparison();
+    const auto at = token_.at;
+    advance();
+    Expression part = negation();
+    return make(Op::negation, at, condition(std::move(part), at));
+  }
+
+  Expression comparison() {
+    const auto at = token_.at;
+    Expression left = sum();
+    for (const Comparison& each : kComparisons) {
+      if (!is(each.symbol)) continue;
+      advance();
+      const auto right_at = token_.at;
+      Expression right = sum();
+      for (const Comparison& next : kComparisons)
+        if (is(next.symbol))
+          refuse("Only two values are compared at a time; join comparisons with 'and'");
+      return compare(each.op, std::move(left), at, std::move(right), right_at);
+    }
+    if (is("is")) return null_test(value(std::move(left), at), at);
+    const bool negated = is("not");
+    if (!negated && !is("between") && !is("in") && !is("like")) return left;
+    left = value(std::move(left), at);
+    if (negated) advance();
+    Expression test =
+        is("between") ? between(std::move(left), at)
+        : is("in")    ? membership(std::move(left), at)
+        : is("like")
+            ? likeness(std::move(left), at)
+            : refuse("Expected 'between', 'in' or 'like' instead of '" + token_.text + "'");
+    return negated ? make(Op::negation, at, std::move(test)) : test;
+  }
+
+  // Of two numbers, two texts, two times; of a column of truths and a truth.
+  Expression compare(Op op, Expression left, std::size_t at, Expression right,
+                     std::size_t right_at) {
+    if (left.is_column() && right.op == Op::truth && (op == Op::equal || op == Op::not_equal)) {
+      Expression holds = make(Op::holds, at, std::move(left));
+      return (right.number == 1) == (op == Op::equal) ? holds
+                                                      : make(Op::negation, at, std::move(holds));
+    }
+    left = value(std::move(left), at);
+    right = value(std::move(right), right_at);
+    const auto takes_text = [](const Expression& e) { return e.is_text() || e.is_column(); };
+    if ((left.is_text() && !takes_text(right)) || (right.is_text() && !takes_text(left)))
+      refuse("A text is compared with a column of texts, not with a number",
+             left.is_text() ? at : right_at);
+    return make(op, at, std::move(left), std::move(right));
+  }
+
+  // `pattern` is what the text is like.
+  Expression likeness(Expression text, std::size_t at) {
+    if (!text.is_text() && !text.is_column()) refuse("Only texts are like something", at);
+    advance();
+    const auto pattern_at = token_.at;
+    Expression pattern = primary();
+    if (!pattern.is_text())
+      return refuse("A pattern stands in single quotes, as in like 'crack%'", pattern_at);
+    const auto end = pattern.text.find_last_not_of('\\');
+    if ((pattern.text.size() - (end == std::string::npos ? 0 : end + 1)) % 2 == 1)
+      return refuse("The \\ at the end of this pattern has nothing behind it", pattern_at);
+    return make(Op::like, at, std::move(text), std::move(pattern));
+  }
+
+  Expression null_test(Expression tested, std::size_t at) {
+    advance();
+    const bool negated = take("not");
+    expect("null");
+    Expression known = make(Op::known, at, std::move(tested));
+    return negated ? known : make(Op::negation, at, std::move(known));
+  }
+
+  // Both ends belong to it.
+  Expression between(Expression middle, std::size_t at) {
+    advance();
+    const auto low_at = token_.at;
+    Expression low = sum();
+    expect("and");
+    const auto high_at = token_.at;
+    Expression high = sum();
+    Expression above = compare(Op::greater_equal, again(middle), at, std::move(low), low_at);
+    return make(Op::all, at, std::move(above),
+                compare(Op::less_equal, std::move(middle), at, std::move(high), high_at));
+  }
+
+  Expression membership(Expression member, std::size_t at) {
+    advance();
+    expect("(");
+    Expression any = make(Op::any, at);
+    do {
+      const auto each_at = token_.at;
+      any.parts.push_back(compare(Op::equal, again(member), at, disjunction(), each_at));
+    } while (take(","));
+    expect(")");
+    return any;
+  }
+
+  Expression sum() {
+    const auto at = token_.at;
+    Expression left = product();
+    while (is("+") || is("-"))
+      left = arithmetic(is("+") ? Op::add : Op::subtract, std::move(left), at, &Parser::product);
+    return left;
+  }
+
+  Expression product() {
+    const auto at = token_.at;
+    Expression left = power();
+    for (;;) {
+      const Op op = is("*")   ? Op::multiply
+                    : is("/") ? Op::divide
+                    : is("%") ? Op::remainder
+                              : Op::whole_division;
+      if (op == Op::whole_division && !is("div")) return left;
+      left = arithmetic(op, std::move(left), at, &Parser::power);
+    }
+  }
+
+  Expression power() {
+    const auto at = token_.at;
+    Expression left = sign();
+    if (!is("^")) return left;
+    left = arithmetic(Op::power, std::move(left), at, &Parser::sign);
+    if (is("^")) refuse("Powers of powers need parentheses");
+    return left;
+  }
+
+  Expression arithmetic(Op op, Expression left, std::size_t at, Expression (Parser::*next)()) {
+    left = numeric(std::move(left), at);
+    advance();
+    const auto right_at = token_.at;
+    Expression right = (this->*next)();
+    return make(op, at, std::move(left), numeric(std::move(right), right_at));
+  }
+
+  Expression sign() {
+    const Nesting nesting(*this);
+    const auto at = token_.at;
+    if (!take("-")) return primary();
+    Expression part = sign();
+    return make(Op::negate, at, numeric(std::move(part), at));
+  }
+
+  Expression primary() {
+    const Token token = token_;
+    switch (token.kind) {
+      case Token::Kind::number: {
+        advance();
+        Expression expression;
+        expression.number = token.number;
+        expression.position.at = characters_before(token.at);
+        return expression;
+      }
+      case Token::Kind::text: return literal();
+      case Token::Kind::quoted: return named();
+      case Token::Kind::word: break;
+      default:
+        if (take("(")) {
+          Expression inside = disjunction();
+          expect(")");
+          return inside;
+        }
+        return refuse("Expected a number, " + std::string(what_names_are()) +
+                      " or '(' instead of '" + token.text + "'");
+    }
+    if (is("true") || is("false")) {
+      Expression truth;
+      truth.op = Op::truth;
+      truth.number = is("true") ? 1 : 0;
+      advance();
+      return truth;
+    }
+    if (is("case")) return cases();
+    if (take("null")) return unknown();
+    if (is_call()) return call();
+    for (const char* keyword : kKeywords)
+      if (is(keyword))
+        return refuse("Expected a number, " + std::string(what_names_are()) +
+                      " or '(' instead of '" + token.text + "'");
+    return named();
+  }
+
+  Expression call() {
+    if (is("valid")) return validity();
+    if (is("if")) return choice();
+    if (is("reclass")) return reclass();
+    if (is("date") || is("timestamp")) return time();
+    if (is("interval")) return interval();
+    for (const Function& each : kFunctions)
+      if (is(each.name)) return function(each);
+    for (const Function& each : kTextFunctions)
+      if (is(each.name)) return text_function(each);
+    for (const Function& each : kTimeFunctions)
+      if (is(each.name)) return time_function(each);
+    for (const Function& each : kKeyFunctions)
+      if (is(each.name)) return key_function(each);
+    std::string known = "valid, if, reclass";
+    for (const Function& each : kFunctions) known += ", " + std::string(each.name);
+    for (const Function& each : kTextFunctions) known += ", " + std::string(each.name);
+    known += ", date, timestamp, interval";
+    for (const Function& each : kTimeFunctions) known += ", " + std::string(each.name);
+    for (const Function& each : kKeyFunctions) known += ", " + std::string(each.name);
+    return refuse("There is no function '" + token_.text + "'; there are " + known);
+  }
+
+  std::string_view what_names_are() const {
+    return names_ == Names::layers ? "a layer" : "a column";
+  }
+
+  bool is_keyword() const {
+    return std::ranges::any_of(kKeywords, [&](const char* word) { return is(word); });
+  }
+
+  // A layer, a column, or a column of the record that a layer or another column names.
+  Expression named() {
+    const auto at = token_.at;
+    const std::string what = "the name of " + std::string(what_names_are());
+    if (is_keyword())
+      return refuse("'" + token_.text + "' is a word of the language; as " + what +
+                    " it stands in double quotes");
+    if (token_.kind != Token::Kind::word && token_.kind != Token::Kind::quoted)
+      return refuse("Expected " + what + " instead of '" + token_.text + "'");
+    Expression expression;
+    expression.position.at = characters_before(at);
+    if (names_ == Names::layers) {
+      expression.op = Op::layer;
+      expression.name = token_.text;
+    } else {
+      expression.op = Op::column;
+      expression.path.push_back(token_.text);
+    }
+    advance();
+    while (take(".")) {
+      if (token_.kind != Token::Kind::word && token_.kind != Token::Kind::quoted)
+        return refuse("Expected the name of a column instead of '" + token_.text + "'");
+      expression.op = Op::column;
+      expression.path.push_back(token_.text);
+      advance();
+    }
+    return expression;
+  }
+
+  Expression validity() {
+    if (names_ == Names::columns)
+      return refuse("valid() is for layers; of a column write 'is not null'");
+    advance();
+    expect("(");
+    Expression expression = named();
+    if (expression.is_column())
+      refuse("Expected the name of a layer; of a column write 'is not null'");
+    expression.op = Op::valid;
+    expect(")");
+    return expression;
+  }
+
+  // --- texts and times
+
+  Expression literal() {
+    Expression expression;
+    expression.op = Op::text;
+    expression.position.at = characters_before(token_.at);
+    expression.text = token_.text;
+    advance();
+    return expression;
+  }
+
+  Expression quoted_time(bool may_be_open) {
+    if (token_.kind != Token::Kind::text)
+      return refuse("A time stands in single quotes, as in date('2024-05-02')");
+    if (!(may_be_open && token_.text == "..") && !parse_edtf(token_.text) &&
+        !utc_timestamp(token_.text))
+      return refuse("'" + token_.text.substr(0, 100) +
+                    "' is no date; dates are written 2024-05-02");
+    return literal();
+  }
+
+  Expression time() {
+    advance();
+    expect("(");
+    Expression expression = quoted_time(false);
+    expect(")");
+    return expression;
+  }
+
+  // As EDTF writes it.
+  Expression interval() {
+    advance();
+    expect("(");
+    Expression expression = quoted_time(true);
+    expect(",");
+    expression.text += "/" + quoted_time(true).text;
+    expect(")");
+    if (!problem_ && !parse_edtf(expression.text))
+      refuse("'" + expression.text.substr(0, 200) + "' is no interval of days");
+    return expression;
+  }
+
+  Expression text_function(const Function& called) {
+    const auto at = token_.at;
+    advance();
+    expect("(");
+    const auto part_at = token_.at;
+    Expression part = textual(disjunction(), part_at);
+    expect(")");
+    return make(called.op, at, std::move(part));
+  }
+
+  Expression time_function(const Function& called) {
+    const auto at = token_.at;
+    advance();
+    expect("(");
+    const auto first_at = token_.at;
+    Expression first = textual(disjunction(), first_at);
+    expect(",");
+    const auto second_at = token_.at;
+    Expression second = textual(disjunction(), second_at);
+    expect(")");
+    return make(called.op, at, std::move(first), std::move(second));
+  }
+
+  Expression key_function(const Function& called) {
+    const auto at = token_.at;
+    advance();
+    expect("(");
+    Expression relation = named();
+    if (!relation.is_column()) refuse("A column of keys is wanted here", at);
+    expect(",");
+    Expression keys = make(Op::keys, token_.at);
+    expect("(");
+    do keys.parts.push_back(argument());
+    while (take(","));
+    expect(")");
+    expect(")");
+    return make(called.op, at, std::move(relation), std::move(keys));
+  }
+
+  // --- choices
+
+  Expression choice() {
+    const auto at = token_.at;
+    advance();
+    expect("(");
+    const auto condition_at = token_.at;
+    Expression when = condition(disjunction(), condition_at);
+    expect(",");
+    Expression then = argument();
+    expect(",");
+    Expression otherwise = argument();
+    expect(")");
+    return make(Op::choose, at, std::move(when), std::move(then), std::move(otherwise));
+  }
+
+  static Expression unknown() {
+    Expression number;
+    number.number = std::numeric_limits<double>::quiet_NaN();
+    return number;
+  }
+
+  // case when … then … else … end: choices in a chain.
+  Expression cases() {
+    const auto at = token_.at;
+    advance();
+    std::vector<std::pair<Expression, Expression>> branches;
+    if (!is("when")) return refuse("Expected 'when' instead of '" + token_.text + "'");
+    while (take("when")) {
+      const auto condition_at = token_.at;
+      Expression when = condition(disjunction(), condition_at);
+      expect("then");
+      branches.emplace_back(std::move(when), argument());
+    }
+    Expression chain = take("else") ? argument() : unknown();
+    expect("end");
+    for (auto branch = branches.rbegin(); branch != branches.rend(); ++branch)
+      chain = make(Op::choose, at, std::move(branch->first), std::move(branch->second),
+                   std::move(chain));
+    return chain;
+  }
+
+  // A table of limits: from each limit on its value, below the first one the value before it.
+  Expression reclass() {
+    const auto at = token_.at;
+    advance();
+    expect("(");
+    const Expression number = argument();
+    expect(",");
+    Expression chain = argument();
+    if (!is(",")) refuse("A limit and the value from there on are missing");
+    while (take(",")) {
+      Expression above = make(Op::greater_equal, at, again(number), argument());
+      expect(",");
+      chain = make(Op::choose, at, std::move(above), argument(), std::move(chain));
+    }
+    expect(")");
+    return chain;
+  }
+
+  Expression function(const Function& called) {
+    const auto at = token_.at;
+    advance();
+    expect("(");
+    Expression expression = make(called.op, at, argument());
+    if (called.op == Op::least || called.op == Op::greatest) {
+      if (!is(",")) refuse("At least two numbers are compared");
+      while (take(",")) expression.parts.push_back(argument());
+    }
+    expect(")");
+    return expression;
+  }
+
+  Expression argument() {
+    const auto at = token_.at;
+    return numeric(disjunction(), at);
+  }
+
+  // --- kinds; what a column holds is not known here
+
+  Expression condition(Expression expression, std::size_t at) {
+    if (expression.is_column()) return make(Op::holds, at, std::move(expression));
+    if (!expression.is_condition())
+      refuse("A condition is wanted here, not a number: compare it with something", at);
+    return expression;
+  }
+  Expression value(Expression expression, std::size_t at) {
+    if (expression.is_condition()) refuse("A number is wanted here, not a condition", at);
+    return expression;
+  }
+  Expression numeric(Expression expression, std::size_t at) {
+    if (expression.is_text()) refuse("A number is wanted here, not a text", at);
+    return value(std::move(expression), at);
+  }
+  Expression textual(Expression expression, std::size_t at) {
+    if (!expression.is_text() && !expression.is_column())
+      refuse("A text or a column is wanted here", at);
+    return expression;
+  }
+
+  template <class Next>
+  Expression join(Op op, Expression left, Next next) {
+    const auto at = token_.at;
+    left = condition(std::move(left), at);
+    advance();
+    const auto right_at = token_.at;
+    Expression right = condition(next(), right_at);
+    if (left.op != op) return make(op, at, std::move(left), std::move(right));
+    left.parts.push_back(std::move(right));
+    return left;
+  }
+
+  // What is written once and used twice: a short text may not become an endless expression.
+  Expression again(const Expression& expression) {
+    repeated_ += size_of(expression);
+    if (repeated_ > kMaxExpressionLength) return refuse("This is too much at once");
+    return expression;
+  }
+
+  static std::size_t size_of(const Expression& expression) {
+    std::size_t size = 1;
+    for (const Expression& part : expression.parts) size += size_of(part);
+    return size;
+  }
+
+  template <class... Parts>
+  Expression make(Op op, std::size_t at, Parts... parts) {
+    Expression expression;
+    expression.op = op;
+    expression.position.at = characters_before(at);
+    (expression.parts.push_back(std::move(parts)), ...);
+    // Also a + b + c + … nests, to the left; and it is evaluated and destroyed by recursion.
+    if (depth_of(expression) > kMaxExpressionDepth) refuse("This is nested too deeply", at);
+    return expression;
+  }
+
+  static int depth_of(const Expression& expression) {
+    int deepest = 0;
+    for (const Expression& part : expression.parts) deepest = std::max(deepest, depth_of(part));
+    return deepest + 1;
+  }
+
+  // Levels that can call themselves without end.
+  struct Nesting {
+    explicit Nesting(Parser& owner) : parser(owner) {
+      if (++parser.depth_ > 3 * kMaxExpressionDepth) parser.refuse("This is nested too deeply");
+    }
+    ~Nesting() { --parser.depth_; }
+    Nesting(const Nesting&) = delete;
+    Nesting& operator=(const Nesting&) = delete;
+    Parser& parser;
+  };
+
+  const std::string_view text_;
+  const std::string& field_;
+  const Names names_;
+  std::size_t at_ = 0;
+  Token token_;
+  int depth_ = 0;
+  std::size_t repeated_ = 0;
+  std::optional<Error> problem_;
+};
+
+Result<Expression> parse(std::string_view text, const std::string& field, Names names,
+                         bool wants_condition) {
+  if (text.size() > kMaxExpressionLength)
+    return fail(
+        ErrorCode::invalid, "Expression too long",
+        "An expression has at most " + std::to_string(kMaxExpressionLength) + " characters.",
+        field);
+  return Parser(text, field, names).whole(wants_condition);
+}
+
+}  // namespace
+
+Result<Expression> parse_condition(std::string_view text, const std::string& field, Names names) {
+  return parse(text, field, names, true);
+}
+Result<Expression> parse_number(std::string_view text, const std::string& field, Names names) {
+  return parse(text, field, names, false);
+}
+
+}  // namespace strata::query

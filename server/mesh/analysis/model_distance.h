@@ -1,0 +1,33 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <memory>
+
+#include "mesh/surface/search_tree.h"
+#include "mesh/surface/surface_normals.h"
+
+namespace strata::mesh {
+
+// Distance from points of one model to the surface of another: positive where the point lies in
+// front of it, negative behind. The sign is that of the pseudo-normal at the nearest point (see
+// SurfaceNormals), so the other surface need not be closed. Thread-safe.
+class ModelDistance {
+ public:
+  // `metres_here`, `metres_there`: of one unit of each model. Both models' world coordinates are of
+  // one system.
+  ModelDistance(const glm::dvec3& origin_here, double metres_here,
+                std::shared_ptr<const Geometry> there, double metres_there, double max_distance);
+
+  // In units of this model; NaN where nothing lies within `max_distance`. `position` in this
+  // model's space.
+  float at(const glm::vec3& position) const;
+
+ private:
+  std::shared_ptr<const Geometry> there_;
+  SearchTree tree_;
+  SurfaceNormals normals_;
+  glm::dvec3 origin_here_;
+  double there_per_here_, max_distance_;
+};
+
+}  // namespace strata::mesh

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <memory>
+
+#include "core/progress.h"
+#include "mesh/surface/geometry.h"
+
+namespace strata::mesh {
+
+// How much of the light from all around reaches a point of a surface (ambient occlusion, by rays):
+// 1 in the open, 0 in a closed cavity. Rays leave over the outer half-space, more of them the
+// steeper (cosine weighted); one that meets the surface, from either side, within `distance` is
+// dark. The directions are an even set, turned about the normal by a number that follows from the
+// place: neighbours differ by noise of about 0.4 / √rays, and every run gives the same. Model
+// space. Thread-safe.
+class Openness {
+ public:
+  // Refused (storage_full) where there is not the memory for the ray tracer's tree, some 100 bytes
+  // a triangle, and when cancelled.
+  static Result<std::unique_ptr<Openness>> make(std::shared_ptr<const Geometry> geometry,
+                                                float distance, int rays, Progress& progress);
+  virtual ~Openness() = default;
+  virtual float at(const glm::vec3& position, const glm::vec3& normal) const = 0;
+};
+
+}  // namespace strata::mesh

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "core/progress.h"
+#include "mesh/parallel.h"
+#include "mesh/surface/geometry.h"
+#include "mesh/surface/surface_normals.h"
+
+namespace strata::mesh {
+
+// A value at a point of a surface, from its place and normal in model space; NaN: none. Called on
+// several threads at once.
+using PointFunction = std::function<float(const glm::vec3& position, const glm::vec3& normal)>;
+
+// A function of points, worked out at the vertices of a mesh and interpolated between them.
+// Triangles with an edge longer than `spacing` get a grid of points of their own, so that a coarse
+// mesh loses nothing. Immutable once made; thread-safe.
+class SampledField {
+ public:
+  // Refused when cancelled. `spacing` > 0; it is widened where the grids would have more than four
+  // million points.
+  static Result<SampledField> make(std::shared_ptr<const Geometry> geometry,
+                                   const SurfaceNormals& normals, float spacing,
+                                   const PointFunction& function, Progress& progress,
+                                   int threads = background_threads());
+
+  // Corners without a value are left out of the mean; NaN where none has one.
+  float at(std::uint32_t triangle, const glm::vec3& weights) const;
+
+ private:
+  struct Grid {
+    std::uint32_t first;  // into grid_values_
+    int cuts;             // (cuts + 1)(cuts + 2)/2 points: rows of constant second weight
+  };
+  static int index_in_grid(int cuts, int i, int j) { return i * (2 * (cuts + 1) - i + 1) / 2 + j; }
+  float grid_at(const Grid& grid, const glm::vec3& weights) const;
+
+  std::shared_ptr<const Geometry> geometry_;
+  std::vector<float> vertex_values_;               // of welded positions
+  std::unordered_map<std::uint32_t, Grid> grids_;  // by triangle
+  std::vector<float> grid_values_;
+};
+
+}  // namespace strata::mesh

@@ -1,0 +1,234 @@
+#include "mesh/analysis/surface_samples.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <utility>
+
+#include "mesh/buckets.h"
+#include "mesh/longest_axis.h"
+
+namespace strata::mesh {
+namespace {
+
+constexpr int kCellsPerRadius = 5;
+constexpr double kMostPieces = 2e7;
+// Cells of a group have 20 bits an axis.
+constexpr double kMostCells = 1 << 20;
+constexpr int kMostBands = 64;
+// Triangles of more cuts are asked which of their pieces may lie in a band before these are made.
+constexpr int kManyCuts = 8;
+constexpr const char* kSampling = "Sampling the surface";
+
+struct Piece {
+  std::uint64_t group;  // fine cell and the way it faces
+  glm::vec3 position, normal;
+  float area;
+};
+
+// Which of the six axis directions a normal is nearest to.
+std::uint64_t facing(const glm::vec3& n) {
+  const glm::vec3 size = glm::abs(n);
+  const int axis = longest_axis(size);
+  return std::uint64_t{2} * static_cast<std::uint64_t>(axis) + (n[axis] < 0 ? 1u : 0u);
+}
+
+}  // namespace
+
+// The pieces are made, grouped and forgotten in bands across the model's longest axis, always the
+// same ones.
+class SampleBands {
+ public:
+  SampleBands(const Geometry& geometry, SurfaceSamples& samples)
+      : geometry_(geometry), samples_(samples), cell_(samples.radius_ / kCellsPerRadius) {
+    const glm::vec3 extent = geometry.box_max - geometry.box_min;
+    axis_ = longest_axis(extent);
+    cells_ = static_cast<int>(
+        std::min(std::floor(extent[axis_] / cell_) + 1.0f, static_cast<float>(kMostCells)));
+    bands_.resize(std::min(kMostBands, cells_));
+    triangles_of_band_ = triangles_by_band();
+  }
+
+  int count() const { return static_cast<int>(bands_.size()); }
+
+  // Threads may work on several bands at once.
+  void sample(int which) {
+    Band& band = bands_[which];
+    const int first_cell = first_cell_of(which), end_cell = first_cell_of(which + 1);
+    std::vector<Piece> pieces;
+    const auto triangles = triangles_of_band_[which];
+    pieces.reserve(2 * triangles.size());
+    for (const std::uint32_t t : triangles) cut(t, first_cell, end_cell, pieces);
+    std::stable_sort(pieces.begin(), pieces.end(),
+                     [](const Piece& p, const Piece& q) { return p.group < q.group; });
+
+    struct Keyed {
+      std::uint64_t cell;
+      SurfaceSamples::Sample sample;
+    };
+    std::vector<Keyed> keyed;
+    for (std::size_t i = 0; i < pieces.size();) {
+      glm::dvec3 position(0), normal(0);
+      double area = 0;
+      const auto group = pieces[i].group;
+      for (; i < pieces.size() && pieces[i].group == group; ++i) {
+        area += pieces[i].area;
+        position += double{pieces[i].area} * glm::dvec3(pieces[i].position);
+        normal += double{pieces[i].area} * glm::dvec3(pieces[i].normal);
+      }
+      const SurfaceSamples::Sample sample{
+          glm::vec3(position / area), glm::vec3(glm::normalize(normal)), static_cast<float>(area)};
+      keyed.push_back({SurfaceSamples::key_of(samples_.cell_of(sample.position)), sample});
+    }
+    pieces = {};
+    std::stable_sort(keyed.begin(), keyed.end(),
+                     [](const Keyed& p, const Keyed& q) { return p.cell < q.cell; });
+    band.samples.reserve(keyed.size());
+    for (const Keyed& k : keyed) {
+      if (band.runs.empty() || band.runs.back().cell != k.cell) band.runs.push_back({k.cell, 0});
+      ++band.runs.back().count;
+      band.samples.push_back(k.sample);
+    }
+  }
+
+  // Brings together what bands hold of the same cell. After all of them.
+  void gather() {
+    auto& cells = samples_.cells_;
+    std::uint32_t total = 0;
+    for (const Band& band : bands_)
+      for (const Run& run : band.runs) cells[run.cell].count += run.count;
+    for (const Band& band : bands_)
+      for (const Run& run : band.runs)
+        if (auto& range = cells[run.cell]; range.first == SurfaceSamples::kUnplaced) {
+          range.first = total;
+          total += range.count;
+          range.count = 0;
+        }
+    samples_.samples_.resize(total);
+    for (Band& band : bands_) {
+      auto from = band.samples.begin();
+      for (const Run& run : band.runs) {
+        auto& range = cells[run.cell];
+        std::copy_n(from, run.count, samples_.samples_.begin() + range.first + range.count);
+        range.count += run.count;
+        from += run.count;
+      }
+      band = {};
+    }
+  }
+
+ private:
+  struct Run {  // of samples of one cell
+    std::uint64_t cell;
+    std::uint32_t count;
+  };
+  struct Band {
+    std::vector<SurfaceSamples::Sample> samples;
+    std::vector<Run> runs;
+  };
+
+  int first_cell_of(int band) const {
+    return static_cast<int>(static_cast<std::int64_t>(cells_) * band / count());
+  }
+  // Of places beside the box, too.
+  int band_of(int cell) const {
+    const auto inside = static_cast<std::int64_t>(std::clamp(cell, 0, cells_ - 1));
+    return static_cast<int>(((inside + 1) * count() - 1) / cells_);
+  }
+  glm::vec3 corner(std::uint32_t triangle, int k) const {
+    return geometry_.vertices[geometry_.indices[3 * std::size_t{triangle} + k]].position;
+  }
+
+  Buckets triangles_by_band() const {
+    return {count(), static_cast<std::uint32_t>(geometry_.triangle_count()), [&](std::uint32_t t) {
+              const float a = corner(t, 0)[axis_], b = corner(t, 1)[axis_], c = corner(t, 2)[axis_];
+              // A cell wider, for what rounding moves.
+              const auto cell_at = [&](float at) {
+                return static_cast<int>(std::floor((at - samples_.low_[axis_]) / cell_));
+              };
+              return std::pair{band_of(cell_at(std::min({a, b, c})) - 1),
+                               band_of(cell_at(std::max({a, b, c})) + 1)};
+            }};
+  }
+
+  // Appends the pieces of a triangle that lie in cells [first, end) along the axis.
+  void cut(std::uint32_t triangle, int first, int end, std::vector<Piece>& pieces) const {
+    const glm::vec3 a = corner(triangle, 0), ab = corner(triangle, 1) - a,
+                    ac = corner(triangle, 2) - a;
+    const glm::vec3 cross = glm::cross(ab, ac);
+    const float length = glm::length(cross);
+    if (!(length > 0)) return;
+    const glm::vec3 normal = cross / length;
+    const float longest =
+        std::sqrt(std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(ac - ab, ac - ab)}));
+    const int cuts = std::max(1, static_cast<int>(std::ceil(longest / cell_)));
+    const float area = length / 2 / static_cast<float>(cuts * cuts);
+    const auto add = [&](float i, float j) {
+      const glm::vec3 position = a + (i * ab + j * ac) / static_cast<float>(cuts);
+      const glm::ivec3 fine(glm::floor((position - samples_.low_) / cell_));
+      const int along = std::clamp(fine[axis_], 0, cells_ - 1);
+      if (along < first || along >= end) return;
+      const std::uint64_t group = (std::uint64_t(std::uint32_t(fine.x) & 0xfffff) << 3) |
+                                  (std::uint64_t(std::uint32_t(fine.y) & 0xfffff) << 23) |
+                                  (std::uint64_t(std::uint32_t(fine.z) & 0xfffff) << 43) |
+                                  facing(normal);
+      pieces.push_back({group, position, normal, area});
+    };
+    for (int i = 0; i < cuts; ++i) {
+      int j_begin = 0, j_end = cuts - i;
+      if (cuts > kManyCuts) {
+        // Where the row enters and leaves the band, a cell and a piece wider.
+        const double at = (a[axis_] + double{ab[axis_]} * i / cuts - samples_.low_[axis_]) / cell_;
+        const double step = double{ac[axis_]} / cuts / cell_;
+        const double low = (first - 2 - at) / step, high = (end + 2 - at) / step;
+        if (!std::isnan(low) && !std::isnan(high)) {
+          // infinite for a row along the band: in it or not
+          j_begin = static_cast<int>(std::clamp(std::min(low, high) - 1, 0.0, double(j_end)));
+          j_end = static_cast<int>(std::clamp(std::max(low, high) + 2, 0.0, double(j_end)));
+        }
+      }
+      for (int j = j_begin; j < j_end; ++j) {
+        add(static_cast<float>(i) + 1.0f / 3, static_cast<float>(j) + 1.0f / 3);
+        if (i + j + 1 < cuts)
+          add(static_cast<float>(i) + 2.0f / 3, static_cast<float>(j) + 2.0f / 3);
+      }
+    }
+  }
+
+  const Geometry& geometry_;
+  SurfaceSamples& samples_;
+  const float cell_;
+  int axis_ = 0, cells_ = 1;
+  std::vector<Band> bands_;
+  Buckets triangles_of_band_;
+};
+
+double SurfaceSamples::least_radius(double area, const glm::dvec3& extent) {
+  const double by_pieces = kCellsPerRadius * std::sqrt(2 * area / kMostPieces);
+  const double by_cells = kCellsPerRadius * std::max({extent.x, extent.y, extent.z}) / kMostCells;
+  return std::max(by_pieces, by_cells);
+}
+
+Result<SurfaceSamples> SurfaceSamples::make(const Geometry& geometry, float radius,
+                                            Progress& progress, int threads) {
+  progress.report(0, kSampling);
+  SurfaceSamples samples(geometry.box_min, radius);
+  SampleBands bands(geometry, samples);
+  std::atomic<int> done{0};
+  parallel_for(threads, bands.count(), [&](int band) {
+    if (progress.cancelled()) return;
+    bands.sample(band);
+    progress.report(static_cast<double>(++done) / bands.count(), kSampling);
+  });
+  if (progress.cancelled()) return cancelled_problem();
+  bands.gather();
+  return samples;
+}
+
+std::span<const SurfaceSamples::Sample> SurfaceSamples::in_cell(const glm::ivec3& cell) const {
+  const auto found = cells_.find(key_of(cell));
+  if (found == cells_.end()) return {};
+  return {samples_.data() + found->second.first, found->second.count};
+}
+
+}  // namespace strata::mesh

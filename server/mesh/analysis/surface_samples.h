@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "core/progress.h"
+#include "mesh/parallel.h"
+#include "mesh/surface/geometry.h"
+
+namespace strata::mesh {
+
+// A surface as points that each stand for a piece of it, about evenly spaced whatever the triangles
+// are like: all triangle pieces within a cell of radius / 5 that face the same way are one sample.
+// So a neighbourhood has some 80 samples in a scan of any density, noise finer than the cells is
+// averaged, and the two faces of a thin wall stay apart. Model space. Immutable once made;
+// thread-safe.
+class SurfaceSamples {
+ public:
+  struct Sample {
+    glm::vec3 position, normal;  // mean, weighted by area
+    float area;
+  };
+
+  // The smallest radius that can be had of a mesh of that area (unit²) and box: below it there
+  // would be tens of millions of samples.
+  static double least_radius(double area, const glm::dvec3& extent);
+
+  // radius ≥ least_radius. Refused when cancelled. The result does not depend on the number of
+  // threads; beside it some 60 bytes a piece of the bands that are worked on are needed, and 4 a
+  // triangle.
+  static Result<SurfaceSamples> make(const Geometry& geometry, float radius, Progress& progress,
+                                     int threads = background_threads());
+
+  float radius() const { return radius_; }
+  std::size_t size() const { return samples_.size(); }
+
+  // visit(sample, squared distance) for each sample within the radius of `point` that faces within
+  // 80° of `normal`.
+  template <class Visit>
+  void near(const glm::vec3& point, const glm::vec3& normal, Visit&& visit) const {
+    constexpr float kLeastCos = 0.17f;
+    const glm::ivec3 low = cell_of(point - radius_), high = cell_of(point + radius_);
+    for (int z = low.z; z <= high.z; ++z)
+      for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x)
+          for (const Sample& sample : in_cell({x, y, z})) {
+            const glm::vec3 offset = sample.position - point;
+            const float squared = glm::dot(offset, offset);
+            if (squared <= radius_ * radius_ && glm::dot(sample.normal, normal) >= kLeastCos)
+              visit(sample, squared);
+          }
+  }
+
+ private:
+  friend class SampleBands;
+  SurfaceSamples(const glm::vec3& low, float radius) : radius_(radius), low_(low) {}
+
+  glm::ivec3 cell_of(const glm::vec3& point) const {
+    return glm::ivec3(glm::floor((point - low_) / radius_)) + 1;
+  }
+  static std::uint64_t key_of(const glm::ivec3& cell) {
+    return std::uint64_t(std::uint32_t(cell.x) & 0x1fffff) |
+           std::uint64_t(std::uint32_t(cell.y) & 0x1fffff) << 21 |
+           std::uint64_t(std::uint32_t(cell.z) & 0x1fffff) << 42;
+  }
+  std::span<const Sample> in_cell(const glm::ivec3& cell) const;
+
+  float radius_;
+  glm::vec3 low_;
+  std::vector<Sample> samples_;  // those of a cell of the radius's size together
+  static constexpr std::uint32_t kUnplaced = 0xffffffffu;
+  struct Range {
+    std::uint32_t first = kUnplaced, count = 0;
+  };
+  std::unordered_map<std::uint64_t, Range> cells_;
+};
+
+}  // namespace strata::mesh

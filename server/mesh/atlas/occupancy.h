@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "mesh/texels/texel_raster.h"
+
+namespace strata::mesh {
+
+// The texels that the faces of one growing chart cover, so that no two faces of it share a texel.
+// Chart coordinates are texels relative to the centre of a square window of `side` texels; faces
+// that leave the window are refused.
+class Occupancy {
+ public:
+  explicit Occupancy(int side) : side_(side), stamps_(static_cast<std::size_t>(side) * side, 0) {}
+
+  enum class Overlap { refuse, allow };
+
+  // Forgets all texels, at no cost.
+  void clear() { ++stamp_; }
+
+  // Whether no texel whose centre the triangle covers is taken, and it lies in the window.
+  bool is_free(glm::vec2 a, glm::vec2 b, glm::vec2 c);
+
+  // Takes the texels whose centres the triangle covers; with Overlap::refuse only if all of them
+  // are free.
+  bool claim(glm::vec2 a, glm::vec2 b, glm::vec2 c, Overlap overlap = Overlap::refuse);
+
+ private:
+  struct Span {
+    std::uint32_t begin, end;  // of stamps_
+  };
+  bool holds(glm::vec2 a, glm::vec2 b, glm::vec2 c) const;
+  bool find_spans(glm::vec2 a, glm::vec2 b, glm::vec2 c, Overlap overlap);
+
+  const int side_;
+  std::uint32_t stamp_ = 1;
+  std::vector<std::uint32_t> stamps_;
+  std::vector<Span> spans_;  // of the triangle that is looked at
+};
+
+}  // namespace strata::mesh

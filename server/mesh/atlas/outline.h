@@ -1,0 +1,34 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "mesh/atlas/charts.h"
+
+namespace strata::mesh {
+
+// The rim of a chart in its plane, turned so that its bounding box has the least area, squeezed
+// where it was too long, lower left corner at 0.
+struct Outline {
+  std::vector<glm::vec2> segments;  // two points each, the chart on the left, any order
+  glm::vec2 size{0};                // of the box, in units of the plane
+  float cosine = 1, sine = 0;       // of the turn
+  glm::vec2 scale{1};               // after the turn
+  glm::vec2 low{0};                 // the box's corner, after the turn and the scale
+
+  glm::vec2 from_chart(glm::vec2 p) const {
+    return glm::vec2(cosine * p.x - sine * p.y, sine * p.x + cosine * p.y) * scale - low;
+  }
+
+  // Makes it narrower or lower by these factors.
+  void squeeze(glm::vec2 factors);
+};
+
+// `plane`: of every corner of the mesh, as `flatten` gives it.
+// with all edges of its faces
+Outline make_outline_of(const Chart& chart, std::span<const glm::vec2> plane);
+std::vector<Outline> make_outlines(const ChartSurface& surface, std::span<const Chart> charts,
+                                   std::span<const glm::vec2> plane);
+
+}  // namespace strata::mesh

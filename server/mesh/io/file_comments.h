@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "domain/scene/model.h"
+#include "mesh/io/input_files.h"
+
+namespace strata::mesh {
+
+// What the writer of a mesh file says in words: the `comment` and `obj_info` lines of a PLY, the
+// `#` lines at the beginning of an OBJ, the header of a binary STL or the first line of an ASCII
+// one. At most kMostComments, cut to kLongestComment bytes, as UTF-8. glTF has none.
+constexpr std::size_t kMostComments = 200, kLongestComment = 500;
+std::vector<std::string> file_comments(const InputFiles& files);
+
+// A unit or an up direction that a comment states, and the comment.
+template <class Value>
+struct Stated {
+  Value value;
+  std::string comment;
+};
+
+// "unit: mm", "units millimetres", "File units = meters" (Alias, SketchUp), "obj_info units
+// millimeter", "UNITS=mm" (headers of STL). The first comment that names a unit decides; where that
+// is another one than ours (inches), nothing is stated.
+std::optional<Stated<Unit>> stated_unit(std::span<const std::string> comments);
+
+// "up axis: Z", "Y-up", "y_down": of kUpDirections.
+std::optional<Stated<std::string>> stated_up(std::span<const std::string> comments);
+
+}  // namespace strata::mesh

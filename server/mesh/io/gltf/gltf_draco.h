@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mesh/io/gltf/gltf_document.h"
+
+namespace strata::mesh {
+
+// A primitive of KHR_draco_mesh_compression: its triangles and the attributes asked for, by their
+// glTF names.
+struct DracoPrimitive {
+  std::uint64_t points = 0;
+  std::vector<std::uint32_t> indices;
+  std::map<std::string, GltfDocument::Values> attributes;
+};
+
+struct DracoRequest {
+  std::uint32_t id = 0;  // of the attribute in the stream
+  // Of the attribute's accessor, which says what the numbers of the stream mean: encoders set the
+  // stream's own flag as they like. Nothing: there is no accessor, and the stream decides.
+  std::optional<GltfDocument::Form> form;
+  bool normalize = false;  // whatever the accessor says
+};
+
+// Refused as by `refuse_file` where the stream is damaged, makes more than `most_triangles`, or
+// lacks an attribute.
+Result<DracoPrimitive> decode_draco(std::span<const std::uint8_t> bytes,
+                                    const std::map<std::string, DracoRequest>& requests,
+                                    std::uint64_t most_triangles);
+
+}  // namespace strata::mesh

@@ -1,0 +1,159 @@
+#include "mesh/io/input_files.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/text/utf8.h"
+#include "mesh/io/load_formats.h"
+#include "mesh/io/unpack.h"
+
+namespace strata::mesh {
+namespace {
+
+constexpr std::string_view kTaken =
+    "send PLY, OBJ, STL, glTF or GLB, alone, with its textures, or as a zip of them";
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return result;
+}
+
+std::string_view last_part(std::string_view path) {
+  const auto slash = path.find_last_of("/\\");
+  return slash == std::string_view::npos ? path : path.substr(slash + 1);
+}
+
+std::string ending(std::string_view filename) {
+  const std::string_view name = last_part(filename);
+  const auto dot = name.find_last_of('.');
+  return dot == std::string_view::npos || dot == 0 ? std::string() : lower(name.substr(dot));
+}
+
+// How many parts of two paths are the same, counted from their ends.
+int common_parts(std::string_view a, std::string_view b) {
+  int parts = 0;
+  while (!a.empty() && !b.empty()) {
+    const std::string_view x = last_part(a), y = last_part(b);
+    if (lower(x) != lower(y)) break;
+    ++parts;
+    a.remove_suffix(std::min(a.size(), x.size() + 1));
+    b.remove_suffix(std::min(b.size(), y.size() + 1));
+  }
+  return parts;
+}
+
+std::vector<std::string> names_of(std::span<const InputFiles::Entry> entries) {
+  std::vector<std::string> names;
+  for (const auto& entry : entries) names.push_back(entry.name);
+  return names;
+}
+
+// Uploads lie where there is room for them; a person's folder may be read-only.
+std::filesystem::path scratch_beside(const std::filesystem::path& file) {
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  return ::access(folder.c_str(), W_OK) == 0 ? folder : std::filesystem::temp_directory_path();
+}
+
+// With their folders: scans often have the same name in folders of their own.
+std::string listed(std::span<const std::string> filenames, std::span<const std::size_t> which) {
+  std::string list;
+  for (const std::size_t i : which.first(std::min<std::size_t>(which.size(), 5)))
+    list += (list.empty() ? "" : ", ") + mended_utf8(filenames[i]);
+  return which.size() > 5 ? list + ", …" : list;
+}
+
+}  // namespace
+
+InputKind input_kind(std::string_view filename) {
+  static constexpr std::pair<std::string_view, InputKind> kKinds[] = {
+      {".ply", InputKind::ply},   {".obj", InputKind::obj}, {".stl", InputKind::stl},
+      {".gltf", InputKind::gltf}, {".glb", InputKind::glb}, {".zip", InputKind::zip}};
+  const std::string end = ending(filename);
+  for (const auto& [name, kind] : kKinds)
+    if (name == end) return kind;
+  return InputKind::companion;
+}
+
+bool is_mesh(InputKind kind) { return kind != InputKind::companion && kind != InputKind::zip; }
+
+Result<std::size_t> pick_scan(std::span<const std::string> filenames) {
+  std::vector<std::size_t> meshes, archives;
+  for (std::size_t i = 0; i < filenames.size(); ++i) {
+    const InputKind kind = input_kind(filenames[i]);
+    if (is_mesh(kind)) meshes.push_back(i);
+    if (kind == InputKind::zip) archives.push_back(i);
+  }
+  const auto& scans = meshes.empty() ? archives : meshes;
+  if (scans.size() == 1) return scans.front();
+  if (scans.size() > 1)
+    return fail(ErrorCode::invalid, "More than one scan",
+                "One import makes one model, but several meshes were sent: " +
+                    listed(filenames, scans) + ". Import them one by one.",
+                "filename");
+  if (filenames.empty())
+    return fail(ErrorCode::invalid, "No file",
+                "There is no file to import; " + std::string(kTaken) + ".", "file");
+  if (filenames.size() == 1 && ending(filenames[0]).empty())
+    return fail(ErrorCode::invalid, "File name missing",
+                "Give the file's name, such as NAME.ply or NAME.obj: its ending names the format.",
+                "filename");
+  if (filenames.size() == 1)
+    return fail(ErrorCode::unsupported, "Format not taken",
+                "'" + ending(filenames[0]) + "' files are not taken; " + std::string(kTaken) + ".",
+                "filename");
+  return fail(ErrorCode::unsupported, "No mesh among the files",
+              "None of the " + std::to_string(filenames.size()) + " files is a mesh; " +
+                  std::string(kTaken) + ".",
+              "filename");
+}
+
+Result<InputFiles> InputFiles::open(std::span<const InputFile> files, Progress& progress) {
+  std::vector<Entry> entries;
+  entries.reserve(files.size());
+  for (const InputFile& file : files) {
+    auto mapped = MappedFile::open(file.path);
+    if (!mapped) return refuse_file(mapped.error().detail);
+    const auto bytes = mapped->bytes();
+    entries.push_back({file.filename, bytes, std::move(*mapped)});
+  }
+  return of(std::move(entries),
+            files.empty() ? std::filesystem::path() : scratch_beside(files[0].path), progress);
+}
+
+Result<InputFiles> InputFiles::of(std::vector<Entry> entries, const std::filesystem::path& scratch,
+                                  Progress& progress) {
+  auto scan = pick_scan(names_of(entries));
+  if (!scan) return tl::unexpected(scan.error());
+  if (input_kind(entries[*scan].name) == InputKind::zip) {
+    if (entries[*scan].bytes.empty()) return refuse_file("The file is empty.");
+    auto unpacked = STRATA_TRY(unpack_archive(entries[*scan].bytes, scratch, progress));
+    entries = std::move(unpacked);
+    scan = pick_scan(names_of(entries));
+    if (!scan) return refuse_file("In the zip: " + scan.error().detail);
+    if (input_kind(entries[*scan].name) == InputKind::zip)
+      return refuse_file("The zip holds another zip and no mesh. Unpack the outer one.");
+  }
+  InputFiles files;
+  files.entries_ = std::move(entries);
+  files.scan_ = *scan;
+  return files;
+}
+
+const InputFiles::Entry* InputFiles::find(std::string_view reference) const {
+  const Entry* best = nullptr;
+  int most = 0;
+  // A file may call another one in an encoding in which its name did not come through.
+  const std::string wanted = mended_utf8(reference);
+  for (const Entry& entry : entries_) {
+    const int common = common_parts(mended_utf8(entry.name), wanted);
+    if (common <= most) continue;
+    most = common;
+    best = &entry;
+  }
+  return best;
+}
+
+}  // namespace strata::mesh

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "mesh/io/text_number.h"
+
+namespace strata::mesh {
+
+// The logical lines of an OBJ, which end at LF, CRLF or CR: a line that ends with a backslash goes
+// on in the next. Comments are not cut off here.
+class ObjLines {
+ public:
+  explicit ObjLines(std::span<const std::uint8_t> bytes)
+      : at_(reinterpret_cast<const char*>(bytes.data())), begin_(at_), end_(at_ + bytes.size()) {}
+
+  // `line` is valid until the next call.
+  bool next(std::string_view& line) {
+    if (at_ == end_) return false;
+    line_number_ += lines_of_last_;
+    lines_of_last_ = 1;
+    line = physical_line();
+    if (!continues(line)) return true;
+    joined_.clear();
+    while (continues(line)) {
+      joined_.append(line.data(), line.find_last_of('\\'));
+      joined_ += ' ';
+      if (at_ == end_) {
+        line = {};
+        break;
+      }
+      line = physical_line();
+      ++lines_of_last_;
+    }
+    joined_.append(line);
+    line = joined_;
+    return true;
+  }
+
+  std::uint64_t line_number() const { return line_number_; }  // of the first physical line, from 1
+  double fraction() const {
+    return begin_ == end_ ? 1.0
+                          : static_cast<double>(at_ - begin_) / static_cast<double>(end_ - begin_);
+  }
+
+ private:
+  // Lines end at LF, CRLF, or CR alone. The next LF is kept: a file of CRs has none, and is not
+  // searched for it at each line.
+  std::string_view physical_line() {
+    const char* start = at_;
+    if (start >= newline_) {
+      const void* found = start == end_
+                              ? nullptr
+                              : std::memchr(start, '\n', static_cast<std::size_t>(end_ - start));
+      newline_ = found ? static_cast<const char*>(found) : end_;
+    }
+    const void* found = start == newline_
+                            ? nullptr
+                            : std::memchr(start, '\r', static_cast<std::size_t>(newline_ - start));
+    const char* stop = found ? static_cast<const char*>(found) : newline_;
+    at_ = stop == end_ ? end_ : stop + 1;
+    if (found && at_ == newline_ && at_ != end_) ++at_;  // CRLF
+    return {start, static_cast<std::size_t>(stop - start)};
+  }
+  static bool continues(std::string_view line) { return !line.empty() && line.back() == '\\'; }
+
+  const char* at_;
+  const char* begin_;
+  const char* end_;
+  // the LF that comes next, or end_; looked for once at_ has reached it
+  const char* newline_ = begin_;
+  std::uint64_t line_number_ = 1;
+  std::uint64_t lines_of_last_ = 0;
+  std::string joined_;
+};
+
+// Takes the next word off the front of `line`; empty at its end or at a comment.
+inline std::string_view next_word(std::string_view& line) {
+  std::size_t start = 0;
+  while (start < line.size() && is_blank(line[start])) ++start;
+  std::size_t end = start;
+  while (end < line.size() && !is_blank(line[end])) ++end;
+  std::string_view word = line.substr(start, end - start);
+  line.remove_prefix(end);
+  if (!word.empty() && word.front() == '#') {
+    line = {};
+    word = {};
+  }
+  return word;
+}
+
+}  // namespace strata::mesh

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/progress.h"
+#include "mesh/surface/geometry.h"
+
+namespace strata::mesh {
+
+// Numbers that scanning programs keep with the vertices of a PLY: quality, confidence, intensity, a
+// curvature of theirs.
+
+// Names of the scalar properties of the element "vertex" that are neither place, normal, colour nor
+// texture coordinate, from the beginning of the file (the header is enough). Empty for what is no
+// PLY.
+std::vector<std::string> vertex_property_names(std::span<const std::uint8_t> beginning);
+
+// One property with the places it belongs to, in the file's order. Refused (invalid) for what is no
+// PLY, has no such property, or ends too early.
+struct VertexProperty {
+  std::vector<glm::dvec3> positions;
+  std::vector<double> values;
+};
+Result<VertexProperty> read_vertex_property(std::span<const std::uint8_t> file,
+                                            const std::string& property);
+
+// One number for each vertex of a PLY or OBJ, in its order, from a CSV of one column: a first line
+// that is no number is a heading, an empty line (or nan) a vertex without a value. `filename` names
+// the scan's format. Refused (invalid) with the line that is wrong, where the counts differ, and
+// for other formats.
+Result<VertexProperty> read_vertex_csv(std::span<const std::uint8_t> scan,
+                                       const std::string& filename, std::string_view csv,
+                                       Progress& progress);
+
+// The values of a geometry's welded positions: of what the file has at exactly that place the mean,
+// or the first where `is_key` (keys have no mean); NaN where it has none.
+std::vector<double> values_at_positions(const Geometry& geometry, const VertexProperty& property,
+                                        bool is_key);
+
+// The value at a place of a triangle: between its corners, or that of the nearest corner where
+// `is_key`. Corners without one are left out; NaN where none has one.
+double value_in_triangle(const Geometry& geometry, const std::vector<double>& of_positions,
+                         std::uint32_t triangle, const glm::vec3& weights, bool is_key);
+
+}  // namespace strata::mesh

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "mesh/surface/triangle_mesh.h"
+
+namespace strata::mesh {
+
+// Why the texture coordinates of a triangle cannot carry a layer.
+enum class UvFault : std::uint8_t { none, not_finite, outside, no_area, overlap };
+constexpr int kUvFaults = 5;
+std::string_view words_of(UvFault fault);  // "lie outside the unit square"
+
+struct UvFaults {
+  std::vector<UvFault> of_triangle;
+  std::vector<std::uint64_t> count = std::vector<std::uint64_t>(kUvFaults);
+  double area = 0;  // of the surface of those that have one, unit²
+
+  void set(std::size_t triangle, UvFault fault, double surface_area);
+};
+
+// What can be seen of each triangle alone. `corner_uvs` are the mesh's; triangles without surface
+// have no fault.
+UvFaults find_single_faults(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs);
+
+// Adds triangles that share texels with others at `resolution`, until no two of the rest do: those
+// with the most shared texels first, so that one that lies over many others is found, and of two
+// alike the later one. Every coordinate of triangles without a fault lies in [0,1]².
+void find_overlaps(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs, int resolution,
+                   UvFaults& faults);
+
+}  // namespace strata::mesh

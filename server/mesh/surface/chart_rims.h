@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mesh/surface/geometry.h"
+
+namespace strata::mesh {
+
+// The rims of a chart of a model's atlas: closed rings of vertices, each once, in the direction of
+// the triangles. What they enclose is the chart.
+struct ChartRims {
+  std::vector<std::vector<std::uint32_t>> rings;
+};
+
+// Of every chart, in no particular order. Some 12 bytes a triangle's edge while it runs.
+std::vector<ChartRims> find_chart_rims(const Geometry& geometry);
+
+}  // namespace strata::mesh

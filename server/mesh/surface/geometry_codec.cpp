@@ -1,0 +1,204 @@
+#include <zstd.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+#include "mesh/surface/geometry.h"
+
+// Stored form, little-endian:
+//   "SGEO" · version u8 · zstd frame (with content size and checksum) of
+//   u64 positions, vertices, indices · f64 origin[3] · planes(positions x, y, z as u64) ·
+//   planes(vertex normal, uv.x, uv.y, color, position index as u32) · planes(index codes as u32)
+// "planes" is a column of integers, each replaced by its zigzag difference to the one before,
+// stored byte plane by byte plane: neighbours in the order along the curve differ little, so the
+// high planes are nearly all zero. Vertex positions and the box follow from the rest and are not
+// stored.
+
+namespace strata::mesh {
+namespace {
+
+constexpr char kMagic[4] = {'S', 'G', 'E', 'O'};
+constexpr std::uint8_t kVersion = 1;
+constexpr int kLevel = 1;
+constexpr std::size_t kHeaderBytes = 3 * 8 + 3 * 8;
+constexpr std::size_t kPositionBytes = 3 * 8, kVertexBytes = 5 * 4, kIndexBytes = 4;
+
+tl::unexpected<Error> damaged(const std::string& what) {
+  return fail(ErrorCode::internal, "Stored geometry is damaged",
+              "The stored geometry cannot be read: " + what +
+                  ". Restore it from a backup or import the model again.");
+}
+
+template <class Bits>
+Bits zigzag(Bits difference) {
+  return static_cast<Bits>((difference << 1) ^ (Bits{0} - (difference >> (8 * sizeof(Bits) - 1))));
+}
+template <class Bits>
+Bits unzigzag(Bits code) {
+  return static_cast<Bits>((code >> 1) ^ (Bits{0} - (code & 1)));
+}
+
+// Writes `count` values of `value(i)` as planes at `out` and moves it behind them.
+template <class Bits, class Value>
+void write_planes(std::uint8_t*& out, std::size_t count, Value value) {
+  Bits before = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Bits now = value(i);
+    const Bits code = zigzag<Bits>(now - before);
+    before = now;
+    for (std::size_t plane = 0; plane < sizeof(Bits); ++plane) {
+      out[plane * count + i] = static_cast<std::uint8_t>(code >> (8 * plane));
+    }
+  }
+  out += sizeof(Bits) * count;
+}
+
+template <class Bits, class Take>
+void read_planes(const std::uint8_t*& in, std::size_t count, Take take) {
+  Bits value = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    Bits code = 0;
+    for (std::size_t plane = 0; plane < sizeof(Bits); ++plane)
+      code |= static_cast<Bits>(Bits{in[plane * count + i]} << (8 * plane));
+    value = static_cast<Bits>(value + unzigzag(code));
+    take(i, value);
+  }
+  in += sizeof(Bits) * count;
+}
+
+std::vector<std::uint8_t> serialize(const Geometry& geometry) {
+  const std::size_t positions = geometry.positions.size(), vertices = geometry.vertices.size(),
+                    indices = geometry.indices.size();
+  std::vector<std::uint8_t> bytes(kHeaderBytes + positions * kPositionBytes +
+                                  vertices * kVertexBytes + indices * kIndexBytes);
+  std::uint8_t* out = bytes.data();
+  const std::uint64_t counts[3] = {positions, vertices, indices};
+  std::memcpy(out, counts, sizeof counts);
+  const double origin[3] = {geometry.origin.x, geometry.origin.y, geometry.origin.z};
+  std::memcpy(out + sizeof counts, origin, sizeof origin);
+  out += kHeaderBytes;
+  for (int axis = 0; axis < 3; ++axis) {
+    write_planes<std::uint64_t>(out, positions, [&](std::size_t i) {
+      return std::bit_cast<std::uint64_t>(geometry.positions[i][axis]);
+    });
+  }
+  const std::vector<Vertex>& v = geometry.vertices;
+  write_planes<std::uint32_t>(out, vertices, [&](std::size_t i) { return v[i].normal; });
+  write_planes<std::uint32_t>(
+      out, vertices, [&](std::size_t i) { return std::bit_cast<std::uint32_t>(v[i].uv.x); });
+  write_planes<std::uint32_t>(
+      out, vertices, [&](std::size_t i) { return std::bit_cast<std::uint32_t>(v[i].uv.y); });
+  write_planes<std::uint32_t>(out, vertices, [&](std::size_t i) { return v[i].color; });
+  write_planes<std::uint32_t>(out, vertices, [&](std::size_t i) { return v[i].position_index; });
+  write_planes<std::uint32_t>(out, indices, [&](std::size_t i) { return geometry.indices[i]; });
+  return bytes;
+}
+
+Result<Geometry> deserialize(const std::vector<std::uint8_t>& bytes) {
+  if (bytes.size() < kHeaderBytes) return damaged("it is cut short");
+  std::uint64_t counts[3];
+  std::memcpy(counts, bytes.data(), sizeof counts);
+  const std::uint64_t positions = counts[0], vertices = counts[1], indices = counts[2];
+  constexpr std::uint64_t kMost = 0xffffffffu;
+  if (positions > kMost || vertices > kMost || indices > kMost || indices % 3 != 0 ||
+      bytes.size() != kHeaderBytes + positions * kPositionBytes + vertices * kVertexBytes +
+                          indices * kIndexBytes) {
+    return damaged("its counts do not fit its size");
+  }
+  Geometry geometry;
+  double origin[3];
+  std::memcpy(origin, bytes.data() + sizeof counts, sizeof origin);
+  geometry.origin = {origin[0], origin[1], origin[2]};
+  bool finite = std::isfinite(origin[0]) && std::isfinite(origin[1]) && std::isfinite(origin[2]);
+  const std::uint8_t* in = bytes.data() + kHeaderBytes;
+  geometry.positions.resize(positions);
+  geometry.vertices.resize(vertices);
+  geometry.indices.resize(indices);
+  for (int axis = 0; axis < 3; ++axis) {
+    read_planes<std::uint64_t>(in, positions, [&](std::size_t i, std::uint64_t bits) {
+      const double value = std::bit_cast<double>(bits);
+      finite = finite && std::isfinite(value);
+      geometry.positions[i][axis] = value;
+    });
+  }
+  std::vector<Vertex>& v = geometry.vertices;
+  bool in_range = true;
+  read_planes<std::uint32_t>(in, vertices,
+                             [&](std::size_t i, std::uint32_t bits) { v[i].normal = bits; });
+  read_planes<std::uint32_t>(in, vertices, [&](std::size_t i, std::uint32_t bits) {
+    v[i].uv.x = std::bit_cast<float>(bits);
+  });
+  read_planes<std::uint32_t>(in, vertices, [&](std::size_t i, std::uint32_t bits) {
+    v[i].uv.y = std::bit_cast<float>(bits);
+  });
+  read_planes<std::uint32_t>(in, vertices,
+                             [&](std::size_t i, std::uint32_t bits) { v[i].color = bits; });
+  read_planes<std::uint32_t>(in, vertices, [&](std::size_t i, std::uint32_t bits) {
+    v[i].position_index = bits;
+    in_range = in_range && bits < positions;
+  });
+  read_planes<std::uint32_t>(in, indices, [&](std::size_t i, std::uint32_t bits) {
+    geometry.indices[i] = bits;
+    in_range = in_range && bits < vertices;
+  });
+  if (!in_range) return damaged("an index is out of range");
+  for (Vertex& vertex : v) {
+    vertex.position = glm::vec3(geometry.positions[vertex.position_index] - geometry.origin);
+    finite = finite && std::isfinite(vertex.position.x) && std::isfinite(vertex.position.y) &&
+             std::isfinite(vertex.position.z) && std::isfinite(vertex.uv.x) &&
+             std::isfinite(vertex.uv.y);
+  }
+  if (!finite) return damaged("a number in it is not finite");
+  find_boxes(geometry);
+  return geometry;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> encode_geometry(const Geometry& geometry) {
+  const std::vector<std::uint8_t> content = serialize(geometry);
+  const std::size_t prefix = sizeof kMagic + 1;
+  std::vector<std::uint8_t> result(prefix + ZSTD_compressBound(content.size()));
+  std::copy(std::begin(kMagic), std::end(kMagic), result.begin());
+  result[sizeof kMagic] = kVersion;
+  const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(),
+                                                                     &ZSTD_freeCCtx);
+  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kLevel);
+  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
+  const std::size_t size = ZSTD_compress2(context.get(), result.data() + prefix,
+                                          result.size() - prefix, content.data(), content.size());
+  if (ZSTD_isError(size)) throw std::bad_alloc();  // with a bound-sized target only memory can fail
+  result.resize(prefix + size);
+  result.shrink_to_fit();
+  return result;
+}
+
+Result<Geometry> decode_geometry(std::span<const std::uint8_t> bytes) {
+  const std::size_t prefix = sizeof kMagic + 1;
+  if (bytes.size() <= prefix || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0)
+    return damaged("it does not begin as one");
+  if (bytes[sizeof kMagic] != kVersion) {
+    return damaged("it has version " + std::to_string(bytes[sizeof kMagic]) +
+                   ", this server reads version 1");
+  }
+  const std::span<const std::uint8_t> frame = bytes.subspan(prefix);
+  const unsigned long long size = ZSTD_getFrameContentSize(frame.data(), frame.size());
+  // Geometry never shrinks a thousandfold; a size beyond that is damage, and nothing is allocated
+  // for it.
+  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN ||
+      size / 1000 > frame.size() + 65536) {
+    return damaged("its size is wrong");
+  }
+  if (ZSTD_findFrameCompressedSize(frame.data(), frame.size()) != frame.size())
+    return damaged("it is cut short or has bytes too many");
+  std::vector<std::uint8_t> content(size);
+  const std::size_t read =
+      ZSTD_decompress(content.data(), content.size(), frame.data(), frame.size());
+  if (ZSTD_isError(read) || read != size) return damaged("its checksum does not match");
+  return deserialize(content);
+}
+
+}  // namespace strata::mesh

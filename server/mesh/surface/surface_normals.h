@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <vector>
+
+#include "mesh/surface/geometry.h"
+
+namespace strata::mesh {
+
+// Normals of a mesh as a smooth surface: at each welded position the mean of the faces around it
+// weighted by their angle there (the pseudo-normal of Bærentzen and Aanæs, which also tells inside
+// from outside), interpolated over triangles. Where a triangle stands at more than 40° to that mean
+// the edge is a real one, and the triangle keeps its own normal there. Immutable; thread-safe.
+class SurfaceNormals {
+ public:
+  explicit SurfaceNormals(std::shared_ptr<const Geometry> geometry);
+
+  glm::vec3 at_position(std::uint32_t position_index) const { return of_position_[position_index]; }
+  glm::vec3 of_face(std::uint32_t triangle) const;  // 0 for a triangle without area
+  glm::vec3 at_corner(std::uint32_t triangle, int k) const;
+  glm::vec3 at(std::uint32_t triangle, const glm::vec3& weights) const;
+
+ private:
+  std::shared_ptr<const Geometry> geometry_;
+  std::vector<glm::vec3> of_position_;
+};
+
+}  // namespace strata::mesh

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "mesh/texels/surface_map.h"
+
+namespace strata::mesh {
+
+// Positions in a box as 21 + 21 + 22 bits; the largest value of each is left out, so that all ones
+// is no position.
+constexpr std::uint32_t kLargestPackedX = (1u << 21) - 2, kLargestPackedY = (1u << 21) - 2,
+                        kLargestPackedZ = (1u << 22) - 2;
+
+// The smallest power of two that takes `low`…`high` in `largest` steps and is no finer than floats
+// there.
+inline float packed_step(float low, float high, std::uint32_t largest) {
+  const double farthest = std::max(std::abs(double{low}), std::abs(double{high}));
+  int exponent = farthest > 0 ? std::ilogb(farthest) - 23 : -126;
+  // Two steps are kept free: the box begins on a whole step, and positions may be moved by less
+  // than one.
+  const double extent = double{high} - double{low};
+  if (extent > 0) exponent = std::max(exponent, std::ilogb(extent / (largest - 2.0)) + 1);
+  return static_cast<float>(std::ldexp(1.0, std::max(exponent, -126)));
+}
+
+inline SurfaceMap::PackedBox packed_box_of(glm::vec3 low, glm::vec3 high) {
+  SurfaceMap::PackedBox box;
+  constexpr std::uint32_t kLargest[] = {kLargestPackedX, kLargestPackedY, kLargestPackedZ};
+  for (int i = 0; i < 3; ++i) {
+    box.step[i] = packed_step(low[i], high[i], kLargest[i]);
+    box.min[i] =
+        static_cast<float>(std::floor(double{low[i]} / double{box.step[i]}) * double{box.step[i]});
+  }
+  return box;
+}
+
+// `position` lies in the box.
+inline std::uint64_t pack_position(glm::vec3 position, const SurfaceMap::PackedBox& box) {
+  const auto axis = [&](int i, std::uint32_t largest) {
+    const double steps = (double{position[i]} - double{box.min[i]}) / double{box.step[i]};
+    return static_cast<std::uint64_t>(
+        std::llround(std::clamp(steps, 0.0, static_cast<double>(largest))));
+  };
+  return axis(0, kLargestPackedX) | axis(1, kLargestPackedY) << 21 | axis(2, kLargestPackedZ) << 42;
+}
+
+inline glm::vec3 unpack_position(std::uint64_t packed, const SurfaceMap::PackedBox& box) {
+  const glm::vec3 steps(static_cast<float>(packed & 0x1fffff),
+                        static_cast<float>(packed >> 21 & 0x1fffff),
+                        static_cast<float>(packed >> 42));
+  return box.min + steps * box.step;
+}
+
+}  // namespace strata::mesh

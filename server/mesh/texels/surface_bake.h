@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <vector>
+
+#include "mesh/buckets.h"
+#include "mesh/surface/geometry.h"
+#include "mesh/surface/uv_islands.h"
+#include "mesh/texels/surface_map.h"
+#include "mesh/texels/texel_raster.h"
+
+namespace strata::mesh {
+
+// What is kept of each texel: its position and area, or its triangle and its place there.
+enum class BakeFor { map, owners };
+
+// The steps of a surface map's baking. Work is cut into horizontal bands of the atlas, always the
+// same ones, so that the result does not depend on which thread does which. Within a band triangles
+// come in ascending order. For owners the steps end with place_gutter, and the map's positions and
+// areas stay empty.
+class SurfaceBake {
+ public:
+  SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& map,
+              BakeFor purpose = BakeFor::map);
+
+  int band_count() const { return band_count_; }
+
+  void mark_surface(int band);     // which texels are surface, into masks of all blocks
+  void mark_gutter(int band);      // after mark_surface of all bands
+  void assign_slots(int threads);  // after mark_gutter of all bands
+  void place_surface(int band);    // owners and positions of surface texels
+  void place_gutter(int band);     // after place_surface of all bands
+  void box_slots(int band);        // after place_gutter of all bands
+  void share_grids();              // after box_slots of all bands
+  void credit_areas(int band);     // after place_surface of all bands
+  void credit_leftovers();         // after credit_areas of all bands
+  void pack_slots(int band);       // packed positions and bounds; after share_grids
+  void bound_tiles();              // after pack_slots of all bands
+  void plant_tree(int threads);    // after pack_slots of all bands
+
+  // What place_surface and place_gutter found, for those who paint by triangle: 64 a slot, of
+  // surface texels only. Weights are of the second corner and << 16 of the third, in 1/65535. To be
+  // asked for once, at the end.
+  std::vector<std::uint32_t> take_owners() { return std::move(owner_); }
+  std::vector<std::uint32_t> take_weights() { return std::move(weights_); }
+  struct Borrowed {
+    // a gutter texel that has the position of a surface texel; indices into the per-slot arrays
+    std::uint32_t gutter, owner;
+  };
+  const std::vector<Borrowed>& borrowed_in(int band) const { return borrowed_[band]; }
+
+ private:
+  static constexpr std::uint32_t kNobody = 0xffffffffu;
+
+  struct Claim {  // of a triangle that covers no texel centre on the texel that holds its centroid
+    std::uint32_t texel, triangle;
+  };
+  struct Leftover {  // area that lies on a texel which its own island does not own
+    std::uint32_t texel, triangle;
+    float area;
+  };
+
+  std::uint32_t vertex(std::uint32_t triangle, int k) const {
+    return geometry_.indices[3 * std::size_t{triangle} + k];
+  }
+  glm::dvec2 texels_at(std::uint32_t triangle, int k) const;
+  CoverageRaster raster_of(std::uint32_t triangle) const;
+  std::uint32_t centroid_texel(std::uint32_t triangle) const;  // y * resolution + x
+  int first_block_row(int band) const { return band * map_.blocks_per_side / band_count(); }
+  int first_row(int band) const { return first_block_row(band) * kBlockSize; }
+  Buckets triangles_by_band() const;
+  template <class Visit>
+  void for_each_slot(int band, Visit visit);
+
+  BlockTree::Part part_of(std::uint32_t slot) const;  // as if the block were one
+  std::uint64_t block_mask(const std::vector<std::uint64_t>& masks, int block_x, int block_y) const;
+  bool is_surface(int x, int y) const;
+  // into the per-slot arrays; the block must have a slot
+  std::size_t texel_index(int x, int y) const;
+  std::uint32_t owner(int x, int y) const;  // kNobody where no surface
+  bool nearest_surface(int x, int y, std::uint32_t island, glm::ivec2& found) const;
+  glm::ivec2 heir_of(const Leftover& leftover) const;
+
+  const Geometry& geometry_;
+  SurfaceMap& map_;
+  const int resolution_;
+  const BakeFor purpose_;
+  const int band_count_;
+  std::vector<SnappedPoint> snapped_;
+  std::vector<float> triangle_area_;
+  UvIslands islands_;
+  Buckets triangles_of_band_;
+  std::vector<std::uint64_t> surface_of_block_, gutter_of_block_;
+  std::vector<std::vector<Claim>> claims_;
+  std::vector<std::vector<Borrowed>> borrowed_;
+  std::vector<std::vector<Leftover>> leftovers_;
+  std::vector<std::uint64_t> overlaps_of_band_;
+  std::vector<std::uint32_t> owner_;    // 64 a slot
+  std::vector<std::uint32_t> weights_;  // 64 a slot, for owners only
+  // 64 a slot, until they are packed; undefined where nothing is owned
+  std::unique_ptr<glm::vec3[]> position_;
+  struct Box {
+    glm::vec3 low{INFINITY}, high{-INFINITY};
+  };
+  std::vector<Box> box_of_slot_;
+  std::vector<std::vector<BoundedPart>> parts_of_band_;
+};
+
+}  // namespace strata::mesh

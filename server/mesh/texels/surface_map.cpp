@@ -1,0 +1,35 @@
+#include "mesh/texels/surface_map.h"
+
+#include "mesh/texels/packed_position.h"
+#include "mesh/texels/slot_bits.h"
+
+namespace strata::mesh {
+glm::vec3 SurfaceMap::position(std::uint32_t slot, int texel) const {
+  return unpack_position(packed_position[std::size_t{slot} * 64 + texel], packed_box[slot]);
+}
+
+TileMask SurfaceMap::owned_in_tile(TileAddress tile) const {
+  return gather_tile_bits(*this, tile, [&](std::uint32_t slot) {
+    std::uint64_t bits = 0;
+    for (int i = 0; i < 64; ++i)
+      bits |= std::uint64_t{packed_position[std::size_t{slot} * 64 + i] != kNoPosition} << i;
+    return bits;
+  });
+}
+
+TileMask SurfaceMap::surface_in_tile(TileAddress tile) const {
+  return gather_tile_bits(*this, tile, [&](std::uint32_t slot) { return surface_mask[slot]; });
+}
+
+float SurfaceMap::area_of(TileAddress tile, int texel) const {
+  const SlotTexel place = slot_texel(*this, tile, texel);
+  return place.slot == kNoSlot ? 0 : area[std::size_t{place.slot} * 64 + place.texel];
+}
+
+std::size_t SurfaceMap::bytes() const {
+  const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  return of(slot_of_block) + of(block_of_slot) + of(packed_position) + of(packed_box) +
+         of(surface_mask) + of(area) + of(bounds_of_slot) + of(bounds_of_tile) + tree.bytes();
+}
+
+}  // namespace strata::mesh

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "media/picture.h"
+#include "mesh/atlas/atlas.h"
+#include "mesh/surface/triangle_mesh.h"
+#include "mesh/texture/texture_sampler.h"
+
+namespace strata::mesh {
+
+// The colours of a mesh's materials, textures and vertices, painted on its atlas. Holds references.
+class SurfacePaint {
+ public:
+  SurfacePaint(const TriangleMesh& mesh, const Atlas& atlas) : mesh_(mesh), atlas_(atlas) {}
+
+  const Material& material_of(std::size_t triangle) const;
+
+  // All texels of the triangles (`source`: their texture; empty: the material's colour alone), with
+  // alpha 255 where a triangle covers a texel's centre and a little less where it only claims one.
+  // Two threads.
+  void paint(std::span<const std::uint32_t> triangles, const Picture& source,
+             Picture& picture) const;
+
+  // The triangles of `atlas.moved` into a picture of the file's own texture, and `ring` texels
+  // around them where no triangle is. Those without coordinates mix the colours that their corners
+  // have on triangles beside them. Texels go on as `texture`'s materials say.
+  void paint_moved(int texture, int ring, Picture& picture) const;
+
+ private:
+  template <class Put>
+  void raster(std::uint32_t t, glm::ivec2 size, int row_begin, int row_end, Put put) const;
+  glm::dvec2 atlas_uv(std::size_t triangle, int k) const {
+    return atlas_.corner_uvs[3 * triangle + k];
+  }
+  glm::dvec2 texture_uv(std::size_t triangle, int k) const {
+    return mesh_.corner_uvs.empty() ? glm::dvec2(0)
+                                    : glm::dvec2(mesh_.corner_uvs[3 * triangle + k]);
+  }
+  void shade(std::uint32_t t, const Material& material, const glm::dvec3& weights,
+             const TextureSampler* sampler, std::uint8_t* out) const;
+
+  const TriangleMesh& mesh_;
+  const Atlas& atlas_;
+};
+
+// rgb × color, as light.
+void multiply_light(std::uint8_t* rgb, const glm::vec4& color);
+
+}  // namespace strata::mesh

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "media/picture.h"
+#include "mesh/surface/triangle_mesh.h"
+
+namespace strata::mesh {
+
+// Half as wide and half as high (1 at least), each pixel the mean light of four.
+Picture halve(const Picture& picture);
+
+// A decoded texture, looked up as a GPU does: texel centres at (i + 0.5) / size, uv origin lower
+// left, mixed of the four nearest.
+class TextureSampler {
+ public:
+  explicit TextureSampler(const Picture& picture) : picture_(picture) {}
+
+  // Red, green, blue as stored, 0…255.
+  glm::vec3 sample(glm::dvec2 uv, Wrap wrap_u, Wrap wrap_v) const {
+    return sample_with_alpha(uv, wrap_u, wrap_v);
+  }
+  // The same, and alpha, which is not multiplied in.
+  glm::vec4 sample_with_alpha(glm::dvec2 uv, Wrap wrap_u, Wrap wrap_v) const;
+
+ private:
+  glm::vec4 pixel(int x, int y) const {
+    const std::uint8_t* p = &picture_.rgba[(static_cast<std::size_t>(y) * picture_.width + x) * 4];
+    return {p[0], p[1], p[2], p[3]};
+  }
+
+  const Picture& picture_;
+};
+
+}  // namespace strata::mesh

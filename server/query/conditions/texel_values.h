@@ -1,0 +1,86 @@
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "query/conditions/texel_selection.h"
+#include "query/sampling/values.h"
+
+namespace strata::query {
+
+constexpr int kBlocksPerTile = kTileSize / kBlockSize;
+
+// Ascending by address: sums of floats depend on their order, and the same layer is to have the
+// same sums.
+std::vector<std::pair<TileAddress, const TileData*>> sorted_tiles(const TileMap& tiles);
+
+// The 64 flags of a block of a mask, bit y * 8 + x.
+inline std::uint64_t block_bits(const TileMask& mask, int block_x, int block_y) {
+  std::uint64_t bits = 0;
+  const int first = block_y * kBlockSize * kTileSize + block_x * kBlockSize;
+  for (int row = 0; row < kBlockSize; ++row) {
+    const int texel = first + row * kTileSize;
+    bits |= (mask.words[static_cast<std::size_t>(texel >> 6)] >> (texel & 63) & 0xffu) << (8 * row);
+  }
+  return bits;
+}
+
+// Calls visit(slot, texel in the block, bits of the value) for each valid surface texel of a tile,
+// of those in `within` (null: all), block by block. `Bits` is the unsigned type of the layer's
+// texels.
+template <class Bits, class Visit>
+void for_each_texel_of(const TileData& tile, TileAddress address, const mesh::SurfaceMap& map,
+                       const TexelSelection* within, Visit&& visit) {
+  for (int by = 0; by < kBlocksPerTile; ++by) {
+    const auto row =
+        (static_cast<std::size_t>(address.y) * kBlocksPerTile + static_cast<std::size_t>(by)) *
+        static_cast<std::size_t>(map.blocks_per_side);
+    for (int bx = 0; bx < kBlocksPerTile; ++bx) {
+      const std::uint32_t slot =
+          map.slot_of_block[row + static_cast<std::size_t>(address.x) * kBlocksPerTile +
+                            static_cast<std::size_t>(bx)];
+      if (slot == mesh::kNoSlot) continue;
+      std::uint64_t rest = map.surface_mask[slot] & block_bits(tile.valid, bx, by);
+      if (within) rest &= (*within)[slot];
+      const int corner = by * kBlockSize * kTileSize + bx * kBlockSize;
+      for (; rest != 0; rest &= rest - 1) {
+        const int texel = std::countr_zero(rest);
+        const int in_tile = corner + texel / kBlockSize * kTileSize + texel % kBlockSize;
+        Bits bits;
+        std::memcpy(&bits, tile.values.data() + static_cast<std::size_t>(in_tile) * sizeof(Bits),
+                    sizeof(Bits));
+        visit(slot, texel, bits);
+      }
+    }
+  }
+}
+
+// The values of all bit patterns of a type of one or two bytes: halves are slow to decode. Null for
+// longer types.
+const double* values_of_bits(ValueType type);
+
+// visit(slot, texel in the block, bits, value) for each texel of for_each_texel_of whose value is
+// finite: a raster may have brought others.
+template <class Visit>
+void for_each_value(const TileData& tile, TileAddress address, ValueType type,
+                    const mesh::SurfaceMap& map, const TexelSelection* within, Visit&& visit) {
+  const double* values = values_of_bits(type);
+  const auto visit_short = [&](std::uint32_t slot, int texel, std::uint32_t bits) {
+    if (const double value = values[bits]; std::isfinite(value)) visit(slot, texel, bits, value);
+  };
+  switch (bytes_per_texel(type)) {
+    case 1: return for_each_texel_of<std::uint8_t>(tile, address, map, within, visit_short);
+    case 2: return for_each_texel_of<std::uint16_t>(tile, address, map, within, visit_short);
+    default:
+      return for_each_texel_of<std::uint32_t>(
+          tile, address, map, within, [&](std::uint32_t slot, int texel, std::uint32_t bits) {
+            const double value = decode_value(type, bits);
+            if (std::isfinite(value)) visit(slot, texel, bits, value);
+          });
+  }
+}
+
+}  // namespace strata::query

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "domain/layers/tile_mirror.h"
+
+namespace strata::query {
+
+// A layer's tiles as a dense table: one lookup a block or texel. Keeps no tile alive.
+class TileTable {
+ public:
+  TileTable(const TileMap& tiles, int resolution) : tiles_per_side_(resolution / kTileSize) {
+    tiles_.resize(std::size_t(tiles_per_side_) * tiles_per_side_);
+    for (const auto& [address, tile] : tiles)
+      if (address.x < tiles_per_side_ && address.y < tiles_per_side_)
+        tiles_[std::size_t(address.y) * tiles_per_side_ + address.x] = tile.get();
+  }
+
+  // Null where nothing is valid.
+  const TileData* of_texel(int x, int y) const {
+    return tiles_[std::size_t(y / kTileSize) * tiles_per_side_ + x / kTileSize];
+  }
+  // Along one axis: the layer's texel that holds the centre of a texel of a map of another
+  // resolution.
+  int texel_under(int texel, int map_resolution) const {
+    return static_cast<int>((2 * std::int64_t{texel} + 1) *
+                            (std::int64_t{tiles_per_side_} * kTileSize) /
+                            (2 * std::int64_t{map_resolution}));
+  }
+  const TileData* of_block(int bx, int by) const {
+    return of_texel(bx * kBlockSize, by * kBlockSize);
+  }
+
+ private:
+  int tiles_per_side_;
+  std::vector<const TileData*> tiles_;
+};
+
+}  // namespace strata::query

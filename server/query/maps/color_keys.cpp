@@ -1,0 +1,182 @@
+#include "query/maps/color_keys.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace strata::query {
+namespace {
+
+constexpr double kLeastShare = 0.005;
+constexpr int kBinBits = 5;  // of a channel in the first count
+
+struct Lab {
+  float l = 0, a = 0, b = 0;
+};
+
+float squared_distance(const Lab& x, const Lab& y) {
+  return (x.l - y.l) * (x.l - y.l) + (x.a - y.a) * (x.a - y.a) + (x.b - y.b) * (x.b - y.b);
+}
+
+Lab lab_of(const std::uint8_t* rgb) {
+  static const std::array<float, 256> light_of_srgb = [] {
+    std::array<float, 256> light{};
+    for (std::size_t i = 0; i < light.size(); ++i) {
+      const double srgb = static_cast<double>(i) / 255;
+      light[i] = static_cast<float>(srgb <= 0.04045 ? srgb / 12.92
+                                                    : std::pow((srgb + 0.055) / 1.055, 2.4));
+    }
+    return light;
+  }();
+  const float r = light_of_srgb[rgb[0]], g = light_of_srgb[rgb[1]], b = light_of_srgb[rgb[2]];
+  const auto root = [](float t) { return t > 0.008856f ? std::cbrt(t) : 7.787f * t + 16.0f / 116; };
+  const float x = root((0.4124f * r + 0.3576f * g + 0.1805f * b) / 0.9505f);
+  const float y = root(0.2126f * r + 0.7152f * g + 0.0722f * b);
+  const float z = root((0.0193f * r + 0.1192f * g + 0.9505f * b) / 1.0890f);
+  return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
+}
+
+// Pixels of much the same colour.
+struct Bin {
+  std::array<std::uint64_t, 3> sum{};
+  std::uint64_t count = 0, at_border = 0;
+
+  void add(const Bin& other) {
+    for (std::size_t c = 0; c < 3; ++c) sum[c] += other.sum[c];
+    count += other.count;
+    at_border += other.at_border;
+  }
+  Rgba mean() const {
+    Rgba color{0, 0, 0, 255};
+    for (std::size_t c = 0; c < 3; ++c)
+      color[c] = static_cast<std::uint8_t>((sum[c] + count / 2) / count);
+    return color;
+  }
+};
+
+// The fullest first.
+std::vector<Bin> bins_of(const Picture& picture) {
+  std::vector<Bin> bins(std::size_t{1} << (3 * kBinBits));
+  const std::uint8_t* rgba = picture.rgba.data();
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x, rgba += 4) {
+      if (rgba[3] < 128) continue;
+      std::size_t at = 0;
+      for (int c = 0; c < 3; ++c)
+        at = at << kBinBits | static_cast<std::size_t>(rgba[c] >> (8 - kBinBits));
+      Bin& bin = bins[at];
+      for (std::size_t c = 0; c < 3; ++c) bin.sum[c] += rgba[c];
+      ++bin.count;
+      bin.at_border += x == 0 || y == 0 || x == picture.width - 1 || y == picture.height - 1;
+    }
+  std::erase_if(bins, [](const Bin& bin) { return bin.count == 0; });
+  std::stable_sort(bins.begin(), bins.end(),
+                   [](const Bin& a, const Bin& b) { return a.count > b.count; });
+  return bins;
+}
+
+// Puts each bin to its nearest centre within the tolerance; without one it becomes a centre where
+// `may_grow`.
+std::vector<Bin> gathered(const std::vector<Bin>& bins, std::vector<Lab> centres, float tolerance,
+                          bool may_grow) {
+  std::vector<Bin> groups(centres.size());
+  for (const Bin& bin : bins) {
+    const Lab place = lab_of(bin.mean().data());
+    std::size_t nearest = centres.size();
+    float least = tolerance * tolerance;
+    for (std::size_t i = 0; i < centres.size(); ++i)
+      if (const float squared = squared_distance(place, centres[i]); squared <= least)
+        nearest = i, least = squared;
+    if (nearest == centres.size()) {
+      if (!may_grow) continue;
+      centres.push_back(place);
+      groups.emplace_back();
+    }
+    groups[nearest].add(bin);
+  }
+  return groups;
+}
+
+}  // namespace
+
+Result<std::vector<ColorKey>> parse_color_keys(std::string_view text, const std::string& field) {
+  const auto refuse = [&](const std::string& what) {
+    return fail(ErrorCode::invalid, "Colours not understood", what, field);
+  };
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object() || json.empty() || json.size() > kMostColorKeys)
+    return refuse("Give an object of 1 to " + std::to_string(kMostColorKeys) +
+                  " colours with their values, such as {\"#c02020\": 1}.");
+  std::vector<ColorKey> keys;
+  for (const auto& [color, value] : json.items()) {
+    if (!value.is_number())
+      return refuse("The colour " + color.substr(0, 20) + " has no number as its value.");
+    // A legend of one point: colours are written the same there.
+    const auto legend = palette_from_json(
+        {{"mode", "categorical"}, {"points", {{{"at", value}, {"color", color}}}}}, field);
+    if (!legend)
+      return refuse("\"" + color.substr(0, 20) + "\" is no colour; write it as \"#rrggbb\".");
+    keys.push_back({legend->points[0].color, value.get<double>()});
+  }
+  return keys;
+}
+
+ColorKeys::ColorKeys(const std::vector<ColorKey>& keys, double tolerance)
+    : squared_tolerance_(static_cast<float>(tolerance * tolerance)) {
+  for (const ColorKey& key : keys) {
+    const Lab lab = lab_of(key.color.data());
+    places_.push_back({lab.l, lab.a, lab.b, key.value});
+  }
+}
+
+std::optional<double> ColorKeys::value_of(const std::uint8_t* rgb) const {
+  const Lab lab = lab_of(rgb);
+  std::optional<double> value;
+  float least = squared_tolerance_;
+  for (const Place& place : places_)
+    if (const float squared = squared_distance(lab, {place.l, place.a, place.b});
+        squared <= least) {
+      value = place.value;
+      least = squared;
+    }
+  return value;
+}
+
+std::vector<FoundColor> find_colors(const Picture& picture, double tolerance) {
+  const std::vector<Bin> bins = bins_of(picture);
+  std::uint64_t pixels = 0;
+  for (const Bin& bin : bins) pixels += bin.count;
+  const auto large = [&](std::vector<Bin> groups) {
+    std::stable_sort(groups.begin(), groups.end(),
+                     [](const Bin& a, const Bin& b) { return a.count > b.count; });
+    std::erase_if(groups, [&](const Bin& bin) {
+      return bin.count == 0 ||
+             static_cast<double>(bin.count) < kLeastShare * static_cast<double>(pixels);
+    });
+    if (groups.size() > kMostFoundColors) groups.resize(kMostFoundColors);
+    return groups;
+  };
+  auto groups = large(gathered(bins, {}, static_cast<float>(tolerance), true));
+  // Once more around the middles of what was found: the first centre of a group is only its fullest
+  // bin.
+  std::vector<Lab> centres;
+  for (const Bin& group : groups) centres.push_back(lab_of(group.mean().data()));
+  groups = large(gathered(bins, centres, static_cast<float>(tolerance), false));
+
+  std::vector<FoundColor> found;
+  std::uint64_t most = 0;
+  for (const Bin& group : groups) {
+    most = std::max(most, group.at_border);
+    found.push_back(
+        {group.mean(), static_cast<double>(group.count) / static_cast<double>(pixels), false});
+  }
+  for (std::size_t i = 0; i < groups.size() && most > 0; ++i)
+    if (groups[i].at_border == most) {
+      found[i].is_background = true;
+      break;
+    }
+  return found;
+}
+
+}  // namespace strata::query

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/error.h"
+#include "query/maps/flat_map.h"
+#include "query/maps/key_names.h"
+
+namespace strata::query {
+
+// Maps of polygons with attributes, whatever file they came in. Coordinates are the plane's, in
+// model units.
+
+constexpr std::size_t kMaxMapPoints = 2'000'000;
+constexpr std::size_t kMaxMapFeatures = 500'000;
+constexpr std::size_t kMaxMapColumns = 256;
+constexpr std::size_t kMaxMapValues = 8'000'000;  // columns times features
+constexpr std::size_t kLongestMapColumn = 200;    // bytes of a name; longer ones are passed over
+std::string too_many_values();                    // what a map with more is told
+
+// Nothing, a number or a text.
+using MapValue = std::variant<std::monostate, double, std::string>;
+
+std::string number_text(double value);  // as short as tells it from every other number
+
+struct MapFeature {
+  using Rings = std::vector<std::vector<glm::dvec2>>;
+  std::vector<Rings> polygons;   // holes are rings like others
+  std::vector<MapValue> values;  // by columns; may be shorter
+  std::string place;             // in the file, for messages: "body.features[3]", "Record 4"
+};
+
+struct FeatureMap {
+  std::vector<std::string> columns;
+  std::vector<MapFeature> features;
+  std::string crs;          // "EPSG:25830" where the file names it
+  bool in_degrees = false;  // the file says that its coordinates are longitude and latitude
+};
+
+// What a person can choose from.
+struct MapColumn {
+  std::string name;
+  bool is_number = false;  // every feature has a number
+  bool is_text = false;    // every feature has a text that is not empty
+  // different values in the order of their first appearance, kMostSamples at most
+  std::vector<std::string> samples;
+};
+constexpr std::size_t kMostSamples = 12;
+std::vector<MapColumn> columns_of(const FeatureMap& map);
+
+// Which values the areas have.
+struct MapChoice {
+  std::string attribute;  // a number or the name of a key; empty: `value` for all
+  double value = 0;
+  // the attribute that holds the names of the numbers; empty: they are not named
+  std::string names;
+};
+// The areas with their values, later ones on top. Names become keys in `keys`; null: names are
+// refused. Refused (invalid): an unknown attribute, a feature without it, no area at all.
+Result<FlatMap> flat_map(const FeatureMap& map, const MapChoice& choice, KeyNames* keys);
+
+}  // namespace strata::query

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "domain/layers/layer.h"
+#include "domain/layers/tile_mirror.h"
+
+namespace strata::query {
+
+// A layer's texels by the rows of a file: row 0 is v = 1 (top), while tiles count from the bottom.
+class TileRows {
+ public:
+  TileRows(const Layer& layer, const TileMap& tiles);  // keeps a reference to `tiles`
+  // Both spans have `resolution` places. Invalid texels have bits 0.
+  void read(int file_row, std::span<std::uint32_t> bits, std::span<std::uint8_t> valid) const;
+
+ private:
+  int resolution_;
+  int tiles_per_side_;
+  std::vector<const TileData*> tiles_;
+};
+
+// The reverse: tiles from texels in any order. Tiles without a valid texel are left out.
+class TileMapBuilder {
+ public:
+  explicit TileMapBuilder(const Layer& layer);
+  // A valid texel from its little-endian storage; a float that is not finite is an Error that
+  // names its place.
+  Result<void> put(int x, int file_row, const std::uint8_t* value);
+  TileMap finish();
+
+ private:
+  ValueType type_;
+  int bytes_;
+  int resolution_;
+  int tiles_per_side_;
+  std::vector<std::shared_ptr<TileData>> tiles_;
+};
+
+// Every refusal of a raster: `invalid` "Raster refused".
+tl::unexpected<Error> refuse_raster(std::string detail);
+// "2048 × 2048 texels of u16", as the layer needs it.
+std::string raster_needs(const Layer& layer);
+// Refuses another width or height than the layer's.
+Result<void> check_raster_size(const Layer& layer, std::uint64_t width, std::uint64_t height);
+
+}  // namespace strata::query

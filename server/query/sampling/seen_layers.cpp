@@ -1,0 +1,40 @@
+#include "query/sampling/seen_layers.h"
+
+#include <mutex>
+
+#include "mesh/parallel.h"
+
+namespace strata::query {
+
+std::vector<SeenLayer> seen_layers(const mesh::SearchTree& tree, const glm::dvec3& origin,
+                                   const Camera& camera, int columns, int rows,
+                                   const std::vector<LayerView>& layers,
+                                   const std::vector<LayerCover>& covers) {
+  std::vector<SeenLayer> all(layers.size());
+  std::mutex mutex;
+  mesh::parallel_for(mesh::background_threads(), rows, [&](int row) {
+    std::vector<SeenLayer> seen(layers.size());
+    for (int column = 0; column < columns; ++column) {
+      const auto point = pick(tree, origin, camera, (column + 0.5) * camera.width / columns,
+                              (row + 0.5) * camera.height / rows, layers);
+      if (!point.hit) continue;
+      for (std::size_t i = layers.size(); i-- > 0;) {  // from the top
+        const LayerValue& value = point.values[i];
+        if (!value.valid) continue;
+        const Cover cover = covers[i].of(value.value);
+        if (cover == Cover::nothing) continue;
+        seen[i].is_seen = true;
+        if (covers[i].tells_values) seen[i].values.insert(value.value);
+        if (cover == Cover::all) break;
+      }
+    }
+    std::lock_guard lock(mutex);
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      all[i].is_seen |= seen[i].is_seen;
+      all[i].values.merge(seen[i].values);
+    }
+  });
+  return all;
+}
+
+}  // namespace strata::query

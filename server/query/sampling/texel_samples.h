@@ -1,0 +1,60 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "domain/people/question.h"
+#include "query/conditions/texel_selection.h"
+#include "query/conditions/texel_values.h"
+#include "query/sampling/values.h"
+
+namespace strata::query {
+
+// One layer with the places of its texels, as it was or is.
+struct SurfaceTexels {
+  LayerView view;
+  std::shared_ptr<const mesh::SurfaceMap> map;  // of the layer's resolution
+  std::optional<TexelSelection> within;         // nothing: the whole surface
+  glm::dvec3 origin{0};                         // of model space, in the world
+  double metres_per_unit = 1;
+};
+
+struct TexelSample {
+  glm::dvec3 position{0};  // world, model units
+  double area_m2 = 0;
+  std::uint32_t bits = 0;
+  double value = 0;
+};
+
+// visit(sample) for each valid surface texel that is selected, tile by tile ascending, until it
+// says false.
+template <class Visit>
+void for_each_sample(const SurfaceTexels& texels, Visit&& visit) {
+  const double m2_per_unit2 = texels.metres_per_unit * texels.metres_per_unit;
+  const mesh::SurfaceMap& map = *texels.map;
+  bool goes_on = true;
+  for (const auto& [address, tile] : sorted_tiles(texels.view.snapshot.tiles)) {
+    check_question();
+    for_each_value(
+        *tile, address, texels.view.layer.type, map, texels.within ? &*texels.within : nullptr,
+        [&](std::uint32_t slot, int texel, std::uint32_t bits, double value) {
+          if (!goes_on) return;
+          const auto place = std::size_t{slot} * 64 + static_cast<std::size_t>(texel);
+          goes_on = visit(TexelSample{texels.origin + glm::dvec3(map.position(slot, texel)),
+                                      map.area[place] * m2_per_unit2, bits, value});
+        });
+    if (!goes_on) return;
+  }
+}
+
+inline constexpr std::size_t kMostCells = 2'000'000;
+
+// The same texels by the cubes of a grid through the world's origin, with edges of `edge` model
+// units: the centroid, weighted by area, the sum of areas and the mean of values, weighted by area;
+// of keys (`classes_of` tells each value apart) the one with most area, of several the lowest.
+// Ascending by z, y and x. Refused (invalid at `cell`): more than kMostCells cells, or an edge too
+// small to count them.
+Result<std::vector<TexelSample>> samples_by_cell(const SurfaceTexels& texels, double edge);
+
+}  // namespace strata::query

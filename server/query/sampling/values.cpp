@@ -1,0 +1,142 @@
+#include "query/sampling/values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "domain/layers/texel_lookup.h"
+#include "mesh/parallel.h"
+#include "query/sampling/nearest_points.h"
+
+namespace strata::query {
+namespace {
+
+SurfacePoint surface_point(const mesh::SearchTree::Hit& hit, const glm::dvec3& origin,
+                           const std::vector<LayerView>& layers) {
+  SurfacePoint point{true, glm::dvec3(hit.position) + origin, hit.normal, hit.distance, hit.uv, {}};
+  point.values.reserve(layers.size());
+  for (const auto& layer : layers) point.values.push_back(value_at(layer, hit.uv));
+  return point;
+}
+
+SurfacePoint off_the_model(const std::vector<LayerView>& layers) {
+  SurfacePoint point;
+  for (const auto& layer : layers) point.values.push_back({layer.layer.slug, false, 0});
+  return point;
+}
+
+bool is_finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+}  // namespace
+
+LayerValue value_at(const LayerView& view, glm::vec2 uv) {
+  const auto bits = bits_at(view.snapshot.tiles, view.layer.resolution, uv);
+  if (!bits) return {view.layer.slug, false, 0};
+  return {view.layer.slug, true, decode_value(view.layer.type, *bits)};
+}
+
+SurfacePoint nearest_point(const mesh::SearchTree& tree, const glm::dvec3& origin,
+                           const glm::dvec3& world_point, const std::vector<LayerView>& layers) {
+  const glm::vec3 in_model(world_point - origin);
+  if (!is_finite(in_model)) return off_the_model(layers);
+  const auto hit = tree.nearest(in_model, std::numeric_limits<float>::max());
+  return hit ? surface_point(*hit, origin, layers) : off_the_model(layers);
+}
+
+namespace {
+
+// Along a curve through the box of the points (Morton 1966): neighbours on it are mostly neighbours
+// in space.
+std::uint64_t curve_index(const glm::dvec3& place) {
+  std::uint64_t index = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    auto bits = static_cast<std::uint64_t>(std::clamp(place[axis], 0.0, 1.0) * 0x1fffff);
+    for (const auto& [shift, mask] : {std::pair{32, 0x1f00000000ffffull},
+                                      {16, 0x1f0000ff0000ffull},
+                                      {8, 0x100f00f00f00f00full},
+                                      {4, 0x10c30c30c30c30c3ull},
+                                      {2, 0x1249249249249249ull}})
+      bits = (bits | bits << shift) & mask;
+    index |= bits << axis;
+  }
+  return index;
+}
+
+}  // namespace
+
+std::vector<SurfacePoint> nearest_points(const mesh::SearchTree& tree, const glm::dvec3& origin,
+                                         std::span<const glm::dvec3> world_points,
+                                         const std::vector<LayerView>& layers, int threads) {
+  constexpr float kFar = std::numeric_limits<float>::max();
+  glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+  for (const glm::dvec3& point : world_points)
+    low = glm::min(low, point), high = glm::max(high, point);
+  const glm::dvec3 size = glm::max(high - low, 1e-300);
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+  order.reserve(world_points.size());
+  for (std::uint32_t i = 0; i < world_points.size(); ++i)
+    order.emplace_back(curve_index((world_points[i] - low) / size), i);
+  std::ranges::sort(order);
+  constexpr std::size_t kPointsAtOnce = 1024;
+  std::vector<SurfacePoint> points(world_points.size());
+  mesh::parallel_for(
+      threads, static_cast<int>((order.size() + kPointsAtOnce - 1) / kPointsAtOnce), [&](int part) {
+        const std::size_t first = static_cast<std::size_t>(part) * kPointsAtOnce;
+        std::optional<glm::vec3> last;  // a place on the surface: none that is farther is wanted
+        for (std::size_t i = first; i < std::min(order.size(), first + kPointsAtOnce); ++i) {
+          const std::uint32_t number = order[i].second;
+          const glm::vec3 in_model(world_points[number] - origin);
+          if (!is_finite(in_model)) {
+            points[number] = off_the_model(layers);
+            continue;
+          }
+          // A little more than the distance, which is rounded.
+          const float limit =
+              last ? std::min(kFar, glm::distance(in_model, *last) * 1.0001f + 1e-30f) : kFar;
+          auto hit = tree.nearest(in_model, limit);
+          if (!hit) hit = tree.nearest(in_model, kFar);
+          points[number] = hit ? surface_point(*hit, origin, layers) : off_the_model(layers);
+          if (hit) last = hit->position;
+        }
+      });
+  return points;
+}
+
+SurfacePoint pick(const mesh::SearchTree& tree, const glm::dvec3& origin, const Camera& camera,
+                  double x, double y, const std::vector<LayerView>& layers) {
+  if (!(x >= 0 && y >= 0 && x <= camera.width && y <= camera.height)) return off_the_model(layers);
+  const Ray ray = ray_through_pixel(camera, x, y);
+  const RaySpan kept = kept_span(camera, ray);
+  if (kept.begin > kept.end) return off_the_model(layers);
+  const glm::vec3 start(ray.origin + kept.begin * ray.direction - origin), direction(ray.direction);
+  if (!is_finite(start) || !is_finite(direction)) return off_the_model(layers);
+  auto hit = tree.first_hit(start, direction);
+  if (!hit || kept.begin + hit->distance > kept.end) return off_the_model(layers);
+  if (eye_is_cut_away(camera) && glm::dot(hit->normal, direction) > 0)
+    return off_the_model(layers);  // a solid's inside
+  hit->distance += static_cast<float>(kept.begin);
+  return surface_point(*hit, origin, layers);
+}
+
+std::vector<std::optional<std::uint32_t>> seen_keys(const mesh::SearchTree& tree,
+                                                    const glm::dvec3& origin, const Camera& camera,
+                                                    int columns, int rows, const LayerView& layer) {
+  std::vector<std::optional<std::uint32_t>> keys(static_cast<std::size_t>(columns) *
+                                                 static_cast<std::size_t>(rows));
+  const std::vector<LayerView> layers{layer};
+  mesh::parallel_for(mesh::background_threads(), rows, [&](int row) {
+    for (int column = 0; column < columns; ++column) {
+      const auto point = pick(tree, origin, camera, (column + 0.5) * camera.width / columns,
+                              (row + 0.5) * camera.height / rows, layers);
+      if (point.hit && point.values[0].valid)
+        keys[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+             static_cast<std::size_t>(column)] = static_cast<std::uint32_t>(point.values[0].value);
+    }
+  });
+  return keys;
+}
+
+}  // namespace strata::query

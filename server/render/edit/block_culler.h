@@ -1,0 +1,118 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "domain/layers/tile.h"
+#include "mesh/texels/surface_map.h"
+#include "render/edit/depth_bias.h"
+#include "render/edit/segment_lists.h"
+#include "render/edit/tool_path.h"
+
+namespace strata::render {
+
+// Coarse grid of largest depths that hides blocks; see DepthBuffer.
+struct DepthGrid {
+  const float* cells = nullptr;  // null: nothing is hidden
+  int width = 0, height = 0;     // cells
+};
+
+struct CandidateBlock {
+  std::uint32_t slot;
+  TileAddress tile;
+  std::uint32_t block_in_tile;  // x | y << 4
+  std::uint32_t segments;       // first in `segment_lists`
+  std::uint32_t segment_count;
+  std::uint32_t part;  // of the tree that may be touched; kManyParts: several of this block
+  bool in_tool;        // all of it lies under the one segment of its list
+
+  static constexpr std::uint32_t kManyParts = 0xffffffffu;
+  const mesh::BoundingSphere& bounds(const mesh::SurfaceMap& map) const {
+    return part == kManyParts ? map.bounds_of_slot[slot] : map.tree.levels[0][part];
+  }
+};
+struct Candidates {
+  std::vector<CandidateBlock> blocks;
+  SegmentLists segment_lists;
+};
+
+// Parts of the tree that a stroke may touch, by tile.
+struct TouchedParts {
+  struct Part {
+    std::uint32_t part;
+    std::uint32_t segments;  // first in `segment_lists`
+    std::uint32_t segment_count;
+    bool in_tool;
+  };
+  struct Tile {
+    TileAddress address;
+    std::size_t first, count;  // in `parts`
+  };
+  std::vector<Part> parts;
+  std::vector<Tile> tiles;  // row-major
+  SegmentLists segment_lists;
+};
+
+// Exact window box of a sphere (`z0`: nearest window depth, `w0`: smallest w); empty when it is
+// behind the eye; the whole window when the eye's plane cuts it.
+struct WindowBox {
+  PixelBox box;
+  double z0 = 0, w0 = 0;
+};
+std::optional<WindowBox> project_sphere(const glm::dmat4& clip_from_model, int width, int height,
+                                        const glm::dvec3& center, double radius);
+
+// Blocks of the surface map that a stroke may touch: spheres around ever fewer of them are
+// projected to the window and tested against the window, the tool's segments and the depth grid.
+// Conservative: never leaves out a texel that the edit would write. Each block gets the list of
+// segments it may lie under. What it is made of must outlive it; const functions may run on several
+// threads.
+class BlockCuller {
+ public:
+  BlockCuller(const mesh::SurfaceMap& map, const glm::dmat4& clip_from_model, int width, int height,
+              const ToolPath& path, const DepthBias& bias, const DepthGrid& grid);
+
+  // On up to `threads` threads where there is much to find.
+  TouchedParts find(int threads) const;
+  // The blocks of a tile, row-major.
+  void add_blocks(const TouchedParts& touched, const TouchedParts::Tile& tile,
+                  Candidates& candidates) const;
+
+ private:
+  struct Under {
+    std::vector<std::uint32_t> segments;
+    bool all_of_it = false;  // under the one segment that is left
+  };
+  struct Subtree {  // that passed
+    std::size_t level, index;
+    Under under;
+  };
+  struct Found {  // in a subtree
+    std::vector<TouchedParts::Part> parts;
+    SegmentLists segment_lists;
+  };
+  using Scratch = std::array<Under, 16>;  // one a level of the tree
+  template <class Take>
+  void descend(std::size_t level, std::size_t index, const Under& under, std::size_t stop_level,
+               Scratch& scratch, Take&& take) const;
+  std::vector<Subtree> find_subtrees() const;
+  Found find_parts(const Subtree& subtree) const;
+  bool passes(const mesh::BoundingSphere& bounds, const Under& parent, Under& under) const;
+  std::optional<WindowBox> project(const mesh::BoundingSphere& bounds) const;
+  bool leaves_out(const mesh::BoundingSphere& bounds) const;
+  bool lies_under(const WindowBox& window, std::uint32_t segment) const;
+  bool keep_covering(const WindowBox& window, std::vector<std::uint32_t>& list) const;
+  bool is_hidden(const WindowBox& window) const;
+
+  const mesh::SurfaceMap& map_;
+  const glm::dmat4 clip_;
+  const int width_, height_;
+  const ToolPath& path_;
+  const DepthBias bias_;
+  const DepthGrid grid_;
+  std::array<glm::dvec4, 4> tool_planes_;
+};
+
+}  // namespace strata::render

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <chrono>
+
+#include "render/edit/stroke_painter.h"
+
+namespace strata::render {
+
+// Radii under the path → the parts that may be touched → the dispatch over them → which texels it
+// wrote → the tiles with them. After the dispatch nothing can fail but the context.
+class ComputePainter : public StrokePainter {
+ public:
+  using StrokePainter::StrokePainter;
+  Result<Step> step(GpuScene& scene, const PaintTarget& target) override;
+
+ private:
+  enum class Stage { begin, radii, culling, editing, tiles };
+  Result<void> begin_radii(GpuScene& scene);
+  void collect_radii(const mesh::Geometry& geometry);
+  Result<void> cull(GpuScene& scene, const PaintTarget& target);
+  Result<void> dispatch(GpuScene& scene, const PaintTarget& target);
+  void collect_edited(GpuScene& scene, const PaintTarget& target);
+  void begin_tiles(GpuScene& scene, const PaintTarget& target);
+  void collect_tiles(const PaintTarget& target);
+
+  Stage stage_ = Stage::begin;
+  PathPixels path_pixels_;
+  gl::Readback path_depths_;
+  ToolPath path_;
+  std::chrono::steady_clock::time_point begin_;
+  gl::Readback touched_;
+  DispatchedEdit edit_;
+  std::size_t next_tile_ = 0;
+  gl::Readback tiles_;                // made before the dispatch
+  std::vector<std::size_t> reading_;  // indices into outcome_.tiles of what `tiles_` brings
+};
+
+}  // namespace strata::render

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "gl/program.h"
+#include "gl/readback.h"
+#include "gl/timer_query.h"
+#include "render/edit/depth_bias.h"
+#include "render/edit/tool_path.h"
+#include "render/memory/layer_textures.h"
+#include "render/memory/stream_buffer.h"
+#include "render/memory/surface_map_textures.h"
+
+namespace strata::render {
+
+// What a stroke may touch on a layer, as the GPU found it.
+struct TouchedTiles {
+  std::uint32_t parts = 0;         // of the block tree
+  std::vector<TileAddress> tiles;  // by number
+};
+
+// BlockCuller on the GPU (shaders/edit_cull_pass.comp), where testing all nodes of the tree takes
+// microseconds: the list of parts stays there for EditPass; only the tiles come back, so that they
+// get pages.
+class EditCuller {
+ public:
+  static Result<EditCuller> create(const std::filesystem::path& shader_dir,
+                                   gl::ReadbackPool& readback);
+
+  // Sends the stroke and lists the parts. `depth_grid` is null when the stroke goes through.
+  // `origin`: of the model.
+  Result<gl::Readback> dispatch(const StrokeBatch& stroke, const glm::dvec3& origin,
+                                const ToolPath& path, const DepthBias& bias,
+                                const SurfaceMapTextures& map, const gl::Buffer* depth_grid,
+                                const LayerTextures& layer);
+  static TouchedTiles touched(const gl::Readback& read, int resolution);  // once it is ready
+
+  // What the last dispatch sent and found, where edit_pass.comp reads it.
+  void bind(const SurfaceMapTextures& map) const;
+  std::size_t bytes_up() const { return bytes_up_; }     // of the last dispatch
+  double gpu_ms() const { return timer_.elapsed_ms(); }  // of the last dispatch
+
+ private:
+  gl::ReadbackPool* readback_ = nullptr;
+  gl::Program program_;
+  gl::TimerQuery timer_;
+  gl::Buffer tiles_;
+  StreamBuffer uniforms_{"edit uniforms"}, segments_{"edit segments"};
+  std::size_t bytes_up_ = 0;
+};
+
+}  // namespace strata::render

@@ -1,0 +1,33 @@
+#include "render/thread/detail_budget.h"
+
+namespace strata::render {
+namespace {
+
+// Of a mesh in one frame of a moving camera: with shading and encoding it makes 30 frames a second.
+constexpr double kBudgetMs = 10;
+// Before anything was drawn: llvmpipe needs 27 to 59 ns.
+constexpr double kNsSoftware = 40, kNsHardware = 1;
+// Smaller drawings tell more of what a frame costs than of what its triangles do.
+constexpr std::size_t kFewTriangles = 50'000;
+constexpr double kShareOfNew = 0.2;
+
+}  // namespace
+
+DetailBudget::DetailBudget(bool software)
+    : ns_per_triangle_(software ? kNsSoftware : kNsHardware) {}
+
+int DetailBudget::choose(std::span<const std::size_t> triangles) const {
+  for (std::size_t level = 0; level < triangles.size(); ++level) {
+    if (static_cast<double>(triangles[level]) * ns_per_triangle_ * 1e-6 <= kBudgetMs)
+      return static_cast<int>(level);
+  }
+  return static_cast<int>(triangles.size()) - 1;
+}
+
+void DetailBudget::drawn(std::size_t triangles, double ms) {
+  if (triangles < kFewTriangles) return;
+  const double ns = ms * 1e6 / static_cast<double>(triangles);
+  ns_per_triangle_ += kShareOfNew * (ns - ns_per_triangle_);
+}
+
+}  // namespace strata::render

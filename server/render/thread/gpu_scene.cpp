@@ -1,0 +1,210 @@
+#include "render/thread/gpu_scene.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace strata::render {
+namespace {
+
+// A slice of a long drawing takes 1 to 2 ms: llvmpipe needs 27 to 59 ns a triangle, and draws a
+// slice while the next is prepared.
+constexpr std::size_t kTrianglesPerSliceSoftware = 32 * 1024;
+constexpr std::size_t kTrianglesPerSliceHardware = 2 * 1024 * 1024;
+constexpr int kLowestResolution = kTileSize, kHighestResolution = 16384;
+constexpr std::uint64_t kDefaultBudget = std::uint64_t{4} << 30;
+
+std::string text(GLenum name) {
+  const auto* value = reinterpret_cast<const char*>(glGetString(name));
+  return value ? value : "";
+}
+
+int integer(GLenum name) {
+  GLint value = 0;
+  glGetIntegerv(name, &value);
+  return value;
+}
+
+GpuInfo read_info() {
+  GpuInfo info{text(GL_VENDOR), text(GL_RENDERER), text(GL_VERSION)};
+  for (const char* name : {"llvmpipe", "softpipe", "SWR"}) {
+    info.software = info.software || info.renderer.find(name) != std::string::npos;
+  }
+  info.max_texture_size = integer(GL_MAX_TEXTURE_SIZE);
+  info.max_array_layers = integer(GL_MAX_ARRAY_TEXTURE_LAYERS);
+  info.max_texture_units = integer(GL_MAX_TEXTURE_IMAGE_UNITS);
+  info.max_image_units = integer(GL_MAX_IMAGE_UNITS);
+  return info;
+}
+
+// 70 % of the dedicated memory where the driver tells it.
+std::uint64_t default_budget() {
+  if (epoxy_has_gl_extension("GL_NVX_gpu_memory_info")) {
+    const int total_kib = integer(GL_GPU_MEMORY_INFO_DEDICATED_VIDMEM_NVX);
+    if (total_kib > 0) return static_cast<std::uint64_t>(total_kib) * 1024 * 7 / 10;
+  }
+  return kDefaultBudget;
+}
+
+template <class Pass>
+Result<void> keep(std::optional<Pass>& place, Result<Pass> pass) {
+  if (!pass) return tl::unexpected(pass.error());
+  place.emplace(std::move(*pass));
+  return {};
+}
+
+}  // namespace
+
+GpuScene::GpuScene(const RendererOptions& options, std::uint64_t generation, GpuMemory& memory)
+    : options_(options),
+      generation_(generation),
+      memory_(memory),
+      pool_1_(1, memory),
+      pool_2_(2, memory),
+      pool_4_(4, memory),
+      tables_(memory) {}
+
+GpuScene::~GpuScene() { memory_.set_evictor(nullptr); }
+
+Result<std::unique_ptr<GpuScene>> GpuScene::create(const RendererOptions& options,
+                                                   std::uint64_t generation, GpuMemory& memory,
+                                                   gl::DebugMessages& messages) {
+  auto context = STRATA_TRY(gl::EglContext::create({options.debug}));
+  std::unique_ptr<GpuScene> scene(new GpuScene(options, generation, memory));
+  scene->context_ = std::move(context);
+  if (options.debug) messages.install();
+  STRATA_TRY(scene->load());
+  return scene;
+}
+
+Result<void> GpuScene::load() {
+  info_ = read_info();
+  info_.edit_path = options_.edit_path != EditPath::automatic ? options_.edit_path
+                    : info_.software                          ? EditPath::kernel
+                                                              : EditPath::compute;
+  memory_.set_budget(options_.gpu_memory_bytes > 0 ? options_.gpu_memory_bytes : default_budget());
+  memory_.set_evictor([this] { return evict_one(); });
+  for (PagePool* pool : {&pool_1_, &pool_2_, &pool_4_})
+    pool->set_evictor([this, pool] { return let_a_layer_leave(pool); });
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glDisable(GL_DITHER);
+  const auto slice = info_.software ? kTrianglesPerSliceSoftware : kTrianglesPerSliceHardware;
+  const std::string& dir = options_.shader_dir;
+  detail_budget_ = DetailBudget(info_.software);
+  STRATA_TRY(keep(depths_, DepthBuffers::create(dir, slice, memory_, readback_)));
+  STRATA_TRY(keep(edit_culler_, EditCuller::create(dir, readback_)));
+  STRATA_TRY(keep(edit_pass_, EditPass::create(dir, readback_)));
+  STRATA_TRY(keep(tile_reader_, TileReader::create(dir, readback_)));
+  STRATA_TRY(keep(gbuffer_pass_, MeshPass::create(MeshPass::Kind::gbuffer, dir, slice)));
+  STRATA_TRY(keep(mark_pass_, MarkPass::create(dir)));
+  return keep(shade_pass_, ShadePass::create(dir, info_.software));
+}
+
+// Pages that no layer uses go first, then depth buffers of cameras that no view has, then the layer
+// and at last the buffers of the view that were not used for the longest time.
+bool GpuScene::evict_one() {
+  for (PagePool* pool : {&pool_1_, &pool_2_, &pool_4_}) {
+    if (pool->drop_empty_chunk()) return true;
+  }
+  if (depths_ && depths_->evict_one()) return true;
+  if (let_a_layer_leave()) return true;
+  View* oldest = nullptr;
+  for (auto& [handle, view] : views_) {
+    if (view.has_buffers() && !view.drawing && (!oldest || view.last_used < oldest->last_used))
+      oldest = &view;
+  }
+  if (!oldest) return false;
+  oldest->drop_buffers();
+  return true;
+}
+
+bool GpuScene::let_a_layer_leave(const PagePool* pool) {
+  GpuLayer* oldest = nullptr;
+  for (auto& [handle, layer] : layers_) {
+    if (!layer.can_leave() || (pool && &layer.textures().pool() != pool)) continue;
+    if (!oldest || layer.last_used() < oldest->last_used()) oldest = &layer;
+  }
+  if (!oldest) return false;
+  oldest->leave();
+  return true;
+}
+
+Error GpuScene::unknown(const char* what, std::uint64_t handle) const {
+  const bool old = handle != 0 && handle >> 40 != generation_;
+  return {
+      ErrorCode::not_found, std::string("Unknown ") + what,
+      old ? std::string("The handle is of a GPU context that was lost. Add the ") + what + " again."
+          : std::string("There is no such ") + what + " on the GPU; it may have been removed.",
+      what};
+}
+
+ModelHandle GpuScene::add(Model model) {
+  const ModelHandle handle = next_handle();
+  models_.emplace(handle, std::move(model));
+  return handle;
+}
+
+LookHandle GpuScene::add(Look look) {
+  const LookHandle handle = next_handle();
+  looks_.emplace(handle, std::move(look));
+  return handle;
+}
+
+Result<LayerHandle> GpuScene::add_layer(ModelHandle model_handle, ValueType type, int resolution,
+                                        std::shared_ptr<const TileMirror> mirror) {
+  STRATA_TRY(model(model_handle));
+  if (resolution < kLowestResolution || resolution > kHighestResolution ||
+      !std::has_single_bit(static_cast<unsigned>(resolution))) {
+    return fail(ErrorCode::invalid, "Resolution out of range",
+                "A layer's resolution is a power of two from 128 to 16384.", "resolution");
+  }
+  const int bytes = strata::bytes_per_texel(type);
+  auto textures = STRATA_TRY(LayerTextures::create(type, resolution, tables_,
+                                                   bytes == 1   ? pool_1_
+                                                   : bytes == 2 ? pool_2_
+                                                                : pool_4_));
+  const LayerHandle handle = next_handle();
+  layers_.try_emplace(handle, model_handle, std::move(textures), std::move(mirror));
+  return handle;
+}
+
+Result<ViewHandle> GpuScene::add_view(ModelHandle model_handle) {
+  STRATA_TRY(model(model_handle));
+  const ViewHandle handle = next_handle();
+  views_[handle].model = model_handle;
+  return handle;
+}
+
+Result<GpuScene::Model*> GpuScene::model(ModelHandle handle) {
+  const auto found = models_.find(handle);
+  if (found == models_.end()) return tl::unexpected(unknown("model", handle));
+  return &found->second;
+}
+
+Result<GpuLayer*> GpuScene::layer(LayerHandle handle) {
+  const auto found = layers_.find(handle);
+  if (found == layers_.end()) return tl::unexpected(unknown("layer", handle));
+  return &found->second;
+}
+
+Result<View*> GpuScene::view(ViewHandle handle) {
+  const auto found = views_.find(handle);
+  if (found == views_.end()) return tl::unexpected(unknown("view", handle));
+  return &found->second;
+}
+
+Result<GpuScene::Look*> GpuScene::look(LookHandle handle) {
+  const auto found = looks_.find(handle);
+  if (found == looks_.end()) return tl::unexpected(unknown("look", handle));
+  return &found->second;
+}
+
+void GpuScene::remove_model(ModelHandle handle) {
+  std::erase_if(looks_, [&](const auto& entry) { return entry.second.model == handle; });
+  std::erase_if(layers_, [&](const auto& entry) { return entry.second.model() == handle; });
+  std::erase_if(views_, [&](const auto& entry) { return entry.second.model == handle; });
+  if (depths_) depths_->forget_model(handle);
+  models_.erase(handle);
+}
+
+}  // namespace strata::render

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <unordered_map>
+
+#include "gl/debug_messages.h"
+#include "gl/egl_context.h"
+#include "render/edit/edit_pass.h"
+#include "render/memory/gpu_layer.h"
+#include "render/memory/look_texture.h"
+#include "render/memory/tile_reader.h"
+#include "render/thread/detail_budget.h"
+#include "render/thread/view_cache.h"
+#include "render/view/mark_pass.h"
+#include "render/view/shade_pass.h"
+
+namespace strata::render {
+
+// Everything that lives in one GL context: passes, pools, models, layers, views. Made and destroyed
+// as a whole, so that nothing of a lost context is left over. GPU thread only.
+class GpuScene {
+ public:
+  struct Model {
+    std::vector<std::unique_ptr<MeshBuffers>> levels;  // the full mesh, then coarser copies
+    const MeshBuffers& mesh() const { return *levels.front(); }
+    std::map<int, std::unique_ptr<SurfaceMapTextures>> maps;  // by resolution, complete ones only
+  };
+  struct Look {
+    ModelHandle model = 0;
+    std::unique_ptr<LookTexture> texture;
+  };
+
+  // `generation` goes into handles; `memory` and `messages` must outlive the scene.
+  static Result<std::unique_ptr<GpuScene>> create(const RendererOptions& options,
+                                                  std::uint64_t generation, GpuMemory& memory,
+                                                  gl::DebugMessages& messages);
+  GpuScene(const GpuScene&) = delete;
+  GpuScene& operator=(const GpuScene&) = delete;
+  ~GpuScene();
+
+  bool lost() { return context_.lost(); }
+  const GpuInfo& info() const { return info_; }
+  const RendererOptions& options() const { return options_; }
+  GpuMemory& memory() { return memory_; }
+  gl::ReadbackPool& readback() { return readback_; }
+  PageTables& tables() { return tables_; }
+  DepthBuffers& depths() { return *depths_; }
+  EditCuller& edit_culler() { return *edit_culler_; }
+  EditPass& edit_pass() { return *edit_pass_; }
+  TileReader& tile_reader() { return *tile_reader_; }
+  // Strokes are painted by KernelPainter, which needs no surface maps on the GPU.
+  bool edits_on_cpu() const { return info_.edit_path == EditPath::kernel; }
+  MeshPass& gbuffer_pass() { return *gbuffer_pass_; }
+  ShadePass& shade_pass() { return *shade_pass_; }
+  MarkPass& mark_pass() { return *mark_pass_; }
+  DetailBudget& detail_budget() { return detail_budget_; }
+  // How much of a picture is shaded in a step, in pixels of one layer.
+  int pixels_per_band() const {
+    return info_.software ? kPixelsPerBandSoftware : kPixelsPerBandHardware;
+  }
+  std::uint64_t next_use() { return ++uses_; }
+
+  ModelHandle add(Model model);
+  LookHandle add(Look look);
+  // `mirror` may be null: see GpuLayer.
+  Result<LayerHandle> add_layer(ModelHandle model, ValueType type, int resolution,
+                                std::shared_ptr<const TileMirror> mirror = nullptr);
+  Result<ViewHandle> add_view(ModelHandle model);
+  // An Error `not_found` for a handle that is unknown, removed, or of another generation.
+  Result<Model*> model(ModelHandle handle);
+  Result<GpuLayer*> layer(LayerHandle handle);
+  Result<View*> view(ViewHandle handle);
+  Result<Look*> look(LookHandle handle);
+  void remove_model(ModelHandle handle);  // and its layers, looks and views
+  void remove_look(LookHandle handle) { looks_.erase(handle); }
+  void remove_layer(LayerHandle handle) { layers_.erase(handle); }
+  void remove_view(ViewHandle handle) { views_.erase(handle); }
+
+ private:
+  // A few milliseconds; a picture of 1280 x 720 with three layers is one band.
+  static constexpr int kPixelsPerBandSoftware = 1 << 22, kPixelsPerBandHardware = 1 << 28;
+
+  GpuScene(const RendererOptions& options, std::uint64_t generation, GpuMemory& memory);
+  Result<void> load();
+  bool evict_one();
+  // The layer that was not used for the longest time; of `pool`, if one is given.
+  bool let_a_layer_leave(const PagePool* pool = nullptr);
+  std::uint64_t next_handle() { return generation_ << 40 | ++handles_; }
+  Error unknown(const char* what, std::uint64_t handle) const;
+
+  gl::EglContext context_;  // first: destroyed after all that lives in it
+  const RendererOptions options_;
+  const std::uint64_t generation_;
+  GpuMemory& memory_;
+  GpuInfo info_;
+  std::uint64_t handles_ = 0, uses_ = 0;
+  gl::ReadbackPool readback_;
+  PagePool pool_1_, pool_2_, pool_4_;
+  PageTables tables_;
+  std::optional<DepthBuffers> depths_;
+  std::optional<EditCuller> edit_culler_;
+  std::optional<EditPass> edit_pass_;
+  std::optional<TileReader> tile_reader_;
+  std::optional<MeshPass> gbuffer_pass_;
+  std::optional<ShadePass> shade_pass_;
+  std::optional<MarkPass> mark_pass_;
+  DetailBudget detail_budget_;
+  std::unordered_map<ModelHandle, Model> models_;
+  std::unordered_map<LayerHandle, GpuLayer> layers_;
+  std::unordered_map<ViewHandle, View> views_;
+  std::unordered_map<LookHandle, Look> looks_;
+};
+
+}  // namespace strata::render

@@ -1,0 +1,220 @@
+#include "render/thread/gpu_thread.h"
+
+#include <pthread.h>
+
+#include <future>
+
+#include "core/log.h"
+
+namespace strata::render {
+namespace {
+
+// Polls so long without sleeping while the GPU works: what an edit reads back is usually there
+// within microseconds.
+constexpr auto kBusyPolling = std::chrono::microseconds(200);
+constexpr auto kPollPause = std::chrono::microseconds(100);
+constexpr auto kRecoveryPause = std::chrono::seconds(1);
+// Frames that were drawn and wait for their read-back; more would only hold memory.
+constexpr std::size_t kMaxActiveFrames = 4;
+// Of edits before frames: a stroke is some milliseconds, so that only a flood of them takes as
+// long.
+constexpr std::chrono::milliseconds kMostAhead{30};
+
+Error lost_problem() {
+  return {ErrorCode::gpu_lost,
+          "GPU lost",
+          "The GPU context was lost and is being rebuilt. The work was not done; send it again.",
+          {}};
+}
+
+}  // namespace
+
+Result<void> GpuThread::start(Hooks hooks) {
+  hooks_ = std::move(hooks);
+  std::promise<Result<void>> started;
+  auto answer = started.get_future();
+  thread_ = std::thread([this, &started] {
+    pthread_setname_np(pthread_self(), "strata-gpu");
+    auto result = hooks_.start();
+    const bool works = result.has_value();
+    if (works) {
+      std::lock_guard lock(mutex_);
+      stopped_ = false;
+    }
+    started.set_value(std::move(result));
+    if (works) run();
+  });
+  auto result = answer.get();
+  if (!result) thread_.join();
+  return result;
+}
+
+void GpuThread::stop() {
+  {
+    std::lock_guard lock(mutex_);
+    stopping_ = true;
+    changed_.notify_all();
+  }
+  if (thread_.joinable()) thread_.join();
+}
+
+bool GpuThread::post(Lane lane, Job job, bool always) {
+  std::lock_guard lock(mutex_);
+  if (stopping_ || stopped_) return false;
+  if (!always && queue(lane).size() >= capacity_) return false;
+  queue(lane).push_back(std::move(job));
+  changed_.notify_one();
+  return true;
+}
+
+void GpuThread::post_reply(std::function<void()> reply) {
+  {
+    std::lock_guard lock(mutex_);
+    if (!stopped_) {
+      replies_.push_back(std::move(reply));
+      changed_.notify_one();
+      return;
+    }
+  }
+  reply();
+}
+
+void GpuThread::wake() {
+  std::lock_guard lock(mutex_);
+  frame_queued_ = true;
+  changed_.notify_one();
+}
+
+void GpuThread::run() {
+  auto last_progress = Clock::now();
+  for (;;) {
+    run_replies();
+    {
+      std::lock_guard lock(mutex_);
+      if (stopping_) break;
+    }
+    if (broken_ ? Clock::now() >= next_recovery_ : hooks_.lost()) recover();
+    if (!broken_ && run_some()) {
+      last_progress = Clock::now();
+      continue;
+    }
+    if (broken_) abort_all(lost_problem());
+    std::unique_lock lock(mutex_);
+    const auto has_news = [&] {
+      return stopping_ || !replies_.empty() || frame_queued_ ||
+             (!current_[0] && !ordered_.empty()) || (!current_[1] && !background_.empty());
+    };
+    if (current_[0] || current_[1] || !frames_.empty()) {
+      // Something waits for the GPU.
+      if (Clock::now() - last_progress > kBusyPolling)
+        changed_.wait_for(lock, kPollPause, has_news);
+    } else if (broken_) {
+      changed_.wait_for(lock, kRecoveryPause, has_news);
+    } else {
+      changed_.wait(lock, has_news);
+    }
+    frame_queued_ = false;
+  }
+  abort_all({ErrorCode::unavailable, "Renderer stopped", "The server is shutting down.", {}});
+  hooks_.stop();
+  {
+    std::lock_guard lock(mutex_);
+    stopped_ = true;
+  }
+  abort_all({ErrorCode::unavailable, "Renderer stopped", "The server is shutting down.", {}});
+  run_replies();
+}
+
+bool GpuThread::run_some() {
+  if (ahead_ > kMostAhead) {
+    const auto begin = Clock::now();
+    const bool is_drawn = step_frames();
+    ahead_ = is_drawn ? ahead_ - (Clock::now() - begin) : Clock::duration{};
+    if (is_drawn) return true;
+  }
+  const auto begin = Clock::now();
+  const auto step = step_lane(Lane::ordered);
+  if (step && *step != Step::waiting && *step != Step::yield) {
+    ahead_ += Clock::now() - begin;
+    return true;
+  }
+  ahead_ = {};
+  return step_behind_edits() || step == Step::yield;
+}
+
+bool GpuThread::step_behind_edits() {
+  if (step_frames()) return true;
+  const auto step = step_lane(Lane::background);
+  return step && *step != Step::waiting;
+}
+
+std::optional<Step> GpuThread::step_lane(Lane lane) {
+  auto& current = current_[static_cast<int>(lane)];
+  if (!current) {
+    std::lock_guard lock(mutex_);
+    if (queue(lane).empty()) return std::nullopt;
+    current = std::move(queue(lane).front());
+    queue(lane).pop_front();
+  }
+  const Step step = current->step();
+  if (step == Step::done) current.reset();
+  return step;
+}
+
+// The first frame that can go on does; a new one starts when all others wait for the GPU, or when
+// it is a small one whose turn it is.
+bool GpuThread::step_frames() {
+  if (!frames_.empty() && frames_.size() < kMaxActiveFrames)
+    if (auto part = hooks_.next_part()) frames_.push_front(std::move(*part));
+  for (auto frame = frames_.begin(); frame != frames_.end(); ++frame) {
+    const Step step = frame->step();
+    if (step == Step::waiting) continue;
+    if (step == Step::done) frames_.erase(frame);
+    return true;
+  }
+  if (frames_.size() >= kMaxActiveFrames) return false;
+  auto next = hooks_.next_frame();
+  if (!next) return false;
+  frames_.push_back(std::move(*next));
+  return true;
+}
+
+void GpuThread::run_replies() {
+  std::deque<std::function<void()>> replies;
+  {
+    std::lock_guard lock(mutex_);
+    replies.swap(replies_);
+  }
+  for (auto& reply : replies) reply();
+}
+
+void GpuThread::recover() {
+  abort_all(lost_problem());
+  auto recovered = hooks_.recover();
+  broken_ = !recovered;
+  if (broken_) {
+    log::error("The GPU context could not be rebuilt, trying again: " + recovered.error().detail);
+    next_recovery_ = Clock::now() + kRecoveryPause;
+  }
+}
+
+void GpuThread::abort_all(const Error& problem) {
+  std::deque<Job> jobs;
+  for (auto& current : current_) {
+    if (current) jobs.push_back(std::move(*current));
+    current.reset();
+  }
+  for (auto& frame : frames_) jobs.push_back(std::move(frame));
+  frames_.clear();
+  {
+    std::lock_guard lock(mutex_);
+    for (auto* lane : {&ordered_, &background_}) {
+      for (auto& job : *lane) jobs.push_back(std::move(job));
+      lane->clear();
+    }
+  }
+  for (auto& job : jobs) job.abort(problem);
+  hooks_.abort_frames(problem);
+}
+
+}  // namespace strata::render

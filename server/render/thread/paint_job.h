@@ -1,0 +1,38 @@
+#pragma once
+
+#include "render/edit/stroke_painter.h"
+
+namespace strata::render {
+
+// One stroke batch: the layer where it left the GPU, depth of the mesh where no view has it, then
+// what the StrokePainter does. A refused stroke has painted nothing.
+class PaintJob {
+ public:
+  PaintJob(LayerHandle layer, StrokeBatch stroke, Renderer::Done<StrokeOutcome> done)
+      : layer_(layer), stroke_(std::move(stroke)), done_(std::move(done)) {}
+
+  Step step(GpuScene& scene);
+  void abort(const Error& problem) { done_(tl::unexpected(problem)); }
+
+ private:
+  enum class Stage { layer, begin, depth, painting };
+  Result<PaintTarget> target(GpuScene& scene);
+  Result<Step> advance(GpuScene& scene, const PaintTarget& target);
+  Result<void> begin(GpuScene& scene, const PaintTarget& target);
+  Result<void> find_depth(GpuScene& scene);
+  void finish(GpuScene& scene);
+
+  const LayerHandle layer_;
+  StrokeBatch stroke_;
+  Renderer::Done<StrokeOutcome> done_;
+  Stage stage_ = Stage::layer;
+  std::shared_ptr<const void> layer_use_;
+  std::shared_ptr<DepthBuffer> depth_;  // null where nothing asks for it
+  MeshProgress drawn_;
+  std::unique_ptr<StrokePainter> painter_;
+};
+
+// Bad paths, radii and cameras, before any GPU work.
+Result<void> validate(const StrokeBatch& stroke);
+
+}  // namespace strata::render

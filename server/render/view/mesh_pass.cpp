@@ -1,0 +1,178 @@
+#include "render/view/mesh_pass.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "shared/cluster.h"
+
+namespace strata::render {
+namespace {
+
+const char* light_define(LightMode mode) {
+  switch (mode) {
+    case LightMode::museum: return nullptr;
+    case LightMode::headlight: return "HEADLIGHT";
+    case LightMode::raking: return "RAKING_LIGHT";
+    case LightMode::unlit: return "UNLIT";
+  }
+  return nullptr;
+}
+
+// A plane that faces the viewer is shown in middle grey, however low the light stands.
+constexpr double kRakingOnPlane = 0.5, kMostRaking = 3;
+
+// Smaller triangles are lit at their vertices: who looks sees no difference, and a software
+// renderer draws a thirteenth faster.
+constexpr float kPixelsLitAtVertices = 10;
+
+// A part of the clusters that are left is drawn before the others are looked at; a few are drawn
+// sooner than looked at.
+constexpr std::size_t kCullAfter = 4, kFewClusters = 256;
+
+std::size_t next_culling(const MeshProgress& progress) {
+  const std::size_t rest = progress.clusters - progress.next_cluster;
+  return rest < kFewClusters ? progress.clusters : progress.next_cluster + rest / kCullAfter;
+}
+
+}  // namespace
+
+Result<MeshPass> MeshPass::create(Kind kind, const std::filesystem::path& shader_dir,
+                                  std::size_t triangles_per_slice) {
+  auto uniforms =
+      gl::Buffer::create(sizeof(shader::MeshUniforms), gl::Buffer::Use::fixed, "mesh uniforms");
+  if (!uniforms) return tl::unexpected(uniforms.error());
+  auto culler = STRATA_TRY(ClusterCuller::create(shader_dir));
+  MeshPass pass;
+  pass.culler_ = std::move(culler);
+  pass.kind_ = kind;
+  pass.shader_dir_ = shader_dir;
+  pass.uniforms_ = std::move(*uniforms);
+  pass.clusters_per_slice_ =
+      std::max<std::size_t>(1, triangles_per_slice / mesh::Geometry::kTrianglesPerCluster);
+  STRATA_TRY(pass.program({}, false));
+  return pass;
+}
+
+Result<const gl::Program*> MeshPass::program(const MeshView& view, bool lit_at_vertices) {
+  std::vector<std::string> defines;
+  if (view.is_cut) defines.emplace_back("SECTION");
+  if (kind_ == Kind::gbuffer) {
+    if (const char* light = light_define(view.light)) defines.emplace_back(light);
+    if (lit_at_vertices) defines.emplace_back("LIT_VERTICES");
+    defines.push_back("LOOKS " + std::to_string(view.looks.size()));
+  }
+  if (const auto built = programs_.find(defines); built != programs_.end()) return &built->second;
+  auto program = STRATA_TRY(gl::Program::load(
+      shader_dir_, {"mesh.vert", kind_ == Kind::depth ? "depth_pass.frag" : "gbuffer_pass.frag"},
+      defines));
+  return &programs_.emplace(std::move(defines), std::move(program)).first->second;
+}
+
+Result<void> MeshPass::begin(const MeshBuffers& mesh, const MeshView& view,
+                             const MeshTarget& target, MeshProgress& progress) {
+  const GLuint framebuffer = target.framebuffer.id();
+  const float farthest = 1;
+  glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &farthest);
+  if (kind_ == Kind::gbuffer) {
+    const std::array<GLuint, 4> background{shader::kBackground, 0, 0, 0};
+    const std::array<float, 4> dark{0, 0, 0, 0};
+    glClearNamedFramebufferuiv(framebuffer, GL_COLOR, 0, background.data());
+    glClearNamedFramebufferfv(framebuffer, GL_COLOR, 1, dark.data());
+  }
+  std::vector<shader::DrawCommand> commands;
+  for (const auto cluster :
+       mesh.visible_clusters(view.uniforms.clip_from_model, view.uniforms.eye)) {
+    constexpr std::size_t kTriangles = mesh::Geometry::kTrianglesPerCluster;
+    const std::size_t first = cluster * kTriangles;
+    const auto count =
+        static_cast<std::uint32_t>(3 * std::min(kTriangles, mesh.triangle_count() - first));
+    commands.push_back({count, 1, static_cast<std::uint32_t>(3 * first), 0, 0});
+  }
+  progress.clusters = commands.size();
+  progress.next_culling = next_culling(progress);
+  progress.cleared = true;
+  if (commands.empty()) return {};
+  const auto bytes = std::as_bytes(std::span(commands));
+  auto buffer =
+      STRATA_TRY(gl::Buffer::create(bytes.size(), gl::Buffer::Use::fixed, "draws of clusters"));
+  buffer.upload(0, bytes);
+  progress.commands = std::move(buffer);
+  return {};
+}
+
+Result<bool> MeshPass::draw_slice(const MeshBuffers& mesh, const MeshView& view,
+                                  const MeshTarget& target, MeshProgress& progress) {
+  const bool lit_at_vertices = kind_ == Kind::gbuffer && view.light == LightMode::museum &&
+                               mesh.triangle_pixels(view.uniforms.clip_from_model,
+                                                    target.depth.height()) <= kPixelsLitAtVertices;
+  auto built = STRATA_TRY(program(view, lit_at_vertices));
+  if (!progress.cleared) {
+    STRATA_TRY(begin(mesh, view, target, progress));
+  }
+  if (progress.clusters == 0) return true;
+  const std::size_t rest = progress.clusters - progress.next_cluster;
+  if (progress.next_cluster == progress.next_culling) {
+    STRATA_TRY(culler_.hide(target.depth, mesh, view.uniforms.clip_from_model, progress.commands,
+                            progress.next_cluster, rest));
+    progress.next_culling = next_culling(progress);
+  }
+  uniforms_.upload_values(0, std::span(&view.uniforms, 1));
+  uniforms_.bind_uniform(0);
+  built->use();
+  for (std::size_t i = 0; i < view.looks.size(); ++i) view.looks[i]->bind(static_cast<GLuint>(i));
+  mesh.vertex_array().bind();
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer.id());
+  glViewport(0, 0, target.depth.width(), target.depth.height());
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+  glFrontFace(view.is_mirrored ? GL_CW : GL_CCW);
+  for (GLuint i = 0; view.is_cut && i < shader::kSectionPlanes; ++i)
+    glEnable(GL_CLIP_DISTANCE0 + i);
+  const std::size_t count =
+      std::min({clusters_per_slice_, progress.clusters - progress.next_cluster,
+                progress.next_culling - progress.next_cluster});
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, progress.commands.id());
+  glMultiDrawElementsIndirect(
+      GL_TRIANGLES, GL_UNSIGNED_INT,
+      reinterpret_cast<const void*>(progress.next_cluster * sizeof(shader::DrawCommand)),
+      static_cast<GLsizei>(count), 0);
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
+  progress.next_cluster += count;
+  for (GLuint i = 0; view.is_cut && i < shader::kSectionPlanes; ++i)
+    glDisable(GL_CLIP_DISTANCE0 + i);
+  glFlush();  // lets the driver draw this slice while the next is prepared
+  return progress.next_cluster == progress.clusters;
+}
+
+MeshView mesh_view(const Camera& camera, const glm::dvec3& origin, const Light& light) {
+  const glm::dmat4 world_from_view = glm::inverse(camera.view);
+  const auto direction = [&](const glm::dvec3& in_view) {
+    return glm::vec4(glm::normalize(glm::vec3(glm::dmat3(world_from_view) * in_view)), 0);
+  };
+  MeshView view;
+  shader::MeshUniforms& uniforms = view.uniforms;
+  uniforms.clip_from_model = clip_from_model(camera, origin);
+  uniforms.eye = is_orthographic(camera) ? direction({0, 0, 1})
+                                         : glm::vec4(glm::vec3(eye_in_world(camera) - origin), 1);
+  uniforms.key_light = direction({-0.45, 0.60, 0.75});
+  if (light.mode == LightMode::raking) {
+    const glm::dvec3 towards = glm::normalize(light.direction);
+    uniforms.key_light = direction(towards);
+    uniforms.key_light.w =
+        static_cast<float>(std::min(kRakingOnPlane / std::max(towards.z, 1e-3), kMostRaking));
+  }
+  view.light = light.mode;
+  uniforms.fill_light = direction({0.80, 0.05, 0.45});
+  uniforms.up = direction({0, 1, 0.15});
+  std::ranges::copy(section_in_model(camera, origin), uniforms.section);
+  uniforms.eye_is_cut_away = eye_is_cut_away(camera) ? 1 : 0;
+  view.is_cut = !camera.section.empty();
+  // Clip space is left-handed.
+  view.is_mirrored = glm::determinant(camera.projection) * glm::determinant(camera.view) > 0;
+  return view;
+}
+
+}  // namespace strata::render

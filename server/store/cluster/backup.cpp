@@ -1,0 +1,392 @@
+#include "store/cluster/backup.h"
+
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <thread>
+#include <vector>
+
+#include "store/cluster/cluster_process.h"
+#include "store/pg/hash.h"
+#include "store/pg/pg.h"
+
+namespace strata::store {
+namespace fs = std::filesystem;
+namespace {
+
+using nlohmann::json;
+
+constexpr int kFormat = 1;
+constexpr const char* kDump = "database.dump";
+constexpr const char* kManifest = "manifest.json";
+constexpr std::uintmax_t kLargestManifest = 64u << 20;
+constexpr auto kGlance = std::chrono::milliseconds(100);
+
+Error damaged(const fs::path& folder, const std::string& why) {
+  return {ErrorCode::invalid, "Backup damaged", folder.string() + ": " + why, {}};
+}
+
+// A folder that is being written, gone again unless it is kept.
+class Unfinished {
+ public:
+  explicit Unfinished(fs::path folder) : folder_(std::move(folder)) {}
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
+  ~Unfinished() {
+    std::error_code ignored;
+    if (!folder_.empty()) fs::remove_all(folder_, ignored);
+  }
+  const fs::path& folder() const { return folder_; }
+  Result<void> keep_as(const fs::path& name) {
+    std::error_code error;
+    fs::rename(folder_, name, error);
+    if (error)
+      return fail(ErrorCode::internal, "Not written",
+                  "Cannot name the folder " + name.string() + ": " + error.message() + ".");
+    folder_.clear();
+    return {};
+  }
+
+ private:
+  fs::path folder_;
+};
+
+// For what a program says, and for a password: not where a backup goes, whose disk may be full.
+Result<fs::path> make_scratch() {
+  std::error_code error;
+  std::string folder = (fs::temp_directory_path(error) / "strata-backup-XXXXXX").string();
+  if (!mkdtemp(folder.data()))
+    return fail(ErrorCode::internal, "Folder cannot be made",
+                folder + ": " + std::strerror(errno) + ".");
+  return fs::path(folder);
+}
+
+// --- the programs of PostgreSQL
+
+// For a field of libpq's password file.
+std::string passfile_field(std::string_view value) {
+  std::string out;
+  for (const char c : value) {
+    if (c == ':' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out;
+}
+
+// pg_dump and pg_restore show their arguments to everybody on the machine: a password goes by the
+// file.
+Result<std::string> hide_password(const std::string& dsn, const fs::path& file) {
+  char* error = nullptr;
+  const std::unique_ptr<PQconninfoOption, void (*)(PQconninfoOption*)> options(
+      PQconninfoParse(dsn.c_str(), &error), &PQconninfoFree);
+  if (!options) {
+    const std::string why = error ? error : "not understood";
+    PQfreemem(error);
+    return fail(ErrorCode::malformed, "Database not understood", why, "--database");
+  }
+  std::string shown, password;
+  for (const PQconninfoOption* option = options.get(); option->keyword; ++option) {
+    if (!option->val) continue;
+    if (std::string_view(option->keyword) == "password")
+      password = option->val;
+    else
+      shown += std::string(option->keyword) + "=" + dsn_value(option->val) + " ";
+  }
+  if (password.empty()) return shown;
+  std::ofstream out(file);
+  std::error_code ignored;
+  fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write, ignored);
+  out << "*:*:*:*:" << passfile_field(password) << "\n";
+  out.close();
+  if (!out)
+    return fail(ErrorCode::storage_full, "Disk full", "Cannot write " + file.string() + ".");
+  return shown + "passfile=" + dsn_value(file.string());
+}
+
+// Runs until it ends; `watch` is called now and then. What it says goes to `log`.
+Result<void> run_program(const std::vector<std::string>& command, const fs::path& log,
+                         const Progress& progress, const std::function<void()>& watch) {
+  const auto child = STRATA_TRY(spawn(command, DatabaseUser{}, log, SIGKILL));
+  int status = 0;
+  for (;;) {
+    const pid_t ended = waitpid(child, &status, WNOHANG);
+    if (ended == child || (ended < 0 && errno != EINTR)) break;
+    if (progress.cancelled()) kill(child, SIGKILL);
+    watch();
+    std::this_thread::sleep_for(kGlance);
+  }
+  if (progress.cancelled()) return cancelled_problem();
+  if (status == 0) return {};
+  const std::string name = fs::path(command.front()).filename();
+  const std::string said = tail(log);
+  const bool full = said.find("No space left") != std::string::npos ||
+                    said.find("File too large") != std::string::npos;
+  if (full) return fail(ErrorCode::storage_full, "Disk full", name + ": " + said);
+  return fail(ErrorCode::internal, "Not done", name + " failed: " + said);
+}
+
+// The programs must not be older than the server whose data they read.
+Result<fs::path> programs_for(PgConnection& connection) {
+  auto version =
+      STRATA_TRY(connection.query("SELECT current_setting('server_version_num')::int8 / 10000"));
+  if (auto same = find_programs(static_cast<int>(version.integer(0, 0)))) return same;
+  return find_programs(0);
+}
+
+// --- what a database holds
+
+Result<PgConnection> connect(const std::string& dsn) {
+  auto connection = STRATA_TRY(PgConnection::connect(dsn, kMigrationLimits));
+  // Rows are compared as texts: everything that changes how one is written is set.
+  if (auto set = connection.script(
+          "SET datestyle = 'ISO'; SET intervalstyle = 'postgres'; SET timezone = 'UTC'; "
+          "SET extra_float_digits = 1; SET bytea_output = 'hex'; SET search_path = ''");
+      !set)
+    return tl::unexpected(set.error());
+  return connection;
+}
+
+struct Relation {
+  std::string name;  // quoted and with its schema
+  std::int64_t bytes;
+};
+
+Result<std::vector<Relation>> relations(PgConnection& connection, const char* kind) {
+  auto found = STRATA_TRY(connection.query_once(
+      "SELECT format('%I.%I', n.nspname, c.relname), pg_catalog.pg_table_size(c.oid) FROM pg_catalog.pg_class c "
+      "JOIN pg_catalog.pg_namespace n ON n.oid = c.relnamespace WHERE c.relkind = '" +
+      std::string(kind) +
+      "' AND n.nspname !~ '^pg_' AND n.nspname <> 'information_schema' ORDER BY 1"));
+  std::vector<Relation> list;
+  for (int row = 0; row < found.rows(); ++row)
+    list.push_back({found.text(row, 0), found.integer(row, 1)});
+  return list;
+}
+
+Result<void> read_contents(PgConnection& connection, BackupFacts& facts, Progress& progress) {
+  const auto tables = STRATA_TRY(relations(connection, "r"));
+  std::int64_t all = 1, done = 0;
+  for (const Relation& table : tables) all += table.bytes;
+  for (const Relation& table : tables) {
+    if (progress.cancelled()) return cancelled_problem();
+    progress.report(double(done) / double(all), "Reading it over");
+    // Sixty bits of a hash of each row, added up: the order of rows does not matter, and two that
+    // are alike do not cancel out.
+    auto sum = STRATA_TRY(connection.query_once(
+        "SELECT count(*), coalesce(sum(('x' || left(md5(t::text), 15))::bit(60)::int8), 0)::text FROM ONLY " +
+        table.name + " t"));
+    facts.tables[table.name] = {sum.integer(0, 0), sum.text(0, 1)};
+    done += table.bytes;
+  }
+  const auto sequences = STRATA_TRY(relations(connection, "S"));
+  for (const Relation& sequence : sequences) {
+    auto last = STRATA_TRY(connection.query_once(
+        "SELECT CASE WHEN is_called THEN last_value ELSE last_value - 1 END FROM " +
+        sequence.name));
+    facts.sequences[sequence.name] = last.integer(0, 0);
+  }
+  return {};
+}
+
+// --- the files
+
+Result<void> read_dump(const fs::path& file, BackupFacts& facts, Progress& progress) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return fail(ErrorCode::not_found, "No backup", "Cannot read " + file.string() + ".");
+  std::error_code error;
+  const double size = std::max<double>(1, double(fs::file_size(file, error)));
+  Sha256Stream digest;
+  std::vector<char> piece(1u << 20);
+  while (in) {
+    if (progress.cancelled()) return cancelled_problem();
+    in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    const auto count = static_cast<std::size_t>(in.gcount());
+    digest.add({reinterpret_cast<const std::uint8_t*>(piece.data()), count});
+    facts.bytes += count;
+    progress.report(double(facts.bytes) / size, "Reading the dump");
+  }
+  if (in.bad())
+    return fail(ErrorCode::internal, "Not readable", "Reading " + file.string() + " failed.");
+  facts.sha256 = to_hex(digest.finish());
+  return {};
+}
+
+json to_json(const BackupFacts& facts) {
+  json tables = json::object();
+  for (const auto& [name, table] : facts.tables)
+    tables[name] = {{"rows", table.rows}, {"digest", table.digest}};
+  return {{"format", kFormat},
+          {"made", facts.made},
+          {"schema_version", facts.schema_version},
+          {"postgresql", facts.server_version},
+          {"dump", {{"bytes", facts.bytes}, {"sha256", facts.sha256}}},
+          {"tables", std::move(tables)},
+          {"sequences", facts.sequences}};
+}
+
+Result<BackupFacts> read_manifest(const fs::path& folder) {
+  const fs::path file = folder / kManifest;
+  std::error_code error;
+  const auto size = fs::file_size(file, error);
+  if (error)
+    return fail(
+        ErrorCode::not_found, "No backup",
+        "There is no " + file.string() + ": name a folder that `strata backup` has written.");
+  if (size > kLargestManifest) return tl::unexpected(damaged(folder, "the manifest is too large."));
+  std::ifstream in(file);
+  const json manifest = json::parse(in, nullptr, false);
+  try {
+    if (manifest.at("format").get<int>() != kFormat)
+      return fail(ErrorCode::invalid, "Another format",
+                  folder.string() + " was written by a newer version of this program.");
+    BackupFacts facts;
+    facts.made = manifest.at("made").get<std::string>();
+    facts.schema_version = manifest.at("schema_version").get<std::int64_t>();
+    facts.server_version = manifest.at("postgresql").get<std::string>();
+    facts.bytes = manifest.at("dump").at("bytes").get<std::uint64_t>();
+    facts.sha256 = manifest.at("dump").at("sha256").get<std::string>();
+    for (const auto& [name, table] : manifest.at("tables").items())
+      facts.tables[name] = {table.at("rows").get<std::int64_t>(),
+                            table.at("digest").get<std::string>()};
+    facts.sequences = manifest.at("sequences").get<std::map<std::string, std::int64_t>>();
+    return facts;
+  } catch (const json::exception&) {
+    return tl::unexpected(damaged(folder, std::string(kManifest) + " is not what a backup has."));
+  }
+}
+
+Result<void> write_file(const fs::path& file, const std::string& text) {
+  std::ofstream out(file);
+  out << text;
+  out.close();
+  if (!out)
+    return fail(ErrorCode::storage_full, "Disk full", "Cannot write " + file.string() + ".");
+  return {};
+}
+
+Result<void> dump(PgConnection& connection, const std::string& dsn, const std::string& snapshot,
+                  const fs::path& folder, std::uint64_t database_bytes, Progress& progress) {
+  const auto programs = STRATA_TRY(programs_for(connection));
+  const auto made = STRATA_TRY(make_scratch());
+  const Unfinished scratch(made);
+  const auto client = STRATA_TRY(hide_password(dsn, scratch.folder() / "password"));
+  const fs::path file = folder / kDump;
+  return run_program(
+      {programs / "pg_dump", "--format=custom", "--compress=1", "--no-owner", "--no-privileges",
+       "--snapshot=" + snapshot, "--file=" + file.string(), "--dbname=" + client},
+      scratch.folder() / "log", progress, [&] {
+        std::error_code not_yet;
+        const auto size = fs::file_size(file, not_yet);
+        if (!not_yet)
+          progress.report(std::min(0.99, double(size) / double(database_bytes + 1)),
+                          "Writing, " + std::to_string(size >> 20) + " MB so far");
+      });
+}
+
+}  // namespace
+
+std::int64_t BackupFacts::rows_of(const std::string& table) const {
+  const auto found = tables.find(table);
+  return found == tables.end() ? 0 : found->second.rows;
+}
+
+Result<BackupFacts> write_backup(const std::string& dsn, const fs::path& folder,
+                                 Progress& progress) {
+  std::error_code error;
+  if (fs::exists(folder, error))
+    return fail(ErrorCode::conflict, "Already there",
+                folder.string() + " exists: a backup makes a folder of its own.", "folder");
+  auto connection = STRATA_TRY(connect(dsn));
+
+  // Others may read a backup only if they are let: it holds everything, hashes of passwords among
+  // it.
+  fs::path part = folder;
+  part += ".part";
+  fs::remove_all(part, error);  // of one that was killed
+  fs::create_directories(fs::absolute(part, error).parent_path(), error);
+  if (mkdir(part.c_str(), 0700) != 0)
+    return fail(ErrorCode::internal, "Folder cannot be made",
+                part.string() + ": " + std::strerror(errno) + ".", "folder");
+  Unfinished unfinished(part);
+
+  const auto moment = STRATA_TRY(Transaction::begin_reading(connection));
+  auto state = STRATA_TRY(connection.query(
+      "SELECT pg_export_snapshot(), to_char(now() AT TIME ZONE 'UTC', 'YYYY-MM-DD\"T\"HH24:MI:SS\"Z\"'), "
+      "(SELECT max(version::int8) FROM public.schema_migrations), current_setting('server_version'), "
+      "pg_database_size(current_database())"));
+  BackupFacts facts;
+  facts.made = state.text(0, 1);
+  facts.schema_version = state.integer(0, 2);
+  facts.server_version = state.text(0, 3);
+
+  // Before the dump: sequences go on, whatever moment is looked at, and the dump's must not stand
+  // behind these.
+  progress.begin_stage(0, 0.4);
+  STRATA_TRY(read_contents(connection, facts, progress));
+  progress.begin_stage(0.4, 0.9);
+  if (auto dumped = dump(connection, dsn, state.text(0, 0), part,
+                         static_cast<std::uint64_t>(state.integer(0, 4)), progress);
+      !dumped)
+    return tl::unexpected(dumped.error());
+  progress.begin_stage(0.9, 1);
+  STRATA_TRY(read_dump(part / kDump, facts, progress));
+  STRATA_TRY(write_file(part / kManifest, to_json(facts).dump(2) + "\n"));
+  STRATA_TRY(unfinished.keep_as(folder));
+  return facts;
+}
+
+Result<BackupFacts> check_backup(const fs::path& folder, Progress& progress) {
+  auto facts = STRATA_TRY(read_manifest(folder));
+  BackupFacts found;
+  STRATA_TRY(read_dump(folder / kDump, found, progress));
+  if (found.bytes != facts.bytes)
+    return tl::unexpected(damaged(folder, std::string(kDump) + " has " +
+                                              std::to_string(found.bytes) + " bytes; " +
+                                              std::to_string(facts.bytes) + " were written."));
+  if (found.sha256 != facts.sha256)
+    return tl::unexpected(
+        damaged(folder, std::string(kDump) + " is not what was written: its checksum differs."));
+  return facts;
+}
+
+Result<void> restore_backup(const fs::path& folder, const BackupFacts& facts,
+                            const std::string& dsn, Progress& progress) {
+  auto connection = STRATA_TRY(connect(dsn));
+  const auto there = STRATA_TRY(relations(connection, "r"));
+  if (!there.empty())
+    return fail(ErrorCode::conflict, "Database not empty",
+                "A backup is restored into an empty database only; this one has the table " +
+                    there.front().name + ".",
+                "--database");
+  const auto programs = STRATA_TRY(programs_for(connection));
+
+  const auto made = STRATA_TRY(make_scratch());
+  const Unfinished scratch(made);
+  const auto client = STRATA_TRY(hide_password(dsn, scratch.folder() / "password"));
+  progress.begin_stage(0, 0.7);
+  STRATA_TRY(
+      run_program({programs / "pg_restore", "--exit-on-error", "--single-transaction", "--no-owner",
+                   "--no-privileges", "--dbname=" + client, (folder / kDump).string()},
+                  scratch.folder() / "log", progress, [&] { progress.report(0.5, "Restoring"); }));
+
+  progress.begin_stage(0.7, 1);
+  BackupFacts now;
+  const auto moment = STRATA_TRY(Transaction::begin_reading(connection));
+  STRATA_TRY(read_contents(connection, now, progress));
+  for (const auto& [name, table] : facts.tables)
+    if (const auto found = now.tables.find(name);
+        found == now.tables.end() || found->second != table)
+      return tl::unexpected(damaged(folder, "the table " + name + " is not what was backed up."));
+  for (const auto& [name, last] : facts.sequences)
+    if (const auto found = now.sequences.find(name);
+        found == now.sequences.end() || found->second < last)
+      return tl::unexpected(damaged(folder, "the sequence " + name + " would give numbers again."));
+  return {};
+}
+
+}  // namespace strata::store

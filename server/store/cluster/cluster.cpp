@@ -1,0 +1,348 @@
+#include "store/cluster/cluster.h"
+
+#include <fcntl.h>
+#include <libpq-fe.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <fstream>
+#include <functional>
+#include <future>
+#include <mutex>
+#include <thread>
+
+#include "core/log.h"
+#include "core/text/slug.h"
+#include "store/cluster/cluster_process.h"
+#include "store/cluster/sql_readers.h"
+#include "store/pg/hash.h"
+#include "store/pg/pg.h"
+
+namespace strata::store {
+namespace fs = std::filesystem;
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+constexpr std::size_t kLongestSocketPath = 107;  // sockaddr_un
+constexpr std::uintmax_t kLargestLog = 16u << 20;
+
+// Where the socket lies: in the folder, or in a short one where its path would be too long for a
+// socket.
+fs::path socket_folder(const fs::path& folder) {
+  if ((folder / ".s.PGSQL.65535.lock").string().size() <= kLongestSocketPath) return folder;
+  return "/tmp/strata-" + to_hex(sha256(folder.string())).substr(0, 16);
+}
+
+constexpr int kUsualPort = 5432;
+
+// PostgreSQL has one port, which names its socket, too.
+std::string dsn_of(const fs::path& sockets, int port, const std::string& database) {
+  return "host=" + dsn_value(sockets.string()) + " port=" + std::to_string(port) +
+         " user=strata dbname=" + dsn_value(database);
+}
+
+// Of the postmaster that has the data open, from the fourth line of its file.
+int running_port(const fs::path& data) {
+  std::ifstream file(data / "postmaster.pid");
+  std::string line;
+  for (int i = 0; i < 4; ++i)
+    if (!std::getline(file, line)) return kUsualPort;
+  return is_all_digits(line) && line.size() <= 5 ? std::stoi(line) : kUsualPort;
+}
+
+fs::path postgres_folder(const fs::path& data_dir) {
+  std::error_code error;
+  return fs::absolute(data_dir, error).lexically_normal() / "postgres";
+}
+
+int version_of(const fs::path& data) {
+  int major = 0;
+  if (std::ifstream version(data / "PG_VERSION"); version) version >> major;
+  return major;
+}
+
+}  // namespace
+
+struct Cluster::Impl {
+  fs::path folder;   // data_dir/postgres
+  fs::path data;     // folder/pgdata
+  fs::path sockets;  // folder, or a short one where its path is too long for a socket
+  fs::path programs;
+  fs::path log_file;
+  DatabaseUser user;
+  std::optional<SqlListen> sql;
+  int lock_fd = -1;
+
+  // The keeper thread runs every fork and wait; others hand it work.
+  std::thread keeper;
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::vector<std::packaged_task<Result<void>()>> tasks;
+  bool stopping = false;
+  bool watching = false;
+  std::atomic<pid_t> postmaster{0};
+
+  ~Impl() {
+    if (keeper.joinable()) {
+      (void)on_keeper([this] { return stop(); });
+      {
+        std::lock_guard lock(mutex);
+        stopping = true;
+        changed.notify_all();
+      }
+      keeper.join();
+    }
+    if (!sockets.empty() && sockets != folder) rmdir(sockets.c_str());
+    if (lock_fd >= 0) close(lock_fd);
+  }
+
+  Result<void> on_keeper(std::function<Result<void>()> work) {
+    std::packaged_task<Result<void>()> task(std::move(work));
+    auto outcome = task.get_future();
+    {
+      std::lock_guard lock(mutex);
+      tasks.push_back(std::move(task));
+      changed.notify_all();
+    }
+    return outcome.get();
+  }
+
+  void keep() {
+    std::unique_lock lock(mutex);
+    while (!stopping) {
+      if (tasks.empty()) {
+        changed.wait_for(lock, 100ms);
+        if (watching && tasks.empty() && !stopping) {
+          lock.unlock();
+          if (!running()) {
+            log::warning("database: the private PostgreSQL stopped, starting it again");
+            if (auto started = run(); !started) log::error("database: " + started.error().detail);
+          }
+          lock.lock();
+        }
+        continue;
+      }
+      auto task = std::move(tasks.front());
+      tasks.erase(tasks.begin());
+      lock.unlock();
+      task();
+      lock.lock();
+    }
+  }
+
+  Result<void> prepare(const fs::path& data_dir) {
+    auto who = STRATA_TRY(database_user());
+    user = std::move(who);
+    std::error_code error;
+    folder = postgres_folder(data_dir);
+    data = folder / "pgdata";
+    log_file = folder / "postgres.log";
+    STRATA_TRY(give_folder(folder, user));
+
+    lock_fd = open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    if (lock_fd < 0 || flock(lock_fd, LOCK_EX | LOCK_NB) != 0)
+      return fail(ErrorCode::conflict, "Data folder in use",
+                  "Another Strata server uses " + data_dir.string() +
+                      ". Stop it, or choose another --data.");
+
+    sockets = socket_folder(folder);
+    if (sockets != folder) {
+      if (mkdir(sockets.c_str(), 0700) == 0 && user.switch_user &&
+          chown(sockets.c_str(), user.uid, user.gid) != 0)
+        return fail(ErrorCode::internal, "Socket folder not usable",
+                    "Cannot give " + sockets.string() + " to " + user.name + ".");
+      struct stat info {};
+      if (lstat(sockets.c_str(), &info) != 0 || !S_ISDIR(info.st_mode) || info.st_uid != user.uid ||
+          (info.st_mode & 077) != 0)
+        return fail(ErrorCode::internal, "Socket folder not usable",
+                    sockets.string() + " belongs to someone else. Remove it.");
+    }
+    if (fs::exists(log_file, error) && fs::file_size(log_file, error) > kLargestLog)
+      fs::rename(log_file, folder / "postgres.log.1", error);
+
+    const int major = version_of(data);
+    auto found = STRATA_TRY(find_programs(major));
+    programs = found;
+    if (major == 0) STRATA_TRY(initialise());
+    return write_access_rules();
+  }
+
+  // Who may connect: by the socket, in a folder of the database user's own, the server; by TCP
+  // analysts alone.
+  Result<void> write_access_rules() {
+    std::ofstream file(access_rules(), std::ios::trunc);
+    file << "local all all trust\n";
+    if (sql)
+      for (const char* address : {"127.0.0.1/32", "::1/128"})
+        file << "host strata " << kReaderRole << " " << address << " scram-sha-256\n";
+    file.close();
+    if (!file || chmod(access_rules().c_str(), 0600) != 0 ||
+        (user.switch_user && chown(access_rules().c_str(), user.uid, user.gid) != 0))
+      return fail(ErrorCode::internal, "Database folder not writable",
+                  "Cannot write " + access_rules().string() + ".");
+    return {};
+  }
+  fs::path access_rules() const { return folder / "access.conf"; }
+
+  // In a folder of another name first: an initdb cut short leaves nothing that looks like a
+  // database.
+  Result<void> initialise() {
+    const fs::path fresh = folder / "pgdata.new";
+    std::error_code error;
+    fs::remove_all(fresh, error);
+    auto child = STRATA_TRY(spawn({programs / "initdb", "-D", fresh, "-U", "strata", "-A", "trust",
+                                   "-E", "UTF8", "--locale=C.UTF-8", "--no-instructions"},
+                                  user, log_file, SIGKILL));
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    if (status != 0)
+      return fail(ErrorCode::internal, "Database not made",
+                  "initdb failed in " + folder.string() + ": " + tail(log_file));
+    fs::rename(fresh, data, error);
+    if (error)
+      return fail(ErrorCode::internal, "Database not made",
+                  "Cannot rename " + fresh.string() + ": " + error.message() + ".");
+    return {};
+  }
+
+  bool running() {
+    const pid_t pid = postmaster;
+    if (pid <= 0) return false;
+    int status = 0;
+    const pid_t ended = waitpid(pid, &status, WNOHANG);
+    if (ended == 0 || (ended < 0 && errno == EINTR)) return true;
+    postmaster = 0;
+    return false;
+  }
+
+  // The one that answers is ours, not one that a killed server left behind and that is still
+  // ending.
+  bool owns_data() const {
+    pid_t owner = 0;
+    std::ifstream(data / "postmaster.pid") >> owner;
+    return owner == postmaster;
+  }
+
+  int port() const { return sql ? sql->port : kUsualPort; }
+  std::string dsn(const std::string& database) const { return dsn_of(sockets, port(), database); }
+
+  // After a `kill -9` of the postmaster its orphans hold the lock file and the shared memory until
+  // they notice, so a start that fails at once is tried again every 100 ms.
+  Result<void> run() {
+    if (running()) return {};
+    const auto deadline = Clock::now() + 30s;
+    for (;;) {
+      auto child = spawn({programs / "postgres",
+                          "-D",
+                          data,
+                          "-k",
+                          sockets,
+                          "-p",
+                          std::to_string(port()),
+                          "-c",
+                          "listen_addresses=" + (sql ? sql->host : std::string()),
+                          "-c",
+                          "hba_file=" + access_rules().string(),
+                          "-c",
+                          "unix_socket_permissions=0700",
+                          "-c",
+                          "jit=off",
+                          "-c",
+                          "max_wal_size=2GB",
+                          "-c",
+                          "log_timezone=UTC",
+                          "-c",
+                          "log_min_messages=warning",
+                          "-c",
+                          "logging_collector=off"},
+                         user, log_file, SIGINT);
+      if (!child) return tl::unexpected(child.error());
+      postmaster = *child;
+      // Replaying the log after a crash may take minutes; it ends by itself, or the postmaster
+      // does.
+      while (running()) {
+        if (owns_data() && PQping(dsn("postgres").c_str()) == PQPING_OK) return {};
+        std::this_thread::sleep_for(10ms);
+      }
+      if (Clock::now() >= deadline)
+        return fail(ErrorCode::unavailable, "Database not started",
+                    "PostgreSQL in " + folder.string() + " does not start: " + tail(log_file));
+      std::this_thread::sleep_for(100ms);
+    }
+  }
+
+  // Fast: ends sessions, writes a checkpoint. One that hangs is ended less gently; its log makes
+  // that whole at the next start.
+  Result<void> stop() {
+    for (const auto& [signal_number, patience] :
+         {std::pair{SIGINT, 30s}, std::pair{SIGQUIT, 5s}, std::pair{SIGKILL, 5s}}) {
+      if (!running()) return {};
+      kill(postmaster, signal_number);
+      for (const auto deadline = Clock::now() + patience; running() && Clock::now() < deadline;)
+        std::this_thread::sleep_for(5ms);
+    }
+    if (running())
+      log::error("database: PostgreSQL " + std::to_string(postmaster) + " does not end");
+    return {};
+  }
+
+  Result<void> make_database() {
+    auto connection = STRATA_TRY(PgConnection::connect(dsn("postgres")));
+    auto known = STRATA_TRY(connection.query("SELECT 1 FROM pg_database WHERE datname = 'strata'"));
+    return known.rows() > 0 ? Result<void>{} : connection.script("CREATE DATABASE strata");
+  }
+};
+
+Cluster::Cluster() : impl_(std::make_unique<Impl>()) {}
+Cluster::~Cluster() = default;
+
+Cluster::State Cluster::inspect(const fs::path& data_dir) {
+  const fs::path folder = postgres_folder(data_dir);
+  State state;
+  state.version = version_of(folder / "pgdata");
+  state.dsn = dsn_of(socket_folder(folder), running_port(folder / "pgdata"), "strata");
+  state.running =
+      state.version > 0 && PQping((state.dsn + " connect_timeout=5").c_str()) == PQPING_OK;
+  if (auto programs = find_programs(state.version); !programs) state.trouble = programs.error();
+  if (auto user = database_user(); !user) state.trouble = user.error();
+  return state;
+}
+
+Result<std::unique_ptr<Cluster>> Cluster::start(const fs::path& data_dir,
+                                                const std::optional<SqlListen>& sql) {
+  std::unique_ptr<Cluster> cluster(new Cluster);
+  Impl& impl = *cluster->impl_;
+  impl.sql = sql;
+  impl.keeper = std::thread([&impl] { impl.keep(); });
+  STRATA_TRY(impl.on_keeper([&]() -> Result<void> {
+    if (auto prepared = impl.prepare(data_dir); !prepared) return prepared;
+    if (auto running = impl.run(); !running) return running;
+    return impl.make_database();
+  }));
+  return cluster;
+}
+
+std::string Cluster::dsn() const { return impl_->dsn("strata"); }
+std::string Cluster::dsn(const std::string& database) const { return impl_->dsn(database); }
+int Cluster::postmaster_pid() const { return impl_->postmaster; }
+
+Result<void> Cluster::ensure_running() {
+  return impl_->on_keeper([this] { return impl_->run(); });
+}
+
+void Cluster::watch() {
+  std::lock_guard lock(impl_->mutex);
+  impl_->watching = true;
+  impl_->changed.notify_all();
+}
+
+}  // namespace strata::store

@@ -1,0 +1,189 @@
+#include "store/cluster/cluster_process.h"
+
+#include <fcntl.h>
+#include <grp.h>
+#include <pwd.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "core/text/slug.h"
+
+extern char** environ;
+
+namespace strata::store {
+namespace fs = std::filesystem;
+
+Result<DatabaseUser> database_user() {
+  DatabaseUser user;
+  user.uid = geteuid();
+  user.gid = getegid();
+  if (user.uid != 0) {
+    user.name = "this user";
+    return user;
+  }
+  const passwd* entry = getpwnam("postgres");
+  if (!entry)
+    return fail(
+        ErrorCode::internal, "No database user",
+        "PostgreSQL refuses to run as root and there is no user `postgres`. Install postgresql, run Strata as "
+        "another user, or give --database.");
+  user.switch_user = true;
+  user.name = entry->pw_name;
+  user.uid = entry->pw_uid;
+  user.gid = entry->pw_gid;
+  int count = 64;
+  user.groups.resize(count);
+  if (getgrouplist(entry->pw_name, entry->pw_gid, user.groups.data(), &count) < 0) count = 64;
+  user.groups.resize(count);
+  return user;
+}
+
+Result<fs::path> find_programs(int wanted_major) {
+  int best = 0;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator("/usr/lib/postgresql", error)) {
+    const std::string version = entry.path().filename();
+    if (!is_all_digits(version) || version.size() > 3 ||
+        !fs::exists(entry.path() / "bin/postgres", error))
+      continue;
+    const int major = std::stoi(version);
+    if (major > best && (wanted_major == 0 || major == wanted_major)) best = major;
+  }
+  if (best > 0) return fs::path("/usr/lib/postgresql") / std::to_string(best) / "bin";
+  if (const char* path = std::getenv("PATH"); path && wanted_major == 0) {
+    std::string rest = path;
+    while (!rest.empty()) {
+      const fs::path folder = rest.substr(0, rest.find(':'));
+      rest.erase(0, std::min(rest.size(), folder.string().size() + 1));
+      if (fs::exists(folder / "postgres", error) && fs::exists(folder / "initdb", error))
+        return folder;
+    }
+  }
+  const std::string which =
+      wanted_major ? "PostgreSQL " + std::to_string(wanted_major) + ", which wrote the data,"
+                   : "PostgreSQL";
+  return fail(
+      ErrorCode::internal, "PostgreSQL missing",
+      which +
+          " is not installed (looked in /usr/lib/postgresql/*/bin). Install postgresql, or give --database.");
+}
+
+namespace {
+
+// Only system calls here: other threads may hold the locks of malloc and stdio at the time of the
+// fork.
+bool become(const DatabaseUser& user) {
+  if (!user.switch_user) return true;
+  return setgroups(user.groups.size(), user.groups.data()) == 0 && setgid(user.gid) == 0 &&
+         setuid(user.uid) == 0;
+}
+
+}  // namespace
+
+Result<void> give_folder(const fs::path& folder, const DatabaseUser& user) {
+  std::error_code error;
+  // Every folder made here can be passed through by the database user; what is in them decides for
+  // itself.
+  fs::path made;
+  for (const auto& part : folder) {
+    made /= part;
+    if (fs::exists(made, error)) continue;
+    if (mkdir(made.c_str(), 0755) != 0 && errno != EEXIST)
+      return fail(ErrorCode::internal, "Data folder not usable",
+                  "Cannot make " + made.string() + ": " + std::strerror(errno) + ".");
+    chmod(made.c_str(), 0755);
+  }
+  struct stat info {};
+  if (lstat(folder.c_str(), &info) != 0 || !S_ISDIR(info.st_mode))
+    return fail(ErrorCode::internal, "Data folder not usable",
+                folder.string() + " is not a folder.");
+  if ((user.switch_user && info.st_uid != user.uid &&
+       chown(folder.c_str(), user.uid, user.gid) != 0) ||
+      chmod(folder.c_str(), 0700) != 0)
+    return fail(
+        ErrorCode::internal, "Data folder not usable",
+        "Cannot give " + folder.string() + " to " + user.name + ": " + std::strerror(errno) + ".");
+
+  const pid_t child = fork();
+  if (child == 0) _exit(become(user) && chdir(folder.c_str()) == 0 ? 0 : 1);
+  int status = 0;
+  while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (child < 0 || status != 0)
+    return fail(
+        ErrorCode::internal, "Data folder not reachable",
+        "The database runs as user `" + user.name + "`, who cannot enter " + folder.string() +
+            ". Choose a data folder outside a private home, such as /var/lib/strata, or give the user the right "
+            "to pass through the folders above it (chmod o+x).");
+  return {};
+}
+
+Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser& user,
+                    const fs::path& log, int death_signal) {
+  std::vector<char*> arguments;
+  for (const auto& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  std::vector<char*> environment;
+  // PGDATA, PGPORT… are someone else's
+  for (char** variable = environ; *variable; ++variable)
+    if (std::strncmp(*variable, "PG", 2) != 0) environment.push_back(*variable);
+  environment.push_back(nullptr);
+
+  const int output = open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0640);
+  if (output < 0)
+    return fail(ErrorCode::internal, "Data folder not usable",
+                "Cannot write " + log.string() + ": " + std::strerror(errno));
+  const pid_t parent = getpid();
+  const pid_t child = fork();
+  if (child == 0) {
+    setpgid(0, 0);
+    for (int signal_number = 1; signal_number < 32; ++signal_number) signal(signal_number, SIG_DFL);
+    sigset_t none;
+    sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, nullptr);
+    const int nothing = open("/dev/null", O_RDONLY);
+    if (dup2(nothing, 0) < 0 || dup2(output, 1) < 0 || dup2(output, 2) < 0) _exit(126);
+    for (int fd = 3; fd < 4096; ++fd) close(fd);
+    if (!become(user)) _exit(126);
+    prctl(PR_SET_PDEATHSIG, death_signal);  // after setuid, which clears it
+    if (getppid() != parent) _exit(126);    // died meanwhile
+    umask(0077);
+    if (chdir("/") != 0) _exit(126);
+    execve(arguments[0], arguments.data(), environment.data());
+    _exit(127);
+  }
+  close(output);
+  if (child < 0)
+    return fail(ErrorCode::internal, "Database not started",
+                std::string("Cannot fork: ") + std::strerror(errno));
+  return child;
+}
+
+std::string dsn_value(std::string_view value) {
+  std::string out = "'";
+  for (const char c : value) {
+    if (c == '\'' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "'";
+}
+
+std::string tail(const fs::path& file, std::size_t bytes) {
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  if (!in) return {};
+  const auto size = static_cast<std::size_t>(in.tellg());
+  const std::size_t start = size > bytes ? size - bytes : 0;
+  std::string text(size - start, '\0');
+  in.seekg(static_cast<std::streamoff>(start));
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  return text;
+}
+
+}  // namespace strata::store

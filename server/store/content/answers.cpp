@@ -1,0 +1,48 @@
+#include "store/content/answers.h"
+#include "store/store_impl.h"
+
+namespace strata::store {
+namespace {
+
+Result<void> check_key(const std::string& key) {
+  if (key.empty() || key.size() > kLongestName)
+    return fail(ErrorCode::malformed, "Bad Idempotency-Key",
+                "An Idempotency-Key has 1 to 255 bytes.", "Idempotency-Key");
+  return check_text(key, "Idempotency-Key");
+}
+
+}  // namespace
+
+Result<std::optional<nlohmann::json>> Answers::find(const std::string& key) {
+  STRATA_TRY(check_key(key));
+  return pool_.read([&](PgConnection& connection) -> Result<std::optional<nlohmann::json>> {
+    auto row = STRATA_TRY(connection.query(
+        "SELECT answer FROM answers WHERE key = $1 AND time > now() - interval '7 days'",
+        Params().text(key)));
+    if (row.rows() == 0) return std::optional<nlohmann::json>();
+    return std::optional<nlohmann::json>(row.json(0, 0));
+  });
+}
+
+// Those past their time make room. Another server may be doing the same: each takes what the other
+// has not.
+Result<void> insert_answer(PgConnection& connection, const std::string& key,
+                           const nlohmann::json& answer) {
+  STRATA_TRY(check_key(key));
+  STRATA_TRY(check_json(answer, "answer"));
+  STRATA_TRY(connection.query(
+      "DELETE FROM answers WHERE key IN (SELECT key FROM answers "
+      "WHERE time <= now() - interval '7 days' LIMIT 1000 FOR UPDATE SKIP LOCKED)"));
+  auto kept = STRATA_TRY(
+      connection.query("INSERT INTO answers (key, answer) VALUES ($1, $2) "
+                       "ON CONFLICT (key) DO UPDATE SET answer = excluded.answer, time = now() "
+                       "WHERE answers.time <= now() - interval '7 days'",
+                       Params().text(key).json(answer)));
+  if (kept.affected() == 0)
+    return fail(ErrorCode::conflict, "Done already",
+                "Another call with this Idempotency-Key was quicker; ask again for its answer.",
+                "Idempotency-Key");
+  return {};
+}
+
+}  // namespace strata::store

@@ -1,0 +1,437 @@
+#include "store/content/layers.h"
+#include "domain/layers/revision.h"
+#include "domain/tables/term_list.h"
+#include "store/store_impl.h"
+#include "store/tables/table_writer.h"
+
+namespace strata::store {
+namespace {
+
+// Something that a computed layer reads is newer than it, or gone.
+#define STRATA_LAYER_STALE                                                                                              \
+  "(expression IS NOT NULL AND (computed_sequence = 0 OR EXISTS (SELECT 1 FROM layer_inputs i LEFT JOIN layers l ON "   \
+  "l.id = i.input_id LEFT JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = layers.id AND (l.id IS NULL OR " \
+  "l.sequence > layers.computed_sequence OR t.sequence > i.table_sequence))))"
+#define STRATA_LAYER_COLUMNS                                                                                                                              \
+  "id, model_id, name, slug::text, kind, type, resolution, unit, description, palette, opacity, visible, draw_order, "                                    \
+  "table_id, sequence, version, expression, automatic, computed_sequence, "                                                                               \
+  "(SELECT coalesce(jsonb_agg(jsonb_build_object('slug', i.slug, 'layer', "                                                                               \
+  "(SELECT l.id FROM layers l WHERE l.id = i.input_id), 'table', i.table_id) ORDER BY i.slug), '[]') FROM layer_inputs i WHERE i.layer_id = layers.id), " \
+  "EXISTS (SELECT 1 FROM layer_inputs i JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = layers.id AND "                                      \
+  "t.sequence > i.table_sequence), " STRATA_LAYER_STALE                                                                                                   \
+  ", locked, visibility, review, labels, descriptions, "                                                                                                  \
+  "(SELECT o.origin FROM layer_origins o WHERE o.layer_id = layers.id), "                                                                                 \
+  "coalesce((SELECT o.edited_by_hand FROM layer_origins o WHERE o.layer_id = layers.id), false)"
+
+// A palette without points is that of the terms, where the layer's table is a list of such.
+Result<void> take_term_colors(PgConnection& connection, Layer& layer) {
+  if (!layer.table || !takes_term_colors(layer.palette)) return {};
+  auto palette = STRATA_TRY(term_palette_of(connection, *layer.table));
+  layer.palette_of_terms = palette.has_value();
+  if (layer.palette_of_terms) layer.palette = std::move(*palette);
+  return {};
+}
+
+// As it is kept: one of the terms has no points of its own.
+nlohmann::json palette_to_keep(const Layer& layer) {
+  if (!layer.palette_of_terms) return to_json(layer.palette);
+  return to_json(terms_palette({}));
+}
+
+Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) {
+  Layer layer;
+  layer.id = rows.integer(i, 0);
+  layer.model_id = rows.integer(i, 1);
+  layer.name = rows.text(i, 2);
+  layer.slug = rows.text(i, 3);
+  layer.kind = rows.text(i, 4) == "database" ? LayerKind::database : LayerKind::numeric;
+  const auto type = parse_value_type(rows.text(i, 5));
+  if (!type)
+    return fail(ErrorCode::internal, "Damaged layer",
+                "Layer " + std::to_string(layer.id) + " has an unknown value type.");
+  layer.type = *type;
+  layer.resolution = static_cast<int>(rows.integer(i, 6));
+  layer.unit = rows.text(i, 7);
+  layer.description = rows.text(i, 8);
+  // One damaged palette must not hide a layer's paint.
+  layer.palette = palette_from_json(rows.json(i, 9))
+                      .value_or(default_palette(layer.type, layer.kind == LayerKind::database));
+  layer.opacity = rows.real(i, 10);
+  layer.visible = rows.boolean(i, 11);
+  layer.order = static_cast<int>(rows.integer(i, 12));
+  if (!rows.null(i, 13)) layer.table = rows.integer(i, 13);
+  STRATA_TRY(take_term_colors(connection, layer));
+  layer.sequence = rows.integer(i, 14);
+  layer.version = rows.integer(i, 15);
+  layer.locked = rows.boolean(i, 22);
+  layer.review = rows.boolean(i, 24);
+  layer.labels = rows.json(i, 25).get<Labels>();
+  layer.descriptions = rows.json(i, 26).get<Labels>();
+  if (!rows.null(i, 27))
+    layer.origin = rows.text(i, 27) == "shape" ? LayerOrigin::shape : LayerOrigin::expression;
+  layer.edited_by_hand = rows.boolean(i, 28);
+  // What cannot be told is not shown.
+  layer.visibility = parse_visibility(rows.text(i, 23)).value_or(Visibility::curators);
+  if (rows.null(i, 16)) return layer;
+  LayerFormula formula{
+      rows.text(i, 16),   rows.boolean(i, 17), rows.integer(i, 18), rows.boolean(i, 20), {},
+      rows.boolean(i, 21)};
+  for (const nlohmann::json& input : rows.json(i, 19)) {
+    const auto id = [&](const char* member) {
+      const nlohmann::json& value = input.at(member);
+      return value.is_null() ? std::nullopt : std::optional(value.get<std::int64_t>());
+    };
+    formula.inputs.push_back({input.at("slug").get<std::string>(), id("layer"), id("table")});
+  }
+  layer.formula = std::move(formula);
+  return layer;
+}
+
+Result<Layer> load_layer(PgConnection& connection, std::int64_t id) {
+  auto row = STRATA_TRY(connection.query(
+      "SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE id = $1", Params().integer(id)));
+  if (row.rows() == 0) return no_such("layer", std::to_string(id));
+  return read_layer(connection, row, 0);
+}
+
+// What the layer is computed from, in place of what it was computed from before. Refused (invalid):
+// a layer that is computed from itself, however many others stand between.
+Result<void> set_formula(PgConnection& connection, const Layer& layer) {
+  auto gone =
+      connection.query("DELETE FROM layer_inputs WHERE layer_id = $1", Params().integer(layer.id));
+  if (!gone) return tl::unexpected(gone.error());
+  if (!layer.formula) {
+    auto plain = connection.query(
+        "UPDATE layers SET expression = NULL, automatic = false, computed_sequence = 0 WHERE id = $1",
+        Params().integer(layer.id));
+    return plain ? Result<void>{} : tl::unexpected(plain.error());
+  }
+  // One at a time in a model: two changes that make a circle only together are not done together.
+  STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
+                              Params().integer(layer.model_id)));
+  for (const LayerFormula::Input& input : layer.formula->inputs) {
+    STRATA_TRY(connection.query(
+        "INSERT INTO layer_inputs (layer_id, slug, input_id, table_id) VALUES ($1, $2, $3, $4)",
+        Params()
+            .integer(layer.id)
+            .text(input.slug)
+            .optional_integer(input.layer)
+            .optional_integer(input.table)));
+  }
+  auto circle = STRATA_TRY(connection.query(
+      "WITH RECURSIVE reads (id) AS (SELECT input_id FROM layer_inputs WHERE layer_id = $1 UNION "
+      "SELECT i.input_id FROM layer_inputs i JOIN reads r ON i.layer_id = r.id) SELECT 1 FROM reads WHERE id = $1",
+      Params().integer(layer.id)));
+  if (circle.rows() > 0)
+    return fail(ErrorCode::invalid, "Computed from itself",
+                "This expression reads layers that are computed from " + layer.name + ".",
+                "expression");
+  auto set = connection.query(
+      "UPDATE layers SET expression = $2, automatic = $3, computed_sequence = 0 WHERE id = $1",
+      Params().integer(layer.id).text(layer.formula->expression).boolean(layer.formula->automatic));
+  return set ? Result<void>{} : tl::unexpected(set.error());
+}
+
+constexpr std::size_t kLongestDescription = 40000;  // bytes of 10000 characters
+Result<void> keep_origin(PgConnection& connection, std::int64_t layer_id, const Layer& layer) {
+  if (!layer.origin) return {};
+  auto kept = connection.query(
+      "INSERT INTO layer_origins (layer_id, origin, edited_by_hand) VALUES ($1, $2, $3) ON CONFLICT (layer_id) "
+      "DO UPDATE SET origin = excluded.origin, edited_by_hand = excluded.edited_by_hand",
+      Params()
+          .integer(layer_id)
+          .text(*layer.origin == LayerOrigin::shape ? "shape" : "expression")
+          .boolean(layer.edited_by_hand));
+  return kept ? Result<void>{} : tl::unexpected(kept.error());
+}
+
+Result<void> check(const Layer& layer) {
+  STRATA_TRY(check_name(layer.name));
+  if (!(layer.opacity >= 0 && layer.opacity <= 1))
+    return fail(ErrorCode::malformed, "Bad opacity", "`opacity` must be between 0 and 1.",
+                "opacity");
+  STRATA_TRY(check_json(to_json(layer.palette), "palette"));
+  STRATA_TRY(check_labels(layer.labels));
+  if (auto good = check_texts_by_language(layer.descriptions, kLongestDescription, "descriptions");
+      !good)
+    return good;
+  return check_texts(
+      {{&layer.slug, "slug"}, {&layer.unit, "unit"}, {&layer.description, "description"}});
+}
+
+bool same_formula(const std::optional<LayerFormula>& a, const std::optional<LayerFormula>& b) {
+  return a.has_value() == b.has_value() &&
+         (!a || (a->expression == b->expression && a->automatic == b->automatic &&
+                 a->inputs == b->inputs));
+}
+
+// The table of a database layer: of its model's project, or a new one.
+Result<void> find_table(PgConnection& connection, Layer& layer, std::int64_t project_id,
+                        const std::vector<Column>& columns) {
+  if (!layer.table) {
+    Table table;
+    table.project_id = project_id;
+    table.name = layer.name;
+    table.columns = columns;
+    auto made = STRATA_TRY(insert_table(connection, std::move(table)));
+    layer.table = made.id;
+    return {};
+  }
+  auto known = STRATA_TRY(connection.query(
+      "SELECT 1 FROM record_tables WHERE id = $1 AND project_id = $2 FOR KEY SHARE",
+      Params().integer(*layer.table).integer(project_id)));
+  if (known.rows() == 0)
+    return fail(ErrorCode::invalid, "No such table",
+                "The model's project has no table " + std::to_string(*layer.table) + ".", "table");
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<Layer>> Layers::of_model(std::int64_t model_id, Role seen_by) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<Layer>> {
+    auto known = STRATA_TRY(
+        connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(model_id)));
+    if (known.rows() == 0) return no_such("model", std::to_string(model_id));
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE model_id = $1 ORDER BY draw_order, id",
+        Params().integer(model_id)));
+    std::vector<Layer> layers;
+    for (int i = 0; i < rows.rows(); ++i) {
+      auto layer = STRATA_TRY(read_layer(connection, rows, i));
+      if (sees(seen_by, layer.visibility)) layers.push_back(std::move(layer));
+    }
+    return layers;
+  });
+}
+
+Result<Layer> Layers::find(std::int64_t model_id, const std::string& ref, Role seen_by) {
+  if (!check_text(ref, "layer")) return no_such("layer", ref);
+  return pool_.read([&](PgConnection& connection) -> Result<Layer> {
+    const auto id = id_of(ref);
+    auto rows = STRATA_TRY(id ? connection.query("SELECT " STRATA_LAYER_COLUMNS
+                                                 " FROM layers WHERE model_id = $1 AND id = $2",
+                                                 Params().integer(model_id).integer(*id))
+                              : connection.query("SELECT " STRATA_LAYER_COLUMNS
+                                                 " FROM layers WHERE model_id = $1 AND slug = $2",
+                                                 Params().integer(model_id).text(ref)));
+    if (rows.rows() == 0) return no_such("layer", ref);
+    auto layer = read_layer(connection, rows, 0);
+    if (layer && !sees(seen_by, layer->visibility)) return no_such("layer", ref);
+    return layer;
+  });
+}
+
+Result<Layer> Layers::create(Layer layer, const FirstAnswer<Layer>& answer,
+                             std::vector<Column> columns) {
+  STRATA_TRY(check(layer));
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Layer> {
+    auto model =
+        STRATA_TRY(connection.query("SELECT project_id FROM models WHERE id = $1 FOR KEY SHARE",
+                                    Params().integer(layer.model_id)));
+    if (model.rows() == 0) return no_such("model", std::to_string(layer.model_id));
+    if (layer.kind == LayerKind::database)
+      STRATA_TRY(find_table(connection, layer, model.integer(0, 0), columns));
+    auto row = insert_with_slug(
+        connection, "SELECT slug::text FROM layers WHERE slug LIKE $1 AND model_id = $2",
+        layer.model_id, layer.slug.empty() ? layer.name : layer.slug, [&](const std::string& slug) {
+          return connection.query(
+              "INSERT INTO layers (model_id, name, slug, kind, type, resolution, unit, description, palette, opacity, visible, "
+              "draw_order, table_id, locked, visibility, review, labels, descriptions) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, "
+              "$15, $16, $17, $18) "
+              "ON CONFLICT DO NOTHING RETURNING " STRATA_LAYER_COLUMNS,
+              Params()
+                  .integer(layer.model_id)
+                  .text(layer.name)
+                  .text(slug)
+                  .text(layer.kind == LayerKind::database ? "database" : "numeric")
+                  .text(name(layer.type))
+                  .integer(layer.resolution)
+                  .text(layer.unit)
+                  .text(layer.description)
+                  .json(palette_to_keep(layer))
+                  .real(layer.opacity)
+                  .boolean(layer.visible)
+                  .integer(layer.order)
+                  .optional_integer(layer.table)
+                  .boolean(layer.locked)
+                  .text(name(layer.visibility))
+                  .boolean(layer.review)
+                  .json(layer.labels)
+                  .json(layer.descriptions));
+        });
+    if (!row || (!layer.formula && !layer.origin))
+      return row ? read_layer(connection, *row, 0) : tl::unexpected(row.error());
+    layer.id = row->integer(0, 0);
+    STRATA_TRY(keep_origin(connection, layer.id, layer));
+    if (!layer.formula) return load_layer(connection, layer.id);
+    STRATA_TRY(set_formula(connection, layer));
+    return load_layer(connection, layer.id);
+  });
+}
+
+Result<Layer> Layers::update(Layer layer, const FirstAnswer<Layer>& answer) {
+  STRATA_TRY(check(layer));
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Layer> {
+    auto row = STRATA_TRY(connection.query(
+        "UPDATE layers SET name = $3, slug = $4, unit = $5, description = $6, palette = $7, opacity = $8, visible = $9, "
+        "draw_order = $10, locked = $11, visibility = $12, review = $13, labels = $14, descriptions = $15, version = version + 1 WHERE id = $1 AND version = $2 "
+        "RETURNING " STRATA_LAYER_COLUMNS,
+        Params()
+            .integer(layer.id)
+            .integer(layer.version)
+            .text(layer.name)
+            .text(layer.slug)
+            .text(layer.unit)
+            .text(layer.description)
+            .json(palette_to_keep(layer))
+            .real(layer.opacity)
+            .boolean(layer.visible)
+            .integer(layer.order)
+            .boolean(layer.locked)
+            .text(name(layer.visibility))
+            .boolean(layer.review)
+            .json(layer.labels)
+            .json(layer.descriptions)));
+    if (row.rows() > 0) {
+      auto now = STRATA_TRY(read_layer(connection, row, 0));
+      const bool same_origin =
+          now.origin == layer.origin && now.edited_by_hand == layer.edited_by_hand;
+      const bool is_same_formula = same_formula(now.formula, layer.formula);
+      if (same_origin && is_same_formula) return now;
+      STRATA_TRY(keep_origin(connection, layer.id, layer));
+      if (is_same_formula) return load_layer(connection, layer.id);
+      STRATA_TRY(set_formula(connection, layer));
+      return load_layer(connection, layer.id);
+    }
+    auto known = STRATA_TRY(
+        connection.query("SELECT 1 FROM layers WHERE id = $1", Params().integer(layer.id)));
+    if (known.rows() == 0) return no_such("layer", std::to_string(layer.id));
+    return stale("layer");
+  });
+}
+
+Result<std::map<std::int64_t, std::int64_t>> Layers::table_sequences_of(std::int64_t layer_id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::map<std::int64_t, std::int64_t>> {
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT t.id, t.sequence FROM layer_inputs i JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = $1",
+        Params().integer(layer_id)));
+    std::map<std::int64_t, std::int64_t> sequences;
+    for (int i = 0; i < rows.rows(); ++i) sequences[rows.integer(i, 0)] = rows.integer(i, 1);
+    return sequences;
+  });
+}
+
+Result<Layer> Layers::set_computed(std::int64_t layer_id, const std::string& expression,
+                                   std::int64_t sequence,
+                                   const std::map<std::int64_t, std::int64_t>& tables) {
+  return pool_.write([&](PgConnection& connection) -> Result<Layer> {
+    STRATA_TRY(connection.query(
+        "UPDATE layers SET computed_sequence = $3 WHERE id = $1 AND expression = $2",
+        Params().integer(layer_id).text(expression).integer(sequence)));
+    // What was edited by hand is overwritten, and as it was when it was made.
+    STRATA_TRY(connection.query(
+        "WITH whole AS (UPDATE layer_origins SET edited_by_hand = false WHERE layer_id = $1 AND edited_by_hand RETURNING layer_id) "
+        "UPDATE layers SET locked = true, version = version + 1 FROM whole WHERE id = whole.layer_id",
+        Params().integer(layer_id)));
+    PgArray ids(oid::kInt8), sequences(oid::kInt8);
+    for (const auto& [table, at] : tables) {
+      ids.add(table);
+      sequences.add(at);
+    }
+    STRATA_TRY(connection.query(
+        "UPDATE layer_inputs i SET table_sequence = v.at FROM unnest($2::bigint[], $3::bigint[]) v (id, at) "
+        "WHERE i.layer_id = $1 AND i.table_id = v.id",
+        Params().integer(layer_id).array(ids).array(sequences)));
+    return load_layer(connection, layer_id);
+  });
+}
+
+Result<std::vector<Layer>> Layers::to_recompute() {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<Layer>> {
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT " STRATA_LAYER_COLUMNS
+        " FROM layers WHERE automatic AND NOT EXISTS (SELECT 1 FROM layer_origins o WHERE "
+        "o.layer_id = layers.id AND o.edited_by_hand) AND " STRATA_LAYER_STALE
+        " AND NOT EXISTS (SELECT 1 FROM layer_inputs i WHERE i.layer_id = layers.id AND NOT EXISTS "
+        "(SELECT 1 FROM layers l WHERE l.id = i.input_id)) "
+        "ORDER BY computed_sequence, id LIMIT 100"));
+    std::vector<Layer> layers;
+    for (int i = 0; i < rows.rows(); ++i) {
+      auto layer = STRATA_TRY(read_layer(connection, rows, i));
+      layers.push_back(std::move(layer));
+    }
+    return layers;
+  });
+}
+
+namespace {
+
+constexpr int kRevisionsAtOnce = 256;
+
+// Bits of differences become those of the wider type as they are: the bits above are the same
+// before and after.
+Result<void> widen_revisions(PgConnection& connection, const Layer& layer, ValueType type) {
+  for (std::int64_t y = -1, x = 0, sequence = 0;;) {
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT tile_y, tile_x, sequence, difference, key_tile FROM tile_revisions WHERE layer_id = $1 AND "
+        "(tile_y, tile_x, sequence) > ($2, $3, $4) ORDER BY tile_y, tile_x, sequence LIMIT $5",
+        Params().integer(layer.id).integer(y).integer(x).integer(sequence).integer(
+            kRevisionsAtOnce)));
+    if (rows.rows() == 0) return {};
+    PgArray ys(oid::kInt8), xs(oid::kInt8), sequences(oid::kInt8), differences(oid::kBytea),
+        keys(oid::kBytea);
+    for (int i = 0; i < rows.rows(); ++i) {
+      y = rows.integer(i, 0), x = rows.integer(i, 1), sequence = rows.integer(i, 2);
+      const TileAddress address{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
+      auto revision = STRATA_TRY(decode_revision(address, layer.type, rows.bytes(i, 3)));
+      revision.difference = widened(revision.difference, type);
+      ys.add(y), xs.add(x), sequences.add(sequence);
+      differences.add(Bytes(encode_revision(revision)));
+      if (rows.null(i, 4)) {
+        keys.add_null();
+        continue;
+      }
+      auto tile = STRATA_TRY(decode_tile(layer.type, rows.bytes(i, 4)));
+      keys.add(Bytes(encode_tile(widened(tile, type))));
+    }
+    STRATA_TRY(connection.query(
+        "UPDATE tile_revisions r SET difference = n.difference, key_tile = n.key_tile FROM "
+        "unnest($2::bigint[], $3::bigint[], $4::bigint[], $5::bytea[], $6::bytea[]) AS n (y, x, sequence, difference, "
+        "key_tile) WHERE r.layer_id = $1 AND r.tile_y = n.y AND r.tile_x = n.x AND r.sequence = n.sequence",
+        Params()
+            .integer(layer.id)
+            .array(ys)
+            .array(xs)
+            .array(sequences)
+            .array(differences)
+            .array(keys)));
+  }
+}
+
+}  // namespace
+
+Result<Layer> Layers::widen(const Layer& layer, ValueType type, const FirstAnswer<Layer>& answer) {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Layer> {
+    auto row = STRATA_TRY(connection.query(
+        "UPDATE layers SET type = $3, version = version + 1 WHERE id = $1 AND version = $2 AND type = $4 RETURNING id",
+        Params().integer(layer.id).integer(layer.version).text(name(type)).text(name(layer.type))));
+    if (row.rows() == 0) {
+      auto known = load_layer(connection, layer.id);
+      return known ? stale("layer") : tl::unexpected(known.error());
+    }
+    STRATA_TRY(widen_revisions(connection, layer, type));
+    return load_layer(connection, layer.id);
+  });
+}
+
+Result<void> Layers::remove(std::int64_t id, const FirstAnswer<>& answer) {
+  const auto work = [&](PgConnection& connection) -> Result<void> {
+    auto known =
+        STRATA_TRY(connection.query("SELECT 1 FROM layers WHERE id = $1", Params().integer(id)));
+    return known.rows() > 0 ? erase_layer(connection, id) : no_such("layer", std::to_string(id));
+  };
+  return change(pool_, answer, work, kBulkLimits);
+}
+
+}  // namespace strata::store

@@ -1,0 +1,327 @@
+#include <algorithm>
+
+#include "core/progress.h"
+#include "domain/scene/up.h"
+#include "store/content/look_rows.h"
+#include "store/content/looks.h"
+#include "store/content/models.h"
+#include "store/pg/blobs.h"
+#include "store/store_impl.h"
+
+namespace strata::store {
+namespace {
+
+constexpr const char* kSelectModels =
+    "SELECT m.id, m.project_id, m.name, m.slug::text, m.unit, m.unit_assumed, m.scale_verified, m.up, m.north, m.crs, "
+    "m.origin, m.bounds_min, m.bounds_max, m.triangles, m.vertices, m.area, m.atlas, m.repairs, m.default_resolution, "
+    "m.inventory_number, m.owner, m.creator, m.captured, m.method, m.accuracy, m.processing, m.rights_uri, m.credit, "
+    "m.source_download, m.sequence, m.version, coalesce(m.proposal, 'null'), "
+    "(SELECT coalesce(jsonb_agg(jsonb_build_object('name', s.name, 'sha256', encode(s.sha256, 'hex'), 'bytes', b.bytes) "
+    "ORDER BY s.position), '[]') FROM model_sources s JOIN blobs b USING (sha256) WHERE s.model_id = m.id) "
+    "FROM models m ";
+
+glm::dvec3 read_vec3(const PgResult& rows, int i, int column) {
+  const auto v = rows.reals(i, column);
+  return v.size() == 3 ? glm::dvec3(v[0], v[1], v[2]) : glm::dvec3(0);
+}
+
+Model read_model(const PgResult& rows, int i) {
+  Model m;
+  int c = 0;
+  m.id = rows.integer(i, c++);
+  m.project_id = rows.integer(i, c++);
+  m.name = rows.text(i, c++);
+  m.slug = rows.text(i, c++);
+  m.unit = parse_unit(rows.text(i, c++)).value_or(Unit::m);
+  m.unit_assumed = rows.boolean(i, c++);
+  m.scale_verified = rows.boolean(i, c++);
+  m.up = rows.text(i, c++);
+  m.north = rows.text(i, c++);
+  m.crs = rows.text(i, c++);
+  m.origin = read_vec3(rows, i, c++);
+  m.bounds_min = read_vec3(rows, i, c++);
+  m.bounds_max = read_vec3(rows, i, c++);
+  m.triangles = static_cast<std::uint64_t>(rows.integer(i, c++));
+  m.vertices = static_cast<std::uint64_t>(rows.integer(i, c++));
+  m.area = rows.real(i, c++);
+  m.atlas = atlas_from_json(rows.json(i, c++));
+  for (const auto& repair : rows.json(i, c++))
+    m.repairs.push_back(
+        {repair.value("what", std::string()), repair.value("count", std::uint64_t{0})});
+  m.default_resolution = static_cast<int>(rows.integer(i, c++));
+  for (std::string* text : {&m.inventory_number, &m.owner, &m.creator, &m.captured, &m.method,
+                            &m.accuracy, &m.processing, &m.rights_uri, &m.credit})
+    *text = rows.text(i, c++);
+  // What cannot be told is not given away.
+  m.source_download = parse_role(rows.text(i, c++)).value_or(Role::curator);
+  m.sequence = rows.integer(i, c++);
+  m.version = rows.integer(i, c++);
+  m.proposal = scale_proposal_from_json(rows.json(i, c++));
+  for (const auto& file : rows.json(i, c++))
+    m.source_files.push_back({file.at("name"), file.at("sha256"), file.at("bytes")});
+  return m;
+}
+
+Result<void> check(const Model& m) {
+  STRATA_TRY(check_name(m.name));
+  if (!is_up(m.up))
+    return fail(ErrorCode::malformed, "Bad direction",
+                "`up` must be one of x, y, z, -x, -y and -z.", "up");
+  for (const auto& repair : m.repairs) STRATA_TRY(check_text(repair.what, "repairs"));
+  return check_texts({{&m.slug, "slug"},
+                      {&m.north, "north"},
+                      {&m.crs, "crs"},
+                      {&m.inventory_number, "inventory_number"},
+                      {&m.owner, "owner"},
+                      {&m.creator, "creator"},
+                      {&m.captured, "captured"},
+                      {&m.method, "method"},
+                      {&m.accuracy, "accuracy"},
+                      {&m.processing, "processing"},
+                      {&m.rights_uri, "rights_uri"},
+                      {&m.credit, "credit"},
+                      {&m.atlas.source, "atlas"}});
+}
+
+// What can be changed later: $1 name, $2 slug, … $20 source_download.
+Params metadata(const Model& m, const std::string& slug) {
+  Params params;
+  params.text(m.name)
+      .text(slug)
+      .integer(m.project_id)
+      .text(name(m.unit))
+      .boolean(m.unit_assumed)
+      .boolean(m.scale_verified)
+      .text(m.up)
+      .text(m.north)
+      .text(m.crs)
+      .integer(m.default_resolution)
+      .text(m.inventory_number)
+      .text(m.owner)
+      .text(m.creator)
+      .text(m.captured)
+      .text(m.method)
+      .text(m.accuracy)
+      .text(m.processing)
+      .text(m.rights_uri)
+      .text(m.credit)
+      .text(name(m.source_download));
+  return params;
+}
+
+PgArray array_of(const glm::dvec3& v) {
+  PgArray array(oid::kFloat8);
+  array.add(v.x);
+  array.add(v.y);
+  array.add(v.z);
+  return array;
+}
+
+Result<PgResult> insert_model(PgConnection& connection, const Model& m, const std::string& slug,
+                              const Sha256& geometry) {
+  auto repairs = nlohmann::json::array();
+  for (const auto& repair : m.repairs)
+    repairs.push_back({{"what", repair.what}, {"count", repair.count}});
+  Params params = metadata(m, slug);
+  params.array(array_of(m.origin))
+      .array(array_of(m.bounds_min))
+      .array(array_of(m.bounds_max))
+      .integer(static_cast<std::int64_t>(m.triangles))
+      .integer(static_cast<std::int64_t>(m.vertices))
+      .real(m.area)
+      .json(to_json(m.atlas, 1.0))
+      .json(repairs)
+      .bytes(geometry)
+      .json(m.proposal ? to_json(*m.proposal) : nlohmann::json());
+  return connection.query(
+      "INSERT INTO models (name, slug, project_id, unit, unit_assumed, scale_verified, up, north, crs, default_resolution, "
+      "inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, source_download, "
+      "origin, bounds_min, bounds_max, triangles, vertices, area, atlas, repairs, geometry, proposal) "
+      "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20, $21, $22, $23, $24, "
+      "$25, $26, $27, $28, $29, nullif($30, 'null')) ON CONFLICT DO NOTHING RETURNING id",
+      params);
+}
+
+Look look_of(const NewModel::NewLook& fresh, std::size_t position) {
+  Look look;
+  look.name = fresh.name;
+  look.media_type = fresh.media_type;
+  look.width = fresh.width;
+  look.height = fresh.height;
+  look.visible = position == 0;
+  look.order = static_cast<int>(position);
+  return look;
+}
+
+Result<Model> model_by_id(PgConnection& connection, std::int64_t id) {
+  static const std::string sql = std::string(kSelectModels) + "WHERE m.id = $1";
+  auto rows = STRATA_TRY(connection.query(sql.c_str(), Params().integer(id)));
+  if (rows.rows() == 0) return no_such("model", std::to_string(id));
+  return read_model(rows, 0);
+}
+
+}  // namespace
+
+Result<Model> Models::create(const NewModel& fresh, const std::function<bool()>& cancelled,
+                             const FirstAnswer<Model>& answer) {
+  STRATA_TRY(check(fresh.model));
+  for (const auto& source : fresh.sources) {
+    if (source.name.empty() || source.name.size() > kLongestName)
+      return fail(ErrorCode::malformed, "Bad file name", "A file's name must have 1 to 255 bytes.",
+                  "source_files");
+    STRATA_TRY(check_text(source.name, "source_files"));
+  }
+  if (fresh.looks.size() > Looks::kMostLooks)
+    return fail(ErrorCode::invalid, "Too many looks",
+                "A model holds at most " + std::to_string(Looks::kMostLooks) + " looks.", "looks");
+  for (std::size_t i = 0; i < fresh.looks.size(); ++i)
+    STRATA_TRY(check_look(look_of(fresh.looks[i], i)));
+  // The geometry, its coarser copies, the looks, the source files.
+  std::vector<Content> contents{content_of(Bytes(fresh.geometry))};
+  for (const auto& level : fresh.detail_levels) contents.push_back(content_of(Bytes(level)));
+  const std::size_t first_look = contents.size();
+  for (const auto& look : fresh.looks) contents.push_back(content_of(Bytes(look.bytes)));
+  const std::size_t first_source = contents.size();
+  for (const auto& source : fresh.sources) {
+    auto content = STRATA_TRY(content_of(source.file, cancelled));
+    contents.push_back(std::move(content));
+  }
+  const auto work = [&](PgConnection& connection) -> Result<Model> {
+    const Sha256 geometry = contents.front().hash;
+    std::vector<const Content*> by_hash;
+    for (const Content& content : contents) by_hash.push_back(&content);
+    std::sort(by_hash.begin(), by_hash.end(),
+              [](const Content* a, const Content* b) { return a->hash < b->hash; });
+    for (const Content* content : by_hash) STRATA_TRY(keep_blob(connection, *content, cancelled));
+    const Model& m = fresh.model;
+    auto row = STRATA_TRY(insert_with_slug(
+        connection, "SELECT slug::text FROM models WHERE slug LIKE $1", {},
+        m.slug.empty() ? m.name : m.slug,
+        [&](const std::string& slug) { return insert_model(connection, m, slug, geometry); }));
+    const std::int64_t id = row.integer(0, 0);
+    for (std::size_t i = 1; i < first_look; ++i) {
+      STRATA_TRY(connection.query(
+          "INSERT INTO detail_levels (model_id, level, geometry) VALUES ($1, $2, $3)",
+          Params().integer(id).integer(static_cast<std::int64_t>(i)).bytes(contents[i].hash)));
+    }
+    for (std::size_t i = 0; i < fresh.looks.size(); ++i) {
+      Look look = look_of(fresh.looks[i], i);
+      look.model_id = id;
+      STRATA_TRY(insert_look(connection, look, contents[first_look + i].hash));
+    }
+    for (std::size_t i = 0; i < fresh.sources.size(); ++i) {
+      STRATA_TRY(connection.query(
+          "INSERT INTO model_sources (model_id, name, position, sha256) VALUES ($1, $2, $3, $4)",
+          Params()
+              .integer(id)
+              .text(fresh.sources[i].name)
+              .integer(static_cast<std::int64_t>(i))
+              .bytes(contents[first_source + i].hash)));
+    }
+    if (cancelled && cancelled()) return cancelled_problem();
+    return model_by_id(connection, id);
+  };
+  return change(pool_, answer, work, kBulkLimits);
+}
+
+Result<std::vector<Model>> Models::all(std::optional<std::int64_t> project_id) {
+  static const std::string sql =
+      std::string(kSelectModels) + "WHERE $1 IS NULL OR m.project_id = $1 ORDER BY m.id";
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<Model>> {
+    auto rows = STRATA_TRY(connection.query(sql.c_str(), Params().optional_integer(project_id)));
+    std::vector<Model> models;
+    for (int i = 0; i < rows.rows(); ++i) models.push_back(read_model(rows, i));
+    return models;
+  });
+}
+
+Result<Model> Models::find(const std::string& ref) {
+  if (!check_text(ref, "model")) return no_such("model", ref);
+  static const std::string by_slug = std::string(kSelectModels) + "WHERE m.slug = $1";
+  return pool_.read([&](PgConnection& connection) -> Result<Model> {
+    if (const auto id = id_of(ref)) return model_by_id(connection, *id);
+    auto rows = STRATA_TRY(connection.query(by_slug.c_str(), Params().text(ref)));
+    if (rows.rows() == 0) return no_such("model", ref);
+    return read_model(rows, 0);
+  });
+}
+
+Result<Model> Models::update(Model m, const FirstAnswer<Model>& answer) {
+  STRATA_TRY(check(m));
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Model> {
+    auto row = STRATA_TRY(connection.query(
+        "UPDATE models SET name = $1, slug = $2, project_id = $3, unit = $4, unit_assumed = $5, scale_verified = $6, up = $7, "
+        "north = $8, crs = $9, default_resolution = $10, inventory_number = $11, owner = $12, creator = $13, captured = $14, "
+        "method = $15, accuracy = $16, processing = $17, rights_uri = $18, credit = $19, source_download = $20, "
+        "version = version + 1 WHERE id = $21 AND version = $22 RETURNING id",
+        metadata(m, m.slug).integer(m.id).integer(m.version)));
+    auto now = STRATA_TRY(model_by_id(connection, m.id));
+    if (row.rows() == 0) return stale("model");
+    auto layer = STRATA_TRY(connection.query(
+        "SELECT l.name FROM all_layers l JOIN record_tables t ON t.id = l.table_id WHERE l.model_id = $1 AND t.project_id <> $2 "
+        "LIMIT 1",
+        Params().integer(m.id).integer(m.project_id)));
+    if (layer.rows() > 0)
+      return fail(ErrorCode::conflict, "Tables stay",
+                  "The keys of the layer " + layer.text(0, 0) +
+                      " are of a table of the model's present project.",
+                  "project");
+    return now;
+  });
+}
+
+Result<void> Models::remove(std::int64_t id, const FirstAnswer<>& answer) {
+  const auto work = [&](PgConnection& connection) -> Result<void> {
+    auto known =
+        STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(id)));
+    return known.rows() > 0 ? erase_model(connection, id) : no_such("model", std::to_string(id));
+  };
+  return change(pool_, answer, work, kBulkLimits);
+}
+
+Result<std::vector<std::uint8_t>> Models::geometry(std::int64_t model_id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<std::uint8_t>> {
+    auto row = STRATA_TRY(connection.query(
+        "SELECT b.sha256, b.bytes FROM models m JOIN blobs b ON b.sha256 = m.geometry WHERE m.id = $1",
+        Params().integer(model_id)));
+    if (row.rows() == 0) return no_such("model", std::to_string(model_id));
+    return read_blob(connection, row.bytes(0, 0), row.integer(0, 1));
+  });
+}
+
+Result<std::vector<std::vector<std::uint8_t>>> Models::detail_levels(std::int64_t model_id) {
+  using Levels = std::vector<std::vector<std::uint8_t>>;
+  return pool_.read([&](PgConnection& connection) -> Result<Levels> {
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT b.sha256, b.bytes FROM detail_levels d JOIN blobs b ON b.sha256 = d.geometry WHERE d.model_id = $1 "
+        "ORDER BY d.level",
+        Params().integer(model_id)));
+    Levels levels;
+    for (int i = 0; i < rows.rows(); ++i) {
+      auto level = STRATA_TRY(read_blob(connection, rows.bytes(i, 0), rows.integer(i, 1)));
+      levels.push_back(std::move(level));
+    }
+    return levels;
+  });
+}
+
+Result<SourceFile> Models::read_source(
+    std::int64_t model_id, const std::string& file,
+    const std::function<bool(std::span<const std::uint8_t>)>& sink) {
+  if (!check_text(file, "name")) return no_such("source file", file);
+  auto known = STRATA_TRY(pool_.read([&](PgConnection& connection) {
+    return connection.query(
+        "SELECT b.sha256, b.bytes FROM model_sources s JOIN blobs b USING (sha256) "
+        "WHERE s.model_id = $1 AND s.name = $2",
+        Params().integer(model_id).text(file));
+  }));
+  if (known.rows() == 0) return no_such("source file", file);
+  const SourceFile source{file, to_hex(known.bytes(0, 0)),
+                          static_cast<std::uint64_t>(known.integer(0, 1))};
+  const Bytes hash = known.bytes(0, 0);
+  auto sent = stream_blob(pool_, {hash.begin(), hash.end()}, 0, source.bytes, sink);
+  if (!sent) return tl::unexpected(sent.error());
+  return source;
+}
+
+}  // namespace strata::store

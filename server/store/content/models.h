@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "domain/scene/model.h"
+#include "store/content/first_answer.h"
+
+namespace strata::store {
+
+class Pool;
+
+struct NewModel {
+  Model model;                         // id 0; slug wished, made unique
+  std::vector<std::uint8_t> geometry;  // mesh::encode_geometry
+  std::vector<std::vector<std::uint8_t>>
+      detail_levels;  // of mesh::make_detail_levels, encoded likewise, finest first
+  struct Source {
+    std::string name;
+    std::filesystem::path file;
+  };
+  std::vector<Source> sources;  // streamed in bit for bit, hashed on the way
+  struct NewLook {
+    std::string name, media_type;     // "image/jpeg" or "image/png"
+    std::vector<std::uint8_t> bytes;  // of the encoded picture
+    int width = 0, height = 0;
+  };
+  std::vector<NewLook> looks;  // bottom to top; the first is shown, the others wait to be chosen
+};
+
+// 3D models with their geometry and source files. Part of Store: its rules for threads and errors
+// hold.
+class Models {
+ public:
+  explicit Models(Pool& pool) : pool_(pool) {}
+
+  Result<Model> create(const NewModel& model, const std::function<bool()>& cancelled,
+                       const FirstAnswer<Model>& answer = {});  // one transaction
+  Result<std::vector<Model>> all(std::optional<std::int64_t> project_id = {});
+  Result<Model> find(const std::string& ref);
+  Result<Model> update(Model model, const FirstAnswer<Model>& answer = {});
+  // for ever; people's go by the Bin
+  Result<void> remove(std::int64_t id, const FirstAnswer<>& answer = {});
+  Result<std::vector<std::uint8_t>> geometry(std::int64_t model_id);
+  // finest first
+  Result<std::vector<std::vector<std::uint8_t>>> detail_levels(std::int64_t model_id);
+  // Streams a source file in chunks ≤ 1 MiB; `sink` returns false to stop.
+  Result<SourceFile> read_source(std::int64_t model_id, const std::string& name,
+                                 const std::function<bool(std::span<const std::uint8_t>)>& sink);
+
+ private:
+  Pool& pool_;
+};
+
+}  // namespace strata::store

@@ -1,0 +1,156 @@
+#include "store/content/projects.h"
+#include "store/store_impl.h"
+
+namespace strata::store {
+namespace {
+
+Project read_project(const PgResult& rows, int i) {
+  return {rows.integer(i, 0), rows.text(i, 1),    rows.text(i, 2),
+          rows.text(i, 3),    rows.integer(i, 4), rows.boolean(i, 5)};
+}
+
+Result<void> check(const Project& project) {
+  STRATA_TRY(check_name(project.name));
+  return check_texts({{&project.slug, "slug"}, {&project.description, "description"}});
+}
+
+// What is gone for ever keeps no project, though its content is not erased yet.
+Result<void> erase_models_of(PgConnection& connection, std::int64_t project_id) {
+  auto models = STRATA_TRY(connection.query(
+      "SELECT id FROM all_models WHERE project_id = $1 AND erasing", Params().integer(project_id)));
+  for (int i = 0; i < models.rows(); ++i) STRATA_TRY(erase_model(connection, models.integer(i, 0)));
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<Project>> Projects::all() {
+  return pool_.read([](PgConnection& connection) -> Result<std::vector<Project>> {
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT id, name, slug::text, description, version, require_if_match FROM projects ORDER BY id"));
+    std::vector<Project> projects;
+    for (int i = 0; i < rows.rows(); ++i) projects.push_back(read_project(rows, i));
+    return projects;
+  });
+}
+
+Result<Project> Projects::find(const std::string& ref) {
+  if (!check_text(ref, "project")) return no_such("project", ref);
+  return pool_.read([&](PgConnection& connection) -> Result<Project> {
+    const auto id = id_of(ref);
+    auto rows =
+        id ? connection.query(
+                 "SELECT id, name, slug::text, description, version, require_if_match FROM projects WHERE id = $1",
+                 Params().integer(*id))
+           : connection.query(
+                 "SELECT id, name, slug::text, description, version, require_if_match FROM projects WHERE slug = $1",
+                 Params().text(ref));
+    if (!rows) return tl::unexpected(rows.error());
+    if (rows->rows() == 0) return no_such("project", ref);
+    return read_project(*rows, 0);
+  });
+}
+
+Result<std::size_t> Projects::names_until(const NamedId& place, std::span<const NamedId> sorted) {
+  STRATA_TRY(check_text(place.name, "after"));
+  PgArray names(oid::kText), ids(oid::kInt8);
+  for (const NamedId& each : sorted) {
+    names.add(std::string_view(each.name));
+    ids.add(each.id);
+  }
+  return pool_.read([&](PgConnection& connection) -> Result<std::size_t> {
+    auto row = STRATA_TRY(
+        connection.query("SELECT count(*) FROM unnest($3::text[], $4::bigint[]) AS e (name, id) "
+                         "WHERE (lower(e.name), e.id) <= (lower($1), $2)",
+                         Params().text(place.name).integer(place.id).array(names).array(ids)));
+    return static_cast<std::size_t>(row.integer(0, 0));
+  });
+}
+
+Result<std::string> Projects::state(std::int64_t id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::string> {
+    // Ids and versions of the rows of a part, whose FROM clause follows.
+    const auto versions = [](const std::string& part) {
+      return "coalesce((SELECT string_agg(concat_ws('.', p.id, p.version), ',' ORDER BY p.id) FROM " +
+             part + "), '')";
+    };
+    const std::string of_models = " p JOIN models m ON m.id = p.model_id WHERE m.project_id = $1";
+    const std::string sql =
+        "SELECT concat_ws(';', " + versions("models p WHERE p.project_id = $1") + ", " +
+        versions("layers" + of_models) + ", " + versions("looks" + of_models) + ", " +
+        versions("views" + of_models) +
+        ", (SELECT string_agg(concat_ws('.', id, version, sequence), ',' ORDER BY id) "
+        "FROM record_tables WHERE project_id = $1))";
+    auto row = STRATA_TRY(connection.query(sql.c_str(), Params().integer(id)));
+    return row.text(0, 0);
+  });
+}
+
+Result<Project> Projects::create(Project project, const FirstAnswer<Project>& answer) {
+  STRATA_TRY(check(project));
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Project> {
+    auto row = STRATA_TRY(insert_with_slug(
+        connection, "SELECT slug::text FROM projects WHERE slug LIKE $1", {},
+        project.slug.empty() ? project.name : project.slug, [&](const std::string& slug) {
+          return connection.query(
+              "INSERT INTO projects (name, slug, description) VALUES ($1, $2, $3) "
+              "ON CONFLICT (slug) DO NOTHING RETURNING id, name, slug::text, description, version, require_if_match",
+              Params().text(project.name).text(slug).text(project.description));
+        }));
+    return read_project(row, 0);
+  });
+}
+
+Result<Project> Projects::update(Project project, const FirstAnswer<Project>& answer) {
+  STRATA_TRY(check(project));
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Project> {
+    auto row = STRATA_TRY(connection.query(
+        "UPDATE projects SET name = $3, slug = $4, description = $5, require_if_match = $6, version = version + 1 "
+        "WHERE id = $1 AND version = $2 RETURNING id, name, slug::text, description, version, require_if_match",
+        Params()
+            .integer(project.id)
+            .integer(project.version)
+            .text(project.name)
+            .text(project.slug)
+            .text(project.description)
+            .boolean(project.require_if_match)));
+    if (row.rows() > 0) return read_project(row, 0);
+    auto known =
+        connection.query("SELECT 1 FROM projects WHERE id = $1", Params().integer(project.id));
+    if (!known) return tl::unexpected(known.error());
+    if (known->rows() == 0) return no_such("project", std::to_string(project.id));
+    return stale("project");
+  });
+}
+
+Result<void> Projects::remove(std::int64_t id, const FirstAnswer<>& answer) {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<void> {
+    auto row = STRATA_TRY(connection.query(
+        "SELECT slug::text, (SELECT count(*) FROM models WHERE project_id = p.id), "
+        "(SELECT count(*) FROM record_tables WHERE project_id = p.id), "
+        "(SELECT count(*) FROM all_models WHERE project_id = p.id AND NOT erasing) "
+        "FROM projects p WHERE id = $1 FOR UPDATE",
+        Params().integer(id)));
+    if (row.rows() == 0) return no_such("project", std::to_string(id));
+    if (row.text(0, 0) == "default")
+      return fail(ErrorCode::conflict, "Conflict",
+                  "The project `default` stays: models without a project belong to it.");
+    if (row.integer(0, 1) > 0)
+      return fail(ErrorCode::conflict, "Conflict",
+                  "The project still has " + std::to_string(row.integer(0, 1)) +
+                      " models. Delete them or move them to another project first.");
+    if (row.integer(0, 3) > 0)
+      return fail(ErrorCode::conflict, "Conflict",
+                  "The project's Bin still holds " + std::to_string(row.integer(0, 3)) +
+                      " models. Restore them, or erase them there first.");
+    if (row.integer(0, 2) > 0)
+      return fail(ErrorCode::conflict, "Conflict",
+                  "The project still has " + std::to_string(row.integer(0, 2)) +
+                      " tables. Delete them first.");
+    STRATA_TRY(erase_models_of(connection, id));
+    auto done = connection.query("DELETE FROM projects WHERE id = $1", Params().integer(id));
+    return done ? Result<void>{} : tl::unexpected(done.error());
+  });
+}
+
+}  // namespace strata::store

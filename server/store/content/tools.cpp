@@ -1,0 +1,122 @@
+#include "store/content/tools.h"
+#include "store/store_impl.h"
+
+namespace strata::store {
+namespace {
+
+#define STRATA_TOOL_COLUMNS "id, name, slug::text, deleted IS NOT NULL, version"
+
+Tool read_tool(const PgResult& rows, int i) {
+  return {rows.integer(i, 0), rows.text(i, 1), rows.text(i, 2), rows.boolean(i, 3),
+          rows.integer(i, 4)};
+}
+
+constexpr std::size_t kShapeBytes = sizeof(ShapeBits);
+
+std::vector<std::uint8_t> bytes_of(const ShapeBits& bits) {
+  std::vector<std::uint8_t> bytes(kShapeBytes);
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    bytes[i] = static_cast<std::uint8_t>(bits[i / 8] >> (i % 8 * 8));
+  return bytes;
+}
+
+ShapeBits bits_of(Bytes bytes) {
+  ShapeBits bits{};
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    bits[i / 8] |= std::uint64_t{bytes[i]} << (i % 8 * 8);
+  return bits;
+}
+
+}  // namespace
+
+Result<std::vector<Tool>> Tools::all() {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<Tool>> {
+    auto rows =
+        connection.query("SELECT " STRATA_TOOL_COLUMNS
+                         " FROM tool_shapes WHERE deleted IS NULL ORDER BY lower(name), id");
+    if (!rows) return tl::unexpected(rows.error());
+    std::vector<Tool> tools;
+    for (int i = 0; i < rows->rows(); ++i) tools.push_back(read_tool(*rows, i));
+    return tools;
+  });
+}
+
+Result<Tool> Tools::find(const std::string& ref) {
+  if (!check_text(ref, "tool")) return no_such("tool", ref);
+  return pool_.read([&](PgConnection& connection) -> Result<Tool> {
+    const auto id = id_of(ref);
+    auto rows =
+        id ? connection.query("SELECT " STRATA_TOOL_COLUMNS " FROM tool_shapes WHERE id = $1",
+                              Params().integer(*id))
+           : connection.query("SELECT " STRATA_TOOL_COLUMNS
+                              " FROM tool_shapes WHERE slug = $1 AND deleted IS NULL",
+                              Params().text(ref));
+    if (!rows) return tl::unexpected(rows.error());
+    if (rows->rows() == 0) return no_such("tool", ref);
+    return read_tool(*rows, 0);
+  });
+}
+
+Result<Tool> Tools::create(const Tool& tool, const ShapeBits& shape,
+                           const FirstAnswer<Tool>& answer) {
+  STRATA_TRY(check_name(tool.name));
+  STRATA_TRY(check_text(tool.slug, "slug"));
+  const auto cells = bytes_of(shape);
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Tool> {
+    // Locked, so that of two at once the later one counts the earlier; reading goes on.
+    STRATA_TRY(connection.query("LOCK TABLE tool_shapes IN SHARE ROW EXCLUSIVE MODE"));
+    auto count =
+        STRATA_TRY(connection.query("SELECT count(*) FROM tool_shapes WHERE deleted IS NULL"));
+    if (count.integer(0, 0) >= kMostTools)
+      return fail(ErrorCode::conflict, "Too many tools",
+                  "A site has at most " + std::to_string(kMostTools) + " tools. Delete one first.");
+    auto row = STRATA_TRY(insert_with_slug(
+        connection,
+        "SELECT slug::text FROM tool_shapes WHERE slug LIKE $1 AND deleted IS NULL "
+        "UNION ALL SELECT unnest(ARRAY['disc', 'square'])",
+        {}, tool.slug.empty() ? tool.name : tool.slug, [&](const std::string& slug) {
+          return connection.query(
+              "INSERT INTO tool_shapes (name, slug, cells) VALUES ($1, $2, $3) "
+              "ON CONFLICT (slug) WHERE deleted IS NULL DO NOTHING RETURNING " STRATA_TOOL_COLUMNS,
+              Params().text(tool.name).text(slug).bytes(cells));
+        }));
+    return read_tool(row, 0);
+  });
+}
+
+Result<Tool> Tools::update(const Tool& tool, const FirstAnswer<Tool>& answer) {
+  STRATA_TRY(check_name(tool.name));
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<Tool> {
+    auto row = STRATA_TRY(connection.query(
+        "UPDATE tool_shapes SET name = $3, version = version + 1 WHERE id = $1 AND version = $2 AND deleted IS NULL "
+        "RETURNING " STRATA_TOOL_COLUMNS,
+        Params().integer(tool.id).integer(tool.version).text(tool.name)));
+    if (row.rows() > 0) return read_tool(row, 0);
+    auto known = STRATA_TRY(connection.query(
+        "SELECT 1 FROM tool_shapes WHERE id = $1 AND deleted IS NULL", Params().integer(tool.id)));
+    if (known.rows() == 0) return no_such("tool", std::to_string(tool.id));
+    return stale("tool");
+  });
+}
+
+Result<void> Tools::remove(std::int64_t id, const FirstAnswer<>& answer) {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<void> {
+    auto done = STRATA_TRY(connection.query(
+        "UPDATE tool_shapes SET deleted = now(), version = version + 1 WHERE id = $1 AND deleted IS NULL RETURNING id",
+        Params().integer(id)));
+    if (done.rows() == 0) return no_such("tool", std::to_string(id));
+    return {};
+  });
+}
+
+Result<ShapeBits> Tools::shape(std::int64_t id) {
+  return pool_.read([&](PgConnection& connection) -> Result<ShapeBits> {
+    auto row =
+        connection.query("SELECT cells FROM tool_shapes WHERE id = $1", Params().integer(id));
+    if (!row) return tl::unexpected(row.error());
+    if (row->rows() == 0) return no_such("tool", std::to_string(id));
+    return bits_of(row->bytes(0, 0));
+  });
+}
+
+}  // namespace strata::store

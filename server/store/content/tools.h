@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "domain/scene/tool.h"
+#include "media/shape_texture.h"
+#include "store/content/first_answer.h"
+
+namespace strata::store {
+
+class Pool;
+
+// Shapes for the brush, of the whole site. Part of Store: its rules for threads and errors hold.
+class Tools {
+ public:
+  explicit Tools(Pool& pool) : pool_(pool) {}
+
+  static constexpr int kMostTools = 200;  // that are not deleted
+
+  Result<std::vector<Tool>> all();  // that are not deleted, by name
+  // By slug, those that are not deleted; by id, deleted ones, too.
+  Result<Tool> find(const std::string& ref);
+  Result<Tool> create(const Tool& tool, const ShapeBits& shape,
+                      const FirstAnswer<Tool>& answer = {});
+  Result<Tool> update(const Tool& tool, const FirstAnswer<Tool>& answer = {});  // its name
+  Result<void> remove(std::int64_t id, const FirstAnswer<>& answer = {});
+  Result<ShapeBits> shape(std::int64_t id);  // deleted or not
+
+ private:
+  Pool& pool_;
+};
+
+}  // namespace strata::store

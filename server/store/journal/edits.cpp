@@ -1,0 +1,146 @@
+#include "store/journal/journal_reads.h"
+#include "store/store_impl.h"
+
+namespace strata::store {
+namespace {
+
+#define STRATA_EDIT_COLUMNS                                                                                        \
+  "e.sequence, e.id, e.stroke, e.user_name, e.op, e.record, e.answer, e.time, e.in_force, e.review, r.user_name, " \
+  "r.record ->> 'reason', r.time FROM edits e LEFT JOIN edits r ON r.model_id = e.model_id AND r.sequence = e.reviewed_by "
+
+JournalRow read_row(const PgResult& rows, int i) {
+  JournalRow row{rows.integer(i, 0), rows.uuid(i, 1), rows.uuid(i, 2),
+                 rows.text(i, 3),    rows.text(i, 4), rows.json(i, 5),
+                 rows.json(i, 6),    rows.time(i, 7), rows.boolean(i, 8)};
+  if (!rows.null(i, 9)) row.review = parse_review(rows.text(i, 9)).value_or(Review::none);
+  if (!rows.null(i, 10))
+    row.reviewer = {rows.text(i, 10), rows.null(i, 11) ? std::string() : rows.text(i, 11),
+                    rows.time(i, 12)};
+  return row;
+}
+
+Result<std::vector<std::int64_t>> sequences(PgConnection& connection, const char* sql,
+                                            const Params& params) {
+  auto rows = STRATA_TRY(connection.query(sql, params));
+  std::vector<std::int64_t> found;
+  for (int i = 0; i < rows.rows(); ++i) found.push_back(rows.integer(i, 0));
+  return found;
+}
+
+}  // namespace
+
+Result<HistoryPage> Journal::history(std::int64_t layer_id, int limit, int offset,
+                                     std::optional<std::int64_t> before) {
+  return pool_.read([&](PgConnection& connection) -> Result<HistoryPage> {
+    auto total = STRATA_TRY(connection.query(
+        "SELECT (SELECT count(*) FROM edits WHERE layer_id = l.id) FROM layers l WHERE id = $1",
+        Params().integer(layer_id)));
+    if (total.rows() == 0) return no_such("layer", std::to_string(layer_id));
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT " STRATA_EDIT_COLUMNS
+        "WHERE e.layer_id = $1 AND e.sequence < $4 ORDER BY e.sequence DESC LIMIT $2 OFFSET $3",
+        Params()
+            .integer(layer_id)
+            .integer(std::max(limit, 0))
+            .integer(std::max(offset, 0))
+            .integer(before.value_or(INT64_MAX))));
+    HistoryPage page;
+    page.total = total.integer(0, 0);
+    for (int i = 0; i < rows.rows(); ++i) page.rows.push_back(read_row(rows, i));
+    return page;
+  });
+}
+
+Result<JournalState> Journal::state(std::int64_t model_id, std::span<const Uuid> ids) {
+  PgArray wanted(oid::kUuid);
+  for (const Uuid& id : ids) wanted.add(id);
+  return pool_.read([&](PgConnection& connection) -> Result<JournalState> {
+    auto model =
+        connection.query("SELECT sequence FROM models WHERE id = $1", Params().integer(model_id));
+    if (!model) return tl::unexpected(model.error());
+    if (model->rows() == 0) return no_such("model", std::to_string(model_id));
+    JournalState state{model->integer(0, 0), {}};
+    if (ids.empty()) return state;
+    auto rows =
+        connection.query("SELECT " STRATA_EDIT_COLUMNS "WHERE e.model_id = $1 AND e.id = any($2)",
+                         Params().integer(model_id).array(wanted));
+    if (!rows) return tl::unexpected(rows.error());
+    for (int i = 0; i < rows->rows(); ++i) state.known.push_back(read_row(*rows, i));
+    return state;
+  });
+}
+
+Result<std::vector<std::int64_t>> Journal::undoable(std::int64_t layer_id, const std::string& user,
+                                                    bool pending_only) {
+  STRATA_TRY(check_text(user, "user"));
+  return pool_.read([&](PgConnection& connection) {
+    return sequences(
+        connection,
+        "SELECT sequence FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer AND in_force "
+        "AND (NOT $3 OR review = 'pending') AND stroke = "
+        "(SELECT stroke FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer AND in_force "
+        "AND (NOT $3 OR review = 'pending') ORDER BY sequence DESC LIMIT 1) ORDER BY sequence",
+        Params().integer(layer_id).text(user).boolean(pending_only));
+  });
+}
+
+// The batches that the newest undo took, unless paint made after that undo is in force. (Strokes
+// that redo brought back are older than it, so that undo, undo, redo, redo works.) What was
+// rejected only a curator brings back.
+Result<std::vector<std::int64_t>> Journal::redoable(std::int64_t layer_id, const std::string& user,
+                                                    bool pending_only) {
+  STRATA_TRY(check_text(user, "user"));
+  return pool_.read([&](PgConnection& connection) {
+    return sequences(
+        connection,
+        "WITH undone AS (SELECT stroke, undone_by FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer "
+        "AND NOT in_force AND review IS DISTINCT FROM 'rejected' AND (NOT $3 OR review = 'pending') "
+        "ORDER BY undone_by DESC, sequence DESC LIMIT 1) "
+        "SELECT e.sequence FROM edits e JOIN undone u ON e.stroke = u.stroke AND e.undone_by = u.undone_by "
+        "WHERE e.layer_id = $1 AND e.user_name = $2 AND e.writer AND NOT e.in_force AND NOT EXISTS "
+        "(SELECT 1 FROM edits n WHERE n.layer_id = $1 AND n.user_name = $2 AND n.writer AND n.in_force "
+        "AND n.sequence > u.undone_by) ORDER BY e.sequence",
+        Params().integer(layer_id).text(user).boolean(pending_only));
+  });
+}
+
+Result<std::int64_t> Journal::sequence_at(std::int64_t model_id, const std::string& utc) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
+    // Times are told in milliseconds: one that was read counts its own edit.
+    auto row = STRATA_TRY(connection.query(
+        "SELECT coalesce(max(sequence), 0) FROM edits "
+        "WHERE model_id = $1 AND date_trunc('milliseconds', time) <= $2::timestamptz",
+        Params().integer(model_id).text(utc)));
+    return row.integer(0, 0);
+  });
+}
+
+Result<std::int64_t> Journal::last_sequence(std::int64_t model_id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
+    auto row =
+        connection.query("SELECT sequence FROM models WHERE id = $1", Params().integer(model_id));
+    if (!row) return tl::unexpected(row.error());
+    if (row->rows() == 0) return no_such("model", std::to_string(model_id));
+    return row->integer(0, 0);
+  });
+}
+
+Result<void> rename_in_journal(PgConnection& connection, const std::string& name,
+                               const std::string& former) {
+  for (const char* sql :
+       {"UPDATE edits SET user_name = $2 WHERE user_name = $1",
+        // Decisions on what waited for review tell whose edits were meant, and a reason in words.
+        // Other records may be large.
+        "UPDATE edits SET record = jsonb_set(record, '{user}', to_jsonb($2::text)) "
+        "WHERE op IN ('accept', 'reject', 'reopen') AND record ->> 'user' = $1",
+        "UPDATE edits SET record = jsonb_set(record, '{reason}', "
+        "to_jsonb(" STRATA_CALL_RENAMED(
+            "record ->> 'reason'",
+            "1000") ")) "
+                    "WHERE op IN ('accept', 'reject', 'reopen') AND " STRATA_CALLS_THEM(
+                        "record ->> 'reason'")})
+    STRATA_TRY(connection.query(sql, Params().text(name).text(former)));
+  return {};
+}
+
+}  // namespace strata::store

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/uuid.h"
+#include "domain/layers/review.h"
+#include "domain/layers/tile.h"
+
+namespace strata::store {
+
+// What a tile holds of a key, in model space and units: the sum of area × position, and the box of
+// its texels.
+struct KeySum {
+  std::optional<std::int64_t> key;  // nothing: values of the layer are not told apart
+  std::uint64_t texels = 0;
+  double area = 0;
+  glm::dvec3 moment{0}, low{0}, high{0};
+};
+struct TileKeys {
+  TileAddress tile;
+  std::vector<KeySum> keys;  // none: nothing in it is valid
+};
+
+// One edit with everything that becomes durable with it, in one transaction.
+struct JournalEntry {
+  std::int64_t model_id = 0;
+  std::int64_t layer_id = 0;
+  std::int64_t sequence = 0;  // in the model, from 1, without gaps
+  Uuid id;                    // of the message; unique per model
+  std::string user;           // display name of the author
+  Uuid stroke;                // groups the batches of one stroke; equal to `id` for single edits
+  // "stroke", "fill", "polygon", "import", "undo", "redo", "restore", "accept", "reject", "reopen"
+  std::string op;
+  nlohmann::json record;  // the edit as it was asked for
+  nlohmann::json answer;  // what the caller was told; a repeat of `id` gets this again
+  std::chrono::system_clock::time_point time;
+  struct Revision {
+    TileAddress tile;
+    std::vector<std::uint8_t> difference;  // strata::encode_revision
+    // strata::encode_tile after the edit; empty except every 64th of a tile
+    std::vector<std::uint8_t> key_tile;
+  };
+  std::vector<Revision> revisions;
+  // What the tiles of the revisions hold after the edit; asked for on the writer's thread, at each
+  // try. Empty: it is not known, and the layer is to be counted anew (Layers::to_sum).
+  std::function<std::vector<TileKeys>()> sum_tiles;
+  // undo, redo, reviews: the sequences whose `in_force` becomes false / true with this entry
+  std::vector<std::int64_t> disable, enable;
+  Review review = Review::none;  // of this edit: none or pending
+  struct Reviewed {
+    std::vector<std::int64_t> edits;
+    Review becomes = Review::pending;
+  };
+  std::optional<Reviewed> reviewed;  // what the entry decides
+};
+
+// A row of a layer's history (GET …/edits), newest first.
+struct JournalRow {
+  std::int64_t sequence = 0;
+  Uuid id, stroke;
+  std::string user, op;
+  nlohmann::json record, answer;
+  std::chrono::system_clock::time_point time;
+  bool in_force = true;
+  Review review = Review::none;
+  struct Reviewer {  // of what was accepted or rejected
+    std::string user, reason;
+    std::chrono::system_clock::time_point time;
+  };
+  std::optional<Reviewer> reviewer{};
+};
+
+// What waits for review on a layer.
+struct ReviewQueue {
+  struct Stroke {  // or another edit
+    Uuid stroke;
+    std::int64_t sequence = 0;  // of its first batch, by which it is named; of the last one
+    std::int64_t last = 0;
+    std::string user, op;
+    std::chrono::system_clock::time_point begun, time;  // of the first batch and the last
+    std::uint64_t texels = 0;                           // changed one after the other
+    double area_m2 = 0;
+    nlohmann::json record;  // of the first batch
+  };
+  struct Person {
+    std::string user;
+    std::int64_t strokes = 0;
+  };
+  std::vector<Stroke> strokes;  // of a page, the oldest first
+  std::int64_t total = 0;
+  std::vector<Person> people;  // of the whole layer, by name
+};
+
+// Which edits a decision is about: these, those of a person, or where neither is given all.
+struct Reviewees {
+  std::vector<std::int64_t> edits;
+  std::optional<std::string> user;
+};
+struct UnderReview {
+  std::int64_t sequence = 0;
+  Uuid stroke;
+  std::string user;
+};
+
+}  // namespace strata::store

@@ -1,0 +1,252 @@
+#include "store/journal/journal_commit.h"
+
+#include <map>
+#include <set>
+
+#include "store/journal/tile_sums.h"
+#include "store/store_impl.h"
+
+namespace strata::store {
+namespace {
+
+constexpr std::size_t kBytesPerInsert = 8u << 20;
+constexpr int kTilesASide = 16384 / kTileSize;
+
+// A message without these can never be written; everything else is the database's to refuse.
+Result<void> check(const JournalEntry& entry) {
+  STRATA_TRY(check_texts({{&entry.user, "user"}, {&entry.op, "op"}}));
+  STRATA_TRY(check_json(entry.record, "record"));
+  STRATA_TRY(check_json(entry.answer, "answer"));
+  for (const auto& revision : entry.revisions)
+    if (revision.tile.x >= kTilesASide || revision.tile.y >= kTilesASide ||
+        revision.difference.empty())
+      return fail(ErrorCode::malformed, "Bad edit",
+                  "A tile revision is outside every layer, or empty.", "revisions");
+  return {};
+}
+
+struct Span {
+  std::int64_t first, last;
+};
+
+// The run of sequences of each model; they must be consecutive.
+Result<std::map<std::int64_t, Span>> model_spans(std::span<const JournalEntry* const> entries) {
+  std::map<std::int64_t, Span> spans;
+  for (const JournalEntry* entry : entries) {
+    const auto [span, fresh] =
+        spans.try_emplace(entry->model_id, Span{entry->sequence, entry->sequence});
+    if (!fresh && entry->sequence != ++span->second.last)
+      return fail(ErrorCode::conflict, "Journal out of order",
+                  "Edit " + std::to_string(entry->sequence) + " does not follow the one before.");
+  }
+  return spans;
+}
+
+using Statements = std::deque<PgConnection::Statement>;
+
+void advance_models(const std::map<std::int64_t, Span>& spans, Statements& out) {
+  PgArray ids(oid::kInt8), firsts(oid::kInt8), lasts(oid::kInt8);
+  for (const auto& [model, span] : spans) {
+    ids.add(model);
+    firsts.add(span.first);
+    lasts.add(span.last);
+  }
+  Params params;
+  params.array(ids).array(firsts).array(lasts);
+  out.push_back(
+      {"UPDATE models m SET sequence = v.last FROM unnest($1::bigint[], $2::bigint[], $3::bigint[]) "
+       "AS v (id, first, last) WHERE m.id = v.id AND m.sequence = v.first - 1",
+       std::move(params)});
+}
+
+std::size_t advance_layers(std::span<const JournalEntry* const> entries, Statements& out) {
+  std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t> lasts;
+  for (const JournalEntry* entry : entries)
+    lasts[{entry->layer_id, entry->model_id}] = entry->sequence;
+  PgArray ids(oid::kInt8), models(oid::kInt8), sequences(oid::kInt8);
+  for (const auto& [key, last] : lasts) {
+    ids.add(key.first);
+    models.add(key.second);
+    sequences.add(last);
+  }
+  Params params;
+  params.array(ids).array(models).array(sequences);
+  out.push_back(
+      {"UPDATE layers l SET sequence = v.last FROM unnest($1::bigint[], $2::bigint[], $3::bigint[]) "
+       "AS v (id, model_id, last) WHERE l.id = v.id AND l.model_id = v.model_id",
+       std::move(params)});
+  return lasts.size();
+}
+
+void insert_edits(std::span<const JournalEntry* const> entries, Statements& out) {
+  PgArray models(oid::kInt8), sequences(oid::kInt8), ids(oid::kUuid), layers(oid::kInt8),
+      strokes(oid::kUuid), users(oid::kText), ops(oid::kText), records(oid::kJsonb),
+      answers(oid::kJsonb), times(oid::kTimestamptz), reviews(oid::kText);
+  for (const JournalEntry* entry : entries) {
+    models.add(entry->model_id);
+    sequences.add(entry->sequence);
+    ids.add(entry->id);
+    layers.add(entry->layer_id);
+    strokes.add(entry->stroke);
+    users.add(std::string_view(entry->user));
+    ops.add(std::string_view(entry->op));
+    records.add(entry->record);
+    answers.add(entry->answer);
+    times.add(entry->time);
+    if (entry->review == Review::none)
+      reviews.add_null();
+    else
+      reviews.add(name(entry->review));
+  }
+  Params params;
+  params.array(models)
+      .array(sequences)
+      .array(ids)
+      .array(layers)
+      .array(strokes)
+      .array(users)
+      .array(ops)
+      .array(records)
+      .array(answers)
+      .array(times)
+      .array(reviews);
+  out.push_back(
+      {"INSERT INTO edits (model_id, sequence, id, layer_id, stroke, user_name, op, record, answer, time, review) "
+       "SELECT * FROM unnest($1::bigint[], $2::bigint[], $3::uuid[], $4::bigint[], $5::uuid[], $6::text[], "
+       "$7::text[], $8::jsonb[], $9::jsonb[], $10::timestamptz[], $11::text[])",
+       std::move(params)});
+}
+
+struct RevisionColumns {
+  PgArray layers{oid::kInt8}, ys{oid::kInt2}, xs{oid::kInt2}, sequences{oid::kInt8},
+      differences{oid::kBytea}, keys{oid::kBytea};
+  std::size_t bytes = 0;
+
+  void add(const JournalEntry& entry, const JournalEntry::Revision& revision) {
+    layers.add(entry.layer_id);
+    ys.add_int2(static_cast<std::int16_t>(revision.tile.y));
+    xs.add_int2(static_cast<std::int16_t>(revision.tile.x));
+    sequences.add(entry.sequence);
+    differences.add(Bytes(revision.difference));
+    if (revision.key_tile.empty())
+      keys.add_null();
+    else
+      keys.add(Bytes(revision.key_tile));
+    bytes += revision.difference.size() + revision.key_tile.size();
+  }
+  void flush(Statements& out) {
+    if (layers.size() == 0) return;
+    Params params;
+    params.array(layers).array(ys).array(xs).array(sequences).array(differences).array(keys);
+    out.push_back(
+        {"INSERT INTO tile_revisions (layer_id, tile_y, tile_x, sequence, difference, key_tile) "
+         "SELECT * FROM unnest($1::bigint[], $2::smallint[], $3::smallint[], $4::bigint[], $5::bytea[], $6::bytea[])",
+         std::move(params)});
+    *this = RevisionColumns();
+  }
+};
+
+void insert_revisions(std::span<const JournalEntry* const> entries, Statements& out) {
+  RevisionColumns columns;
+  for (const JournalEntry* entry : entries)
+    for (const auto& revision : entry->revisions) {
+      columns.add(*entry, revision);
+      if (columns.bytes >= kBytesPerInsert) columns.flush(out);
+    }
+  columns.flush(out);
+}
+
+// After the inserts and in the order of the entries: an undo may come in the same transaction as
+// the edit it undoes.
+void switch_edits(std::span<const JournalEntry* const> entries, Statements& out) {
+  for (const JournalEntry* entry : entries)
+    for (const auto* sequences : {&entry->disable, &entry->enable}) {
+      if (sequences->empty()) continue;
+      const bool disable = sequences == &entry->disable;
+      PgArray list(oid::kInt8);
+      for (const std::int64_t sequence : *sequences) list.add(sequence);
+      Params params;
+      params.integer(entry->layer_id).integer(entry->model_id).array(list);
+      params.optional_integer(disable ? std::optional(entry->sequence) : std::nullopt);
+      out.push_back(
+          {"UPDATE edits SET in_force = $4::bigint IS NULL, undone_by = $4 "
+           "WHERE layer_id = $1 AND model_id = $2 AND sequence = any($3)",
+           std::move(params)});
+    }
+}
+
+void keep_decisions(std::span<const JournalEntry* const> entries, Statements& out) {
+  for (const JournalEntry* entry : entries) {
+    if (!entry->reviewed) continue;
+    PgArray list(oid::kInt8);
+    for (const std::int64_t sequence : entry->reviewed->edits) list.add(sequence);
+    const Review becomes = entry->reviewed->becomes;
+    Params params;
+    params.integer(entry->layer_id).integer(entry->model_id).array(list).text(name(becomes));
+    params.optional_integer(becomes == Review::pending ? std::nullopt
+                                                       : std::optional(entry->sequence));
+    out.push_back(
+        {"UPDATE edits SET review = $4, reviewed_by = $5 WHERE layer_id = $1 AND model_id = $2 AND sequence = any($3)",
+         std::move(params)});
+  }
+}
+
+}  // namespace
+
+tl::expected<void, CommitFailure> commit_entries(PgConnection& connection,
+                                                 std::span<const JournalEntry* const> entries) {
+  const auto never = [](Error problem) {
+    return tl::unexpected(CommitFailure{std::move(problem), false});
+  };
+  const auto failed = [&](const Error& problem) {
+    return tl::unexpected(CommitFailure{problem, is_transient(connection.sqlstate())});
+  };
+  for (const JournalEntry* entry : entries)
+    if (auto good = check(*entry); !good) return never(good.error());
+  const auto spans = model_spans(entries);
+  if (!spans) return never(spans.error());
+
+  Statements statements;
+  statements.push_back({"BEGIN", {}});
+  advance_models(*spans, statements);
+  const std::size_t layer_count = advance_layers(entries, statements);
+  insert_edits(entries, statements);
+  insert_revisions(entries, statements);
+  switch_edits(entries, statements);
+  keep_decisions(entries, statements);
+  write_tile_sums(entries, statements);
+
+  Transaction transaction = Transaction::adopt(connection);
+  const auto results = connection.pipeline(statements);
+  if (!results) return failed(results.error());
+  if ((*results)[1].affected() != static_cast<std::int64_t>(spans->size()))
+    return never(
+        {ErrorCode::conflict, "Journal out of order",
+         "The model was deleted, or an edit before this one was not saved. Nothing was changed; read the layer again.",
+         ""});
+  if ((*results)[2].affected() != static_cast<std::int64_t>(layer_count))
+    return never({ErrorCode::conflict, "Layer gone",
+                  "The layer was deleted meanwhile; the edit was not saved.", ""});
+  if (auto committed = transaction.commit(); !committed) return failed(committed.error());
+  return {};
+}
+
+Result<std::vector<bool>> find_saved(PgConnection& connection,
+                                     std::span<const JournalEntry* const> entries) {
+  PgArray models(oid::kInt8), sequences(oid::kInt8), ids(oid::kUuid);
+  for (const JournalEntry* entry : entries) {
+    models.add(entry->model_id);
+    sequences.add(entry->sequence);
+    ids.add(entry->id);
+  }
+  auto rows = STRATA_TRY(connection.query(
+      "SELECT v.n FROM unnest($1::bigint[], $2::bigint[], $3::uuid[]) WITH ORDINALITY AS v (model_id, sequence, id, n) "
+      "JOIN edits e ON e.model_id = v.model_id AND e.sequence = v.sequence AND e.id = v.id",
+      Params().array(models).array(sequences).array(ids)));
+  std::vector<bool> saved(entries.size());
+  for (int i = 0; i < rows.rows(); ++i)
+    saved[static_cast<std::size_t>(rows.integer(i, 0)) - 1] = true;
+  return saved;
+}
+
+}  // namespace strata::store

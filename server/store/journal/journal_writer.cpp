@@ -1,0 +1,264 @@
+#include "store/journal/journal_writer.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "core/log.h"
+#include "store/journal/journal_commit.h"
+#include "store/store_impl.h"
+
+namespace strata::store {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kGroupEntries = 256;
+constexpr std::size_t kGroupBytes = 16u << 20;
+constexpr std::chrono::milliseconds kRetryPause{100};
+
+struct Waiting {
+  JournalEntry entry;
+  JournalWriter::Done done;
+  std::size_t bytes;
+};
+
+std::size_t bytes_of(const nlohmann::json& json) {
+  if (!json.is_structured())
+    return sizeof(json) + (json.is_string() ? json.get_ref<const std::string&>().size() : 0);
+  std::size_t bytes = sizeof(json);
+  for (const auto& [key, value] : json.items())
+    bytes += bytes_of(value) + (json.is_object() ? key.size() + 48 : 0);
+  return bytes;
+}
+
+std::size_t bytes_of(const JournalEntry& entry) {
+  std::size_t bytes =
+      sizeof(Waiting) + entry.user.size() + bytes_of(entry.record) + bytes_of(entry.answer);
+  for (const auto& revision : entry.revisions)
+    bytes += sizeof(revision) + revision.difference.size() + revision.key_tile.size();
+  return bytes;
+}
+
+std::vector<const JournalEntry*> pointers(const std::deque<Waiting>& group) {
+  std::vector<const JournalEntry*> entries;
+  for (const auto& waiting : group) entries.push_back(&waiting.entry);
+  return entries;
+}
+
+}  // namespace
+
+struct JournalWriter::Impl {
+  Impl(std::string given_dsn, Options given) : dsn(std::move(given_dsn)), options(given) {}
+
+  const std::string dsn;
+  const Options options;
+
+  mutable std::mutex mutex;
+  std::condition_variable changed;
+  std::deque<Waiting> queue;
+  std::size_t waiting_bytes = 0;  // in the queue and in the group at hand
+  std::uint64_t submitted = 0;
+  std::uint64_t answered = 0;
+  bool closing = false;
+  bool failing = false;  // the last commit failed and is being retried
+
+  // Of the writer's thread alone.
+  std::optional<PgConnection> connection;
+  std::thread thread;
+
+  void run() {
+    for (;;) {
+      std::deque<Waiting> group = take_group();
+      if (group.empty()) return;
+      write(group);
+    }
+  }
+
+  std::deque<Waiting> take_group() {
+    std::unique_lock lock(mutex);
+    changed.wait(lock, [&] { return closing || !queue.empty(); });
+    std::deque<Waiting> group;
+    std::size_t bytes = 0;
+    while (!queue.empty() && group.size() < kGroupEntries && bytes < kGroupBytes) {
+      bytes += queue.front().bytes;
+      group.push_back(std::move(queue.front()));
+      queue.pop_front();
+    }
+    return group;
+  }
+
+  void answer_front(std::deque<Waiting>& group, const Result<void>& result) {
+    std::size_t bytes = 0;
+    {
+      Waiting waiting = std::move(group.front());
+      group.pop_front();
+      waiting.done(result);
+      bytes = waiting.bytes;
+    }  // gone before it counts as answered: who drains takes down what it refers to
+    std::lock_guard lock(mutex);
+    waiting_bytes -= bytes;
+    ++answered;
+    changed.notify_all();
+  }
+
+  void set_failing(bool now) {
+    std::lock_guard lock(mutex);
+    failing = now;
+    changed.notify_all();
+  }
+
+  // Until the group is answered.
+  void write(std::deque<Waiting>& group) {
+    const auto started = Clock::now();
+    bool failed_before = false;
+    while (!group.empty()) {
+      auto outcome = attempt(group, failed_before);
+      if (outcome) {
+        set_failing(false);
+        while (!group.empty()) answer_front(group, {});
+        if (failed_before) log::info("journal: commits succeed again");
+        return;
+      }
+      if (!outcome.error().transient) {
+        outcome = one_by_one(group);
+        if (outcome) {
+          set_failing(false);
+          return;
+        }
+      }
+      set_failing(true);
+      if (!std::exchange(failed_before, true))
+        log::warning("journal: a commit failed and is tried again: " +
+                     outcome.error().problem.detail);
+      if (Clock::now() - started >= options.retry_for) {
+        give_up(group, outcome.error().problem);
+        return;
+      }
+      std::this_thread::sleep_for(kRetryPause);
+    }
+    set_failing(false);
+  }
+
+  tl::expected<PgConnection*, CommitFailure> connected() {
+    if (connection && connection->alive()) return &*connection;
+    connection.reset();
+    auto fresh = PgConnection::connect(dsn, options.limits);
+    if (!fresh) return tl::unexpected(CommitFailure{fresh.error(), true});
+    connection.emplace(std::move(*fresh));
+    return &*connection;
+  }
+
+  // Answers those at the front that an earlier try committed although its answer was lost. A
+  // transaction is whole: what is in the journal is the front of the group.
+  tl::expected<void, CommitFailure> skip_saved(PgConnection& to, std::deque<Waiting>& group) {
+    const auto saved = find_saved(to, pointers(group));
+    if (!saved) return tl::unexpected(CommitFailure{saved.error(), true});
+    for (std::size_t i = 0; i < saved->size() && (*saved)[i]; ++i) answer_front(group, {});
+    return {};
+  }
+
+  tl::expected<void, CommitFailure> attempt(std::deque<Waiting>& group, bool retry) {
+    auto to = STRATA_TRY(connected());
+    if (retry) STRATA_TRY(skip_saved(*to, group));
+    return group.empty() ? tl::expected<void, CommitFailure>{}
+                         : commit_entries(*to, pointers(group));
+  }
+
+  // One of the group can never be written: the others are, each in a transaction of its own, except
+  // those of the same model that come after it, since they were made on top of it. (A lower
+  // sequence is the model's owner starting anew.)
+  tl::expected<void, CommitFailure> one_by_one(std::deque<Waiting>& group) {
+    struct Broken {
+      std::int64_t sequence;
+      Error problem;
+    };
+    std::map<std::int64_t, Broken> broken;
+    while (!group.empty()) {
+      const JournalEntry* entry = &group.front().entry;
+      if (const auto before = broken.find(entry->model_id);
+          before != broken.end() && entry->sequence > before->second.sequence) {
+        Error problem = before->second.problem;
+        problem.detail =
+            "An edit before this one was not saved, so this one was not, either: " + problem.detail;
+        answer_front(group, tl::unexpected(problem));
+        continue;
+      }
+      auto to = STRATA_TRY(connected());
+      const auto committed = commit_entries(*to, std::span(&entry, 1));
+      if (!committed && committed.error().transient) return committed;
+      bool saved = committed.has_value();
+      if (!saved) {
+        const auto found = find_saved(*to, std::span(&entry, 1));
+        if (!found) return tl::unexpected(CommitFailure{found.error(), true});
+        saved = (*found)[0];
+      }
+      if (saved) {
+        broken.erase(entry->model_id);
+        answer_front(group, {});
+        continue;
+      }
+      broken.insert_or_assign(entry->model_id, Broken{entry->sequence, committed.error().problem});
+      answer_front(group, tl::unexpected(committed.error().problem));
+    }
+    return {};
+  }
+
+  void give_up(std::deque<Waiting>& group, const Error& problem) {
+    log::error("journal: commits kept failing, waiting edits are not saved: " + problem.detail);
+    std::deque<Waiting> waiting;
+    {
+      std::lock_guard lock(mutex);
+      waiting.swap(queue);
+    }
+    while (!group.empty()) answer_front(group, tl::unexpected(problem));
+    while (!waiting.empty()) answer_front(waiting, tl::unexpected(problem));
+    connection.reset();
+    set_failing(false);
+  }
+};
+
+JournalWriter::JournalWriter(Store& store, Options options)
+    : impl_(std::make_unique<Impl>(store.impl_->options.dsn, options)) {
+  impl_->thread = std::thread([this] { impl_->run(); });
+}
+
+JournalWriter::~JournalWriter() {
+  {
+    std::lock_guard lock(impl_->mutex);
+    impl_->closing = true;
+    impl_->changed.notify_all();
+  }
+  impl_->thread.join();
+}
+
+bool JournalWriter::submit(JournalEntry entry, Done done) {
+  const std::size_t bytes = bytes_of(entry);
+  std::lock_guard lock(impl_->mutex);
+  // One entry larger than the bound (a large import) still goes through when nothing else waits.
+  const bool full =
+      impl_->waiting_bytes > 0 && impl_->waiting_bytes + bytes > impl_->options.max_waiting_bytes;
+  if (impl_->closing || impl_->failing || full) return false;
+  impl_->queue.push_back({std::move(entry), std::move(done), bytes});
+  impl_->waiting_bytes += bytes;
+  ++impl_->submitted;
+  impl_->changed.notify_all();
+  return true;
+}
+
+bool JournalWriter::accepting() const {
+  std::lock_guard lock(impl_->mutex);
+  return !impl_->closing && !impl_->failing &&
+         impl_->waiting_bytes < impl_->options.max_waiting_bytes;
+}
+
+void JournalWriter::drain() {
+  std::unique_lock lock(impl_->mutex);
+  const std::uint64_t until = impl_->submitted;
+  impl_->changed.wait(lock, [&] { return impl_->answered >= until && !impl_->failing; });
+}
+
+}  // namespace strata::store

@@ -1,0 +1,205 @@
+#include <algorithm>
+#include <future>
+#include <limits>
+#include <thread>
+#include <tuple>
+
+#include "domain/layers/revision.h"
+#include "store/journal/journal_reads.h"
+#include "store/store_impl.h"
+
+namespace strata::store {
+namespace {
+
+// One tile as read: its last key tile, if any, and the differences after it, in order.
+struct StoredTile {
+  TileAddress address;
+  std::vector<std::uint8_t> key;
+  std::vector<std::vector<std::uint8_t>> differences;
+};
+
+using Decoded = std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>>;
+
+Result<Decoded> decode(std::vector<StoredTile> tiles, ValueType type) {
+  Decoded decoded;
+  for (const StoredTile& stored : tiles) {
+    TileData tile(type);
+    if (!stored.key.empty()) {
+      auto key = STRATA_TRY(decode_tile(type, stored.key));
+      tile = std::move(key);
+    }
+    for (const auto& bytes : stored.differences) {
+      auto revision = STRATA_TRY(decode_revision(stored.address, type, bytes));
+      apply(revision, tile);
+    }
+    if (tile.valid.any())
+      decoded.emplace_back(stored.address, std::make_shared<const TileData>(std::move(tile)));
+  }
+  return decoded;
+}
+
+// Collects rows into tiles and decodes batches of them on other threads, a bounded number at a
+// time.
+class TileLoader {
+ public:
+  explicit TileLoader(ValueType type) : type_(type) {}
+
+  // Tiles by y and x, of each the revisions by sequence: another order would lose paint, so it is
+  // an error.
+  Result<void> add(TileAddress address, std::int64_t sequence, bool key, Bytes bytes) {
+    const auto place = std::tuple(address.y, address.x, sequence);
+    if (place <= last_)
+      return fail(ErrorCode::internal, "Revisions out of order",
+                  "The database gave a layer's revisions in another order than asked for.");
+    last_ = place;
+    if (batch_.empty() || batch_.back().address != address) {
+      if (batch_bytes_ >= kBatchBytes) STRATA_TRY(flush());
+      batch_.push_back({address, {}, {}});
+    }
+    if (key)
+      batch_.back().key.assign(bytes.begin(), bytes.end());
+    else
+      batch_.back().differences.emplace_back(bytes.begin(), bytes.end());
+    batch_bytes_ += bytes.size() + kDecodedBytes;
+    return {};
+  }
+
+  Result<TileMap> finish() {
+    auto sent = flush();
+    while (sent && !running_.empty()) sent = collect();
+    if (!sent) return tl::unexpected(sent.error());
+    return std::move(tiles_);
+  }
+
+ private:
+  static constexpr std::size_t kBatchBytes = 4u << 20;
+  // about what decoding one row costs, in bytes
+  static constexpr std::size_t kDecodedBytes = kTexelsPerTile;
+
+  Result<void> flush() {
+    if (batch_.empty()) return {};
+    running_.push_back(std::async(std::launch::async, decode, std::exchange(batch_, {}), type_));
+    batch_bytes_ = 0;
+    const std::size_t most = std::clamp(std::thread::hardware_concurrency(), 2u, 8u);
+    return running_.size() >= most ? collect() : Result<void>{};
+  }
+  Result<void> collect() {
+    auto decoded = running_.front().get();
+    running_.pop_front();
+    if (!decoded) return tl::unexpected(decoded.error());
+    tiles_.insert(std::make_move_iterator(decoded->begin()),
+                  std::make_move_iterator(decoded->end()));
+    return {};
+  }
+
+  const ValueType type_;
+  std::tuple<std::uint16_t, std::uint16_t, std::int64_t> last_{0, 0, 0};
+  std::vector<StoredTile> batch_;
+  std::size_t batch_bytes_ = 0;
+  std::deque<std::future<Result<Decoded>>> running_;
+  TileMap tiles_;
+};
+
+TileAddress read_address(const PgResult& rows, int i) {
+  return {static_cast<std::uint16_t>(rows.integer(i, 1)),
+          static_cast<std::uint16_t>(rows.integer(i, 0))};
+}
+
+// From tile to tile by the primary key; of each, what came since its last whole tile. What is older
+// is not touched, so that a layer opens as fast after a year of painting as after a day. A sort
+// would hold every row: the order is that of the nested loops. Places are compared as rows, which
+// only the primary key serves: of a fresh table the planner knows nothing, and read the index by
+// sequence from end to end for each tile.
+constexpr const char* kLoadTiles =
+    "WITH RECURSIVE tiles AS ("
+    "(SELECT tile_y, tile_x FROM tile_revisions WHERE layer_id = $1 ORDER BY tile_y, tile_x LIMIT 1) UNION ALL "
+    "SELECT n.tile_y, n.tile_x FROM tiles t CROSS JOIN LATERAL (SELECT tile_y, tile_x FROM tile_revisions "
+    "WHERE layer_id = $1 AND (tile_y, tile_x) > (t.tile_y, t.tile_x) ORDER BY tile_y, tile_x LIMIT 1) n) "
+    "SELECT t.tile_y, t.tile_x, r.sequence, r.sequence = k.sequence, CASE WHEN r.sequence = k.sequence THEN r.key_tile ELSE r.difference END "
+    "FROM tiles t LEFT JOIN LATERAL (SELECT sequence FROM tile_revisions WHERE layer_id = $1 AND tile_y = t.tile_y "
+    "AND tile_x = t.tile_x AND sequence <= $2 AND key_tile IS NOT NULL ORDER BY sequence DESC LIMIT 1) k ON true "
+    "CROSS JOIN LATERAL (SELECT sequence, difference, key_tile FROM tile_revisions WHERE layer_id = $1 "
+    "AND (tile_y, tile_x, sequence) >= (t.tile_y, t.tile_x, coalesce(k.sequence, 0)) AND (tile_y, tile_x, sequence) <= (t.tile_y, t.tile_x, $2) "
+    "ORDER BY tile_y, tile_x, sequence) r";
+
+}  // namespace
+
+Result<TileMirror::Snapshot> Journal::load_tiles(const Layer& layer,
+                                                 std::optional<std::int64_t> at_sequence) {
+  return pool_.read([&](PgConnection& connection) -> Result<TileMirror::Snapshot> {
+    auto last = STRATA_TRY(connection.query(
+        "SELECT (SELECT coalesce(max(sequence), 0) FROM edits WHERE layer_id = l.id AND sequence <= $2) "
+        "FROM layers l WHERE id = $1",
+        Params().integer(layer.id).integer(
+            at_sequence.value_or(std::numeric_limits<std::int64_t>::max()))));
+    if (last.rows() == 0) return no_such("layer", std::to_string(layer.id));
+    // The journal only grows, so everything up to this sequence is one consistent state.
+    const std::int64_t sequence = last.integer(0, 0);
+    TileLoader loader(layer.type);
+    STRATA_TRY(connection.each_row(
+        kLoadTiles, Params().integer(layer.id).integer(sequence), [&](const PgResult& row) {
+          return loader.add(read_address(row, 0), row.integer(0, 2),
+                            !row.null(0, 3) && row.boolean(0, 3), row.bytes(0, 4));
+        }));
+    auto tiles = STRATA_TRY(loader.finish());
+    return TileMirror::Snapshot{std::move(tiles), sequence};
+  });
+}
+
+Result<std::vector<PastRevision>> Journal::tile_history(const Layer& layer, TileAddress tile,
+                                                        std::int64_t before, int limit) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<PastRevision>> {
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT r.sequence, e.writer, e.in_force, coalesce(e.review = 'pending', false), r.difference FROM tile_revisions r "
+        "JOIN edits e ON e.model_id = $2 AND e.sequence = r.sequence "
+        "WHERE r.layer_id = $1 AND r.tile_y = $3 AND r.tile_x = $4 AND r.sequence < $5 ORDER BY r.sequence DESC LIMIT $6",
+        Params()
+            .integer(layer.id)
+            .integer(layer.model_id)
+            .integer(tile.y)
+            .integer(tile.x)
+            .integer(before)
+            .integer(limit)));
+    std::vector<PastRevision> revisions;
+    for (int i = 0; i < rows.rows(); ++i) {
+      auto revision = STRATA_TRY(decode_revision(tile, layer.type, rows.bytes(i, 4)));
+      revisions.push_back({rows.integer(i, 0), rows.boolean(i, 1), rows.boolean(i, 2),
+                           rows.boolean(i, 3), std::move(revision)});
+    }
+    return revisions;
+  });
+}
+
+Result<std::vector<WrittenTiles>> Journal::written_by(const Layer& layer,
+                                                      std::span<const std::int64_t> sequences) {
+  PgArray list(oid::kInt8);
+  for (const std::int64_t sequence : sequences) list.add(sequence);
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<WrittenTiles>> {
+    std::vector<WrittenTiles> written;
+    STRATA_TRY(connection.each_row(
+        "SELECT tile_y, tile_x, difference FROM tile_revisions WHERE layer_id = $1 AND sequence = any($2) "
+        "ORDER BY tile_y, tile_x",
+        Params().integer(layer.id).array(list), [&](const PgResult& row) -> Result<void> {
+          const TileAddress address = read_address(row, 0);
+          auto revision = decode_revision(address, layer.type, row.bytes(0, 2));
+          if (!revision) return tl::unexpected(revision.error());
+          if (written.empty() || written.back().tile != address) written.push_back({address, {}});
+          for (int w = 0; w < kMaskWords; ++w)
+            written.back().written.words[w] |= revision->written.words[w];
+          return {};
+        }));
+    return written;
+  });
+}
+
+Result<std::uint64_t> Journal::revision_bytes(std::int64_t model_id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::uint64_t> {
+    auto row = STRATA_TRY(connection.query(
+        "SELECT coalesce(sum(octet_length(r.difference) + coalesce(octet_length(r.key_tile), 0)), 0)::bigint "
+        "FROM layers l JOIN tile_revisions r ON r.layer_id = l.id WHERE l.model_id = $1",
+        Params().integer(model_id)));
+    return static_cast<std::uint64_t>(row.integer(0, 0));
+  });
+}
+
+}  // namespace strata::store

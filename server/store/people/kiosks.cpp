@@ -1,0 +1,160 @@
+#include "store/people/kiosks.h"
+
+#include "store/pg/hash.h"
+#include "store/store_impl.h"
+
+namespace strata::store {
+namespace {
+
+#define STRATA_KIOSKS                                                                                       \
+  "SELECT k.id, k.name, t.id, m.id, p.id, t.slug, t.name, m.slug, m.name, p.slug, k.user_name, k.created, " \
+  "k.expires, k.last_seen, k.revoked, k.wants_reload FROM kiosks k JOIN tours t ON t.id = k.tour_id "       \
+  "JOIN models m ON m.id = t.model_id JOIN projects p ON p.id = m.project_id "
+#define STRATA_GOOD_KIOSK "(k.revoked IS NULL AND (k.expires IS NULL OR k.expires > now()))"
+// Others are cleared away when the next link is made; none is listed longer.
+#define STRATA_LISTED_KIOSK \
+  "(least(k.revoked, k.expires) IS NULL OR least(k.revoked, k.expires) > now() - interval '30 days')"
+
+Kiosk read_kiosk(const PgResult& rows, int i) {
+  Kiosk kiosk;
+  kiosk.id = rows.integer(i, 0);
+  kiosk.name = rows.text(i, 1);
+  kiosk.tour_id = rows.integer(i, 2);
+  kiosk.model_id = rows.integer(i, 3);
+  kiosk.project_id = rows.integer(i, 4);
+  kiosk.tour = rows.text(i, 5);
+  kiosk.tour_name = rows.text(i, 6);
+  kiosk.model = rows.text(i, 7);
+  kiosk.model_name = rows.text(i, 8);
+  kiosk.project = rows.text(i, 9);
+  kiosk.user = rows.text(i, 10);
+  kiosk.created = rows.time(i, 11);
+  if (!rows.null(i, 12)) kiosk.expires = rows.time(i, 12);
+  if (!rows.null(i, 13)) kiosk.last_seen = rows.time(i, 13);
+  if (!rows.null(i, 14)) kiosk.revoked = rows.time(i, 14);
+  kiosk.wants_reload = rows.boolean(i, 15);
+  return kiosk;
+}
+
+Result<Kiosk> load(PgConnection& connection, std::int64_t id) {
+  auto rows = STRATA_TRY(connection.query(STRATA_KIOSKS "WHERE k.id = $1", Params().integer(id)));
+  if (rows.rows() == 0) return no_such("kiosk", std::to_string(id));
+  return read_kiosk(rows, 0);
+}
+
+}  // namespace
+
+Result<Kiosks::Page> Kiosks::all(const std::optional<std::vector<std::int64_t>>& projects,
+                                 int limit, int offset, std::int64_t after) {
+  return pool_.read([&](PgConnection& connection) -> Result<Page> {
+    PgArray ids(oid::kInt8);
+    if (projects)
+      for (const std::int64_t project : *projects) ids.add(project);
+    auto total = STRATA_TRY(connection.query(
+        "SELECT count(*) FROM kiosks k JOIN tours t ON t.id = k.tour_id JOIN models m ON m.id = t.model_id "
+        "WHERE ($1 OR m.project_id = any($2)) AND " STRATA_LISTED_KIOSK,
+        Params().boolean(!projects).array(ids)));
+    auto rows = STRATA_TRY(connection.query(
+        STRATA_KIOSKS "WHERE ($1 OR p.id = any($2)) AND " STRATA_LISTED_KIOSK
+                      " AND k.id > $5 ORDER BY k.id LIMIT $3 OFFSET $4",
+        Params().boolean(!projects).array(ids).integer(limit).integer(offset).integer(after)));
+    Page page;
+    page.total = total.integer(0, 0);
+    for (int i = 0; i < rows.rows(); ++i) page.kiosks.push_back(read_kiosk(rows, i));
+    return page;
+  });
+}
+
+Result<Kiosk> Kiosks::kiosk(std::int64_t id) {
+  return pool_.read([&](PgConnection& connection) { return load(connection, id); });
+}
+
+Result<std::vector<std::int64_t>> Kiosks::of_tour(std::int64_t tour_id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<std::int64_t>> {
+    auto rows =
+        connection.query("SELECT id FROM kiosks WHERE tour_id = $1", Params().integer(tour_id));
+    if (!rows) return tl::unexpected(rows.error());
+    std::vector<std::int64_t> ids;
+    for (int i = 0; i < rows->rows(); ++i) ids.push_back(rows->integer(i, 0));
+    return ids;
+  });
+}
+
+Result<NewKiosk> Kiosks::create(std::int64_t tour_id, const std::string& name,
+                                const std::string& user,
+                                std::optional<std::chrono::seconds> lifetime) {
+  STRATA_TRY(check_name(name));
+  STRATA_TRY(check_texts({{&user, "user"}}));
+  return pool_.write([&](PgConnection& connection) -> Result<NewKiosk> {
+    // Locked, so that of two at once the later one counts the earlier.
+    auto tour = STRATA_TRY(connection.query("SELECT 1 FROM tours WHERE id = $1 FOR NO KEY UPDATE",
+                                            Params().integer(tour_id)));
+    if (tour.rows() == 0) return no_such("tour", std::to_string(tour_id));
+    auto cleared =
+        connection.query("DELETE FROM kiosks k WHERE k.tour_id = $1 AND NOT " STRATA_LISTED_KIOSK,
+                         Params().integer(tour_id));
+    if (!cleared) return tl::unexpected(cleared.error());
+    auto count = STRATA_TRY(connection.query(
+        "SELECT count(*) FROM kiosks k WHERE k.tour_id = $1 AND " STRATA_GOOD_KIOSK,
+        Params().integer(tour_id)));
+    if (count.integer(0, 0) >= kMostKiosks)
+      return fail(ErrorCode::conflict, "Too many kiosks",
+                  "A tour has links for at most " + std::to_string(kMostKiosks) +
+                      " kiosks. Revoke some first.");
+    NewKiosk made;
+    made.secret = random_token();
+    std::optional<Time> expires;
+    if (lifetime) expires = std::chrono::system_clock::now() + *lifetime;
+    const Sha256 hash = sha256(made.secret);
+    auto row = STRATA_TRY(connection.query(
+        "INSERT INTO kiosks (tour_id, hash, name, user_name, expires) VALUES ($1, $2, $3, $4, $5) RETURNING id",
+        Params().integer(tour_id).bytes(hash).text(name).text(user).time(expires)));
+    auto kiosk = STRATA_TRY(load(connection, row.integer(0, 0)));
+    made.kiosk = std::move(kiosk);
+    return made;
+  });
+}
+
+Result<std::optional<Kiosk>> Kiosks::find(const std::string& secret) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::optional<Kiosk>> {
+    const Sha256 hash = sha256(secret);
+    auto rows = STRATA_TRY(connection.query(
+        STRATA_KIOSKS "WHERE k.hash = $1 AND " STRATA_GOOD_KIOSK, Params().bytes(hash)));
+    return rows.rows() == 0 ? std::optional<Kiosk>() : read_kiosk(rows, 0);
+  });
+}
+
+Result<void> Kiosks::seen(std::int64_t id, bool loaded) {
+  return pool_.write([&](PgConnection& connection) -> Result<void> {
+    auto done = connection.query(
+        "UPDATE kiosks SET last_seen = now(), wants_reload = wants_reload AND NOT $2 WHERE id = $1 AND "
+        "(last_seen IS NULL OR last_seen < now() - interval '1 minute' OR (wants_reload AND $2))",
+        Params().integer(id).boolean(loaded));
+    return done ? Result<void>() : tl::unexpected(done.error());
+  });
+}
+
+Result<void> Kiosks::revoke(std::int64_t id) {
+  return pool_.write([&](PgConnection& connection) -> Result<void> {
+    auto done = STRATA_TRY(connection.query(
+        "UPDATE kiosks SET revoked = coalesce(revoked, now()), wants_reload = false WHERE id = $1",
+        Params().integer(id)));
+    if (done.affected() == 0) return no_such("kiosk", std::to_string(id));
+    return {};
+  });
+}
+
+Result<Kiosk> Kiosks::ask_reload(std::int64_t id) {
+  return pool_.write([&](PgConnection& connection) -> Result<Kiosk> {
+    auto done = STRATA_TRY(connection.query(
+        "UPDATE kiosks k SET wants_reload = true WHERE k.id = $1 AND " STRATA_GOOD_KIOSK,
+        Params().integer(id)));
+    auto kiosk = load(connection, id);
+    if (kiosk && done.affected() == 0)
+      return fail(ErrorCode::conflict, "Link not valid",
+                  "The link of this kiosk is revoked or expired: it does not ask any more.");
+    return kiosk;
+  });
+}
+
+}  // namespace strata::store

@@ -1,0 +1,222 @@
+#pragma once
+
+#include <libpq-fe.h>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+#include "core/uuid.h"
+#include "store/pg/pg_limits.h"
+
+namespace strata::store {
+
+using Bytes = std::span<const std::uint8_t>;
+using Time = std::chrono::system_clock::time_point;
+
+namespace oid {
+constexpr Oid kBool = 16, kBytea = 17, kInt8 = 20, kInt2 = 21, kText = 25, kFloat8 = 701,
+              kTimestamptz = 1184, kUuid = 2950, kJsonb = 3802;
+}
+
+// A one-dimensional PostgreSQL array in binary form, for `unnest($1)` and `= any($1)`.
+class PgArray {
+ public:
+  explicit PgArray(Oid element) : element_(element) {}
+  void add(std::int64_t value);
+  void add_int2(std::int16_t value);
+  void add(double value);
+  void add(std::string_view text);
+  void add(Bytes bytes);
+  void add(const Uuid& uuid);
+  void add(const nlohmann::json& json);
+  void add(Time time);
+  void add_null();
+
+  Oid element() const { return element_; }
+  int size() const { return count_; }
+  std::string encode() const;
+
+ private:
+  void add_raw(const void* data, std::size_t size);
+  Oid element_;
+  int count_ = 0;
+  bool has_null_ = false;
+  std::string body_;
+};
+
+// Values of $1, $2, … in binary form. `bytes` are not copied: they must outlive the call that sends
+// them.
+class Params {
+ public:
+  Params() = default;
+  Params(Params&&) = default;  // a copy would point into the original
+  Params& operator=(Params&&) = default;
+
+  Params& integer(std::int64_t value);
+  Params& optional_integer(std::optional<std::int64_t> value);
+  Params& real(double value);
+  Params& boolean(bool value);
+  Params& text(std::string_view value);
+  Params& optional_text(const std::optional<std::string>& value);
+  Params& bytes(Bytes value);
+  Params& uuid(const Uuid& value);
+  // throws nlohmann::json::type_error on text that is not UTF-8
+  Params& json(const nlohmann::json& value);
+  Params& time(std::optional<Time> value);
+  Params& array(const PgArray& value);
+
+  int count() const { return static_cast<int>(types_.size()); }
+  const Oid* types() const { return types_.data(); }
+  const char* const* values() const { return values_.data(); }
+  const int* lengths() const { return lengths_.data(); }
+  const int* formats() const { return formats_.data(); }
+
+ private:
+  Params& own(Oid type, std::string value);
+  Params& null(Oid type);
+  std::deque<std::string> owned_;  // a deque: its elements never move
+  std::vector<Oid> types_;
+  std::vector<const char*> values_;
+  std::vector<int> lengths_;
+  std::vector<int> formats_;
+};
+
+// Rows in binary form. Each reader expects the matching SQL type.
+class PgResult {
+ public:
+  PgResult() = default;
+  explicit PgResult(PGresult* result) : result_(result) {}
+
+  int rows() const { return PQntuples(result_.get()); }
+  std::int64_t affected() const;
+  bool null(int row, int column) const { return PQgetisnull(result_.get(), row, column) != 0; }
+  std::int64_t integer(int row, int column) const;  // int2, int4, int8
+  double real(int row, int column) const;
+  bool boolean(int row, int column) const;
+  std::string text(int row, int column) const;
+  Bytes bytes(int row, int column) const;  // valid while the result lives
+  Uuid uuid(int row, int column) const;
+  nlohmann::json json(int row, int column) const;
+  Time time(int row, int column) const;
+  std::vector<double> reals(int row, int column) const;  // float8[]
+
+ private:
+  struct Clear {
+    void operator()(PGresult* result) const { PQclear(result); }
+  };
+  std::unique_ptr<PGresult, Clear> result_;
+};
+
+// One connection, used by one thread at a time. Statements are prepared once per connection. A call
+// that waits longer than the limits closes the connection: its Error is `unavailable` and its
+// sqlstate "08006", as when the server had closed it.
+class PgConnection {
+ public:
+  // One attempt, of at most 5 seconds. The session writes durably (synchronous_commit on) and
+  // speaks UTF-8.
+  static Result<PgConnection> connect(const std::string& dsn,
+                                      const PgLimits& limits = kRequestLimits);
+  // From the next call on; costs a round trip where they change.
+  Result<void> set_limits(const PgLimits& limits);
+
+  // False once the server closed the connection; costs one system call.
+  bool alive();
+  // SQLSTATE of the last failure; "08006" when the connection broke.
+  const std::string& sqlstate() const { return sqlstate_; }
+
+  // True once after a failure that was the server's choice of a victim in a deadlock.
+  bool take_deadlock() { return std::exchange(sqlstate_, {}) == "40P01"; }
+
+  Result<void> script(const std::string& sql);  // any number of statements without parameters
+  Result<PgResult> query(const char* sql, const Params& params = {});
+  // The same without preparing it: for statements that name generated tables, of which there is no
+  // end.
+  Result<PgResult> query_once(const std::string& sql, const Params& params = {});
+  // Hands out rows as they arrive, one result of one row each, so that memory stays small. An error
+  // of `on_row` ends it, and with it the connection, since asking the server to stop could wait for
+  // it without end.
+  Result<void> each_row(const char* sql, const Params& params,
+                        const std::function<Result<void>(const PgResult&)>& on_row);
+
+  // Sends statements without waiting between them; the first failure is returned and the rest are
+  // skipped by the server.
+  struct Statement {
+    const char* sql;
+    Params params;
+  };
+  Result<std::vector<PgResult>> pipeline(const std::deque<Statement>& statements);
+
+  // COPY … FROM STDIN (FORMAT binary): begin, rows of fields, end.
+  Result<void> copy_begin(const char* sql);
+  Result<void> copy_send(std::string_view data);
+  Result<void> copy_end();
+  void copy_abort(const char* reason);
+
+ private:
+  explicit PgConnection(PGconn* connection) : connection_(connection) {}
+  Result<std::string> prepared(const char* sql, const Params& params);
+  tl::unexpected<Error> failed(const PGresult* result);
+  bool wait_for_socket(short events);
+  bool flush();
+  PGresult* next_result();
+  Result<PgResult> outcome();
+  void close(std::string reason);
+  struct Finish {
+    void operator()(PGconn* connection) const { PQfinish(connection); }
+  };
+  std::unique_ptr<PGconn, Finish> connection_;
+  std::map<std::string, std::string, std::less<>> prepared_;
+  PgLimits limits_;
+  std::string closed_because_;
+  std::string sqlstate_;
+};
+
+// BEGIN now, ROLLBACK unless committed.
+class Transaction {
+ public:
+  static Result<Transaction> begin(PgConnection& connection);
+  // All that is read in it is of one moment; nothing is written.
+  static Result<Transaction> begin_reading(PgConnection& connection);
+  // For a transaction whose BEGIN goes out with a pipeline.
+  static Transaction adopt(PgConnection& connection) { return Transaction(connection); }
+  Transaction(Transaction&& other) noexcept
+      : connection_(std::exchange(other.connection_, nullptr)) {}
+  Transaction& operator=(Transaction&&) = delete;
+  ~Transaction();
+  // Where the answer is lost nobody knows whether it was done: the Error says so.
+  Result<void> commit();
+
+ private:
+  explicit Transaction(PgConnection& connection) : connection_(&connection) {}
+  PgConnection* connection_;
+};
+
+// COPY BINARY pieces.
+std::string copy_header();
+void append_field(std::string& row, Bytes bytes);
+void append_int4(std::string& row, std::int32_t value);  // field
+void append_row_start(std::string& row, std::int16_t fields);
+std::string copy_trailer();
+
+// What a failure of PostgreSQL means to our caller: connection → unavailable, 23xxx → conflict,
+// disk full → storage_full, bad text → `malformed` …
+Error problem_of(std::string_view sqlstate, std::string_view message);
+Error unavailable(std::string_view why);
+// True where trying the same again later can succeed (connection, resources, deadlocks), false
+// where it never can.
+bool is_transient(std::string_view sqlstate);
+
+// Refuses text that PostgreSQL cannot keep: invalid UTF-8 and U+0000.
+Result<void> check_text(std::string_view text, const std::string& field);
+
+}  // namespace strata::store

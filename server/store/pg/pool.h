@@ -1,0 +1,90 @@
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "store/pg/pg.h"
+
+namespace strata::store {
+
+// Connections shared by threads. A caller waits for a free one, for `slot_for` at most
+// (unavailable); broken ones are replaced. When the database is away, connecting is tried again for
+// `kReconnectFor` (a restart takes about that long) before the Error `unavailable`.
+class Pool {
+ public:
+  static constexpr std::chrono::milliseconds kReconnectFor{3000};
+
+  Pool(std::string dsn, int size, PgLimits limits, std::chrono::milliseconds slot_for)
+      : dsn_(std::move(dsn)), limits_(limits), slot_for_(slot_for), free_slots_(size) {}
+
+  const std::string& dsn() const { return dsn_; }
+
+  class Lease {
+   public:
+    Lease(Pool& pool, PgConnection connection) : pool_(&pool), connection_(std::move(connection)) {}
+    Lease(Lease&& other) noexcept
+        : pool_(std::exchange(other.pool_, nullptr)), connection_(std::move(other.connection_)) {}
+    Lease& operator=(Lease&&) = delete;
+    ~Lease() {
+      if (pool_) pool_->release(std::move(connection_));
+    }
+    PgConnection& operator*() { return connection_; }
+
+   private:
+    Pool* pool_;
+    PgConnection connection_;
+  };
+  Result<Lease> acquire() { return acquire(limits_); }
+  Result<Lease> acquire(const PgLimits& limits);
+
+  // Runs `work(connection)`, once more on a new connection when the old one broke: for reads.
+  template <class Work>
+  auto read(Work&& work) -> std::invoke_result_t<Work, PgConnection&> {
+    for (bool again = true;; again = false) {
+      auto lease = STRATA_TRY(acquire());
+      auto result = work(*lease);
+      if (result || !again || (*lease).alive() || result.error().code != ErrorCode::unavailable)
+        return result;
+    }
+  }
+
+  // Runs `work(connection)` in one transaction, committed when it succeeds; from the start again
+  // after a deadlock.
+  template <class Work>
+  auto write(Work&& work) -> std::invoke_result_t<Work, PgConnection&> {
+    return write_within(limits_, std::forward<Work>(work));
+  }
+  template <class Work>
+  auto write_within(const PgLimits& limits, Work&& work)
+      -> std::invoke_result_t<Work, PgConnection&> {
+    using Outcome = std::invoke_result_t<Work, PgConnection&>;
+    auto lease = STRATA_TRY(acquire(limits));
+    for (int tries_left = 3;; --tries_left) {
+      auto transaction = STRATA_TRY(Transaction::begin(*lease));
+      Outcome result = work(*lease);
+      if (!result) {
+        if ((*lease).take_deadlock() && tries_left > 0) continue;
+        return result;
+      }
+      STRATA_TRY(transaction.commit());
+      return result;
+    }
+  }
+
+ private:
+  Result<PgConnection> take(const PgLimits& limits);
+  void release(PgConnection connection);
+  void free_slot();
+
+  const std::string dsn_;
+  const PgLimits limits_;
+  const std::chrono::milliseconds slot_for_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int free_slots_;
+  std::vector<PgConnection> idle_;
+};
+
+}  // namespace strata::store

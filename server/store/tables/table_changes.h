@@ -1,0 +1,78 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "domain/tables/cell_history.h"
+#include "domain/tables/table.h"
+
+namespace strata::store {
+
+inline constexpr std::int64_t kMostRecords = 1'000'000;     // of a table
+inline constexpr std::size_t kMostRecordsAtOnce = 100'000;  // of a call
+inline constexpr std::size_t kMostRowProblems = 100;        // that are told
+inline constexpr std::size_t kLongestUniqueText = 1000;     // bytes: what an index takes
+
+// What is asked of one record.
+struct RecordInput {
+  std::optional<std::int64_t> key;  // none: a new record with the next key
+  // by column id; a new record gets the defaults of those that are not named
+  std::map<std::int64_t, nlohmann::json> values;
+  std::optional<std::int64_t> version{};  // of the record as it was read: otherwise it is stale
+};
+struct WriteRecords {
+  std::vector<RecordInput> records;
+  bool may_create = true;  // records of keys that are not there
+  bool may_change = true;  // records that are there
+  bool dry_run = false;    // everything is checked, and nothing kept
+  std::string op = "records";
+};
+
+// Why one of the records cannot be written.
+struct RowError {
+  std::int64_t key = 0;
+  Error problem;
+  std::optional<std::size_t> index;  // its place in WriteRecords
+};
+
+// What became of a table.
+struct TableChange {
+  Table table;                // as it is now
+  std::int64_t sequence = 0;  // of the entry in its journal; 0: nothing was done
+  bool columns_changed = false;
+  std::vector<std::int64_t> created, changed, deleted;  // keys, ascending
+  std::vector<Record> records;                          // those created or changed, by key
+  nlohmann::json record;                                // what was done, as the journal keeps it
+  std::vector<RowError> problems;                       // not empty: nothing was written
+};
+
+// What undo or redo would do, so that it can be asked first what is painted.
+struct UndoPlan {
+  std::int64_t table_sequence = 0;      // when it was planned
+  std::int64_t edit = 0;                // the entry that is undone or redone
+  std::vector<std::int64_t> vanishing;  // records that would be gone
+};
+
+// A row of a table's journal, newest first.
+struct TableEditRow {
+  std::int64_t sequence = 0;
+  std::string user, op;
+  nlohmann::json record;
+  std::chrono::system_clock::time_point time;
+  bool in_force = true;
+  struct Change {
+    bool is_column = false;
+    std::int64_t id = 0;  // key or column
+    Cells before, after;
+  };
+  std::vector<Change> changes;  // the first kMostToldChanges of them
+  std::int64_t total_changes = 0;
+};
+inline constexpr int kMostToldChanges = 100;
+
+}  // namespace strata::store

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "store/store.h"
+#include "store/tables/table_writer.h"
+#include "store/tables/tables.h"
+
+// What a table was, and what undo makes of it.
+namespace strata::store {
+
+// The records after a sequence, by key; `open` gets the columns of then.
+Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open,
+                                    std::int64_t sequence);
+
+Result<TableHistory> read_history(PgConnection& connection, std::int64_t table_id, Role seen_by,
+                                  std::optional<std::int64_t> key, int limit, int offset,
+                                  std::optional<std::int64_t> before);
+
+struct PlannedUndo {
+  UndoPlan plan;
+  TableEdit edit;
+};
+// By the rule of domain/tables/cell_history. `conflict` where the person has nothing to undo or
+// redo.
+Result<PlannedUndo> plan_undo(PgConnection& connection, const OpenTable& open,
+                              const std::string& user, bool redo);
+
+}  // namespace strata::store

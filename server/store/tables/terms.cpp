@@ -1,0 +1,310 @@
+#include <algorithm>
+
+#include "domain/tables/column_value.h"
+#include "domain/tables/relation_cycles.h"
+#include "domain/tables/term_list.h"
+#include "store/store_impl.h"
+#include "store/tables/table_rows.h"
+#include "store/tables/table_writer.h"
+#include "store/tables/tables.h"
+
+namespace strata::store {
+namespace {
+
+nlohmann::json text_or_null(const std::string& text) {
+  return text.empty() ? nlohmann::json() : nlohmann::json(text);
+}
+
+// Terms on their way into a list: finds what each of them is there, and makes cells of what is new.
+class TermIntake {
+ public:
+  TermIntake(PgConnection& connection, OpenTable& open, const TermList& list)
+      : connection_(connection), open_(open), list_(list) {}
+
+  Result<TableChange> take(const std::string& user, const std::string& op) {
+    edit_.user = user;
+    edit_.op = op;
+    STRATA_TRY(add_columns());
+    STRATA_TRY(find_keys());
+    for (std::size_t i = 0; i < list_.terms.size(); ++i)
+      if (auto good = add_cells(i); !good) add_problem(i, good.error());
+    refuse_circles();
+    TableChange change;
+    change.table = open_.table;
+    change.problems = std::move(problems_);
+    if (!change.problems.empty()) return change;
+    std::erase_if(edit_.records, [](const auto& record) { return record.second.empty(); });
+    if (edit_.records.empty() && edit_.columns.empty()) return change;
+    edit_.record = {{"records", edit_.records.size()}, {"terms", list_.terms.size()}};
+    auto done = STRATA_TRY(apply_edit(connection_, open_, std::move(edit_)));
+    for (RowError& problem : done.problems)
+      if (const auto index = index_of_.find(problem.key); index != index_of_.end())
+        problem.index = index->second;
+    return done;
+  }
+
+ private:
+  // What the text has and the list has no column for, with the terms as one entry.
+  Result<void> add_columns() {
+    // What is written is found among all columns: those that come are hidden until the edit shows
+    // them.
+    for (const Column& column : open_.table.columns) columns_[column.slug] = column;
+    for (const std::string& slug : list_.columns) {
+      if (columns_.contains(slug)) continue;
+      Column column = new_term_column(slug);
+      STRATA_TRY(fit_column(connection_, open_, column));
+      for (const auto& [other, known] : columns_)
+        column.order = std::max(column.order, known.order + 1);
+      auto made = STRATA_TRY(insert_column(connection_, open_, std::move(column)));
+      open_.all.push_back(made);
+      edit_.columns[made.id] = {{"hidden", false}};
+      columns_[slug] = std::move(made);
+    }
+    return {};
+  }
+
+  // The records that the terms are: those of their URI, otherwise of their code, otherwise new
+  // ones.
+  Result<void> find_keys() {
+    auto rows = STRATA_TRY(load_all_rows(connection_, open_.table.id, open_.all));
+    for (Record& row : rows) {
+      if (const std::string code = held_text(row, "code"); !code.empty())
+        key_of_code_[code] = row.key;
+      if (const std::string uri = held_text(row, "uri"); !uri.empty())
+        key_of_uri_.emplace(uri, row.key);
+      now_[row.key] = std::move(row);
+    }
+    std::int64_t next = open_.next_key;
+    std::set<std::string> uris;
+    for (std::size_t i = 0; i < list_.terms.size(); ++i) {
+      const Term& term = list_.terms[i];
+      const auto by_uri = term.uri.empty() ? key_of_uri_.end() : key_of_uri_.find(term.uri);
+      const auto by_code = key_of_code_.find(term.code);
+      std::int64_t key = 0;
+      if (by_uri != key_of_uri_.end())
+        key = by_uri->second;
+      else if (by_code != key_of_code_.end())
+        key = by_code->second;
+      else if (next > kHighestKey)
+        return fail(ErrorCode::conflict, "No keys left", "All keys up to 4294967295 were given.",
+                    "key");
+      else
+        key = next++;
+      if (const auto [first, is_new] = index_of_.emplace(key, i); !is_new)
+        add_problem(i, {ErrorCode::invalid, "Term twice",
+                        "\"" + term.code + "\" and \"" + list_.terms[first->second].code +
+                            "\" are the same term of the list, by URI and by code.",
+                        "uri"});
+      keys_.push_back(key);
+      if (!term.uri.empty() && !uris.insert(term.uri).second)
+        add_problem(i, {ErrorCode::invalid, "URI twice",
+                        "Two terms have this URI: " + term.uri.substr(0, 300) + ".", "uri"});
+    }
+    // From here on codes and URIs mean what they will mean then: a code that a term gives up may be
+    // another one's.
+    for (const auto& [key, index] : index_of_) {
+      const auto held = now_.find(key);
+      if (held == now_.end()) continue;
+      if (const auto code = key_of_code_.find(held_text(held->second, "code"));
+          code != key_of_code_.end() && code->second == key)
+        key_of_code_.erase(code);
+    }
+    for (std::size_t i = 0; i < list_.terms.size(); ++i) {
+      key_of_code_[list_.terms[i].code] = keys_[i];
+      if (!list_.terms[i].uri.empty()) key_of_uri_[list_.terms[i].uri] = keys_[i];
+    }
+    return {};
+  }
+
+  Result<void> add_cells(std::size_t index) {
+    const Term& term = list_.terms[index];
+    const std::int64_t key = keys_[index];
+    const auto held = now_.find(key);
+    const bool exists = held != now_.end();
+    Cells& cells = edit_.records[key];
+    if (!exists) cells["exists"] = true;
+    if (!exists)
+      for (const Column& column : open_.table.columns)
+        if (!column.default_value.is_null())
+          cells[std::to_string(column.id)] = column.default_value;
+    for (const std::string& slug : list_.columns) {
+      auto value = STRATA_TRY(value_of(term, slug));
+      const Column& column = columns_.at(slug);
+      STRATA_TRY(check_value(column, value, slug));
+      nlohmann::json now;
+      if (exists)
+        if (const auto cell = held->second.values.find(column.id);
+            cell != held->second.values.end())
+          now = cell->second;
+      if (value != now || !exists) cells[std::to_string(column.id)] = std::move(value);
+    }
+    return {};
+  }
+
+  Result<nlohmann::json> value_of(const Term& term, const std::string& slug) {
+    if (slug == "code") return text_or_null(term.code);
+    if (slug == "label") return text_or_null(term.label);
+    if (slug == "definition") return text_or_null(term.definition);
+    if (slug == "uri") return text_or_null(term.uri);
+    if (slug == "color") return text_or_null(term.color);
+    if (slug == "pattern") return text_or_null(term.pattern);
+    if (slug != "parent") {
+      const auto label = term.labels.find(*label_language(slug));
+      return label == term.labels.end() ? nlohmann::json() : nlohmann::json(label->second);
+    }
+    if (!term.parent.empty()) {
+      const auto parent = key_of_code_.find(term.parent);
+      if (parent == key_of_code_.end())
+        return fail(ErrorCode::invalid, "No such parent",
+                    "Neither the list nor the text has a term \"" + term.parent + "\".", "parent");
+      return nlohmann::json(parent->second);
+    }
+    // A vocabulary may be part of another one, whose terms are not here.
+    const auto parent =
+        term.parent_uri.empty() ? key_of_uri_.end() : key_of_uri_.find(term.parent_uri);
+    return parent == key_of_uri_.end() ? nlohmann::json() : nlohmann::json(parent->second);
+  }
+
+  // A term below itself, with what the list has already.
+  void refuse_circles() {
+    const std::int64_t column = columns_.at("parent").id;
+    Relation relation;
+    const auto name = [&](std::int64_t key, const nlohmann::json& parent) {
+      if (parent.is_number()) relation[key] = {parent.get<std::int64_t>()};
+    };
+    for (const auto& [key, row] : now_)
+      if (const auto parent = row.values.find(column); parent != row.values.end())
+        name(key, parent->second);
+    for (const auto& [key, cells] : edit_.records)
+      if (const auto parent = cells.find(std::to_string(column)); parent != cells.end()) {
+        relation.erase(key);
+        name(key, parent->second);
+      }
+    for (const auto& circle : relation_cycles(relation)) {
+      std::string path;
+      for (const auto key : circle)
+        if (path.size() < 500) path += "\"" + code_of(key) + "\" is below ";
+      const auto sent = std::find_if(circle.begin(), circle.end(),
+                                     [&](auto key) { return index_of_.contains(key); });
+      if (sent == circle.end()) continue;
+      add_problem(index_of_.at(*sent), {ErrorCode::invalid, "Terms in a circle",
+                                        path + "\"" + code_of(circle.front()) + "\".", "parent"});
+    }
+  }
+
+  std::string code_of(std::int64_t key) const {
+    if (const auto sent = index_of_.find(key); sent != index_of_.end())
+      return list_.terms[sent->second].code;
+    const auto held = now_.find(key);
+    return held == now_.end() ? std::to_string(key) : held_text(held->second, "code");
+  }
+
+  std::string held_text(const Record& row, const std::string& slug) const {
+    const auto column = columns_.find(slug);
+    if (column == columns_.end()) return {};
+    const auto value = row.values.find(column->second.id);
+    return value != row.values.end() && value->second.is_string() ? value->second.get<std::string>()
+                                                                  : std::string();
+  }
+
+  void add_problem(std::size_t index, const Error& problem) {
+    if (problems_.size() < kMostRowProblems)
+      problems_.push_back({keys_.size() > index ? keys_[index] : 0, problem, index});
+  }
+
+  PgConnection& connection_;
+  OpenTable& open_;
+  const TermList& list_;
+  TableEdit edit_;
+  std::map<std::string, Column> columns_;  // by slug
+  std::map<std::int64_t, Record> now_;
+  std::map<std::string, std::int64_t> key_of_code_, key_of_uri_;
+  std::vector<std::int64_t> keys_;                // of the terms
+  std::map<std::int64_t, std::size_t> index_of_;  // of the term that a record is
+  std::vector<RowError> problems_;
+};
+
+// The table with its terms, or (`told`) why they cannot be in it.
+Result<TableChange> insert_with_terms(PgConnection& connection, Table table, const TermList* terms,
+                                      const std::string& user, const std::string& op) {
+  auto taken = STRATA_TRY(connection.query(
+      "SELECT slug::text FROM record_tables WHERE project_id = $1 AND lower(name) = lower($2)",
+      Params().integer(table.project_id).text(table.name)));
+  if (taken.rows() > 0)
+    return fail(ErrorCode::conflict, "Name taken",
+                "The project has a table \"" + table.name + "\" already (`" + taken.text(0, 0) +
+                    "`). Rename or delete it first, or go on with that one.",
+                "name");
+  auto made = STRATA_TRY(insert_table(connection, std::move(table)));
+  TableChange change;
+  change.table = made;
+  if (!terms) return change;
+  auto open = STRATA_TRY(read_table(connection, made.id));
+  return TermIntake(connection, open, *terms).take(user, op);
+}
+
+}  // namespace
+
+Result<std::vector<TableChange>> Tables::create_several(
+    const std::vector<NewTable>& tables, bool dry_run, const std::string& user,
+    const std::string& op, const FirstAnswer<std::vector<TableChange>>& answer) {
+  STRATA_TRY(check_text(user, "user"));
+  std::optional<std::vector<TableChange>> told;
+  const auto work = [&](PgConnection& connection) -> Result<std::vector<TableChange>> {
+    std::vector<TableChange> made;
+    bool refused = false;
+    for (const NewTable& wished : tables) {
+      Table table = wished.table;
+      STRATA_TRY(check_text(table.name, "name"));
+      // The tables before it, by their places; then they have ids.
+      for (const auto& [column, place] : wished.targets)
+        table.columns.at(column).target = made.at(place).table.id;
+      auto change = STRATA_TRY(insert_with_terms(
+          connection, std::move(table), wished.terms ? &*wished.terms : nullptr, user, op));
+      refused = refused || !change.problems.empty();
+      made.push_back(std::move(change));
+    }
+    if (!refused && !dry_run) return made;
+    told = std::move(made);
+    return fail(ErrorCode::conflict, "Not kept", "Nothing was written.");
+  };
+  auto done = change(pool_, answer, work, kBulkLimits);
+  if (told) return std::move(*told);
+  return done;
+}
+
+Result<TableChange> Tables::import_terms(std::int64_t table_id, const TermList& list, bool dry_run,
+                                         const std::string& user,
+                                         const FirstAnswer<TableChange>& answer) {
+  STRATA_TRY(check_text(user, "user"));
+  std::optional<TableChange> told;
+  const auto work = [&](PgConnection& connection) -> Result<TableChange> {
+    auto open = STRATA_TRY(lock_table(connection, table_id));
+    if (!term_columns(open.table))
+      return fail(
+          ErrorCode::conflict, "No list of terms",
+          open.table.name +
+              " is no list of terms: that has `code`, a text that is required and unique, `label`, a text, and `parent`, a "
+              "term of the table itself.");
+    auto change = TermIntake(connection, open, list).take(user, "import");
+    if (!change || (change->problems.empty() && !dry_run)) return change;
+    told = std::move(*change);
+    return fail(ErrorCode::conflict, "Not kept", "Nothing was written.");
+  };
+  auto done = change(pool_, answer, work, kBulkLimits);
+  if (told) return std::move(*told);
+  return done;
+}
+
+Result<std::optional<Palette>> term_palette_of(PgConnection& connection, std::int64_t table_id) {
+  // Everybody who sees the layer sees its palette.
+  auto open = STRATA_TRY(read_table(connection, table_id, least_role(Visibility::everyone)));
+  const auto columns = term_columns(open.table);
+  if (!columns) return std::optional<Palette>();
+  const RecordOrder by_key[] = {{0, false}};
+  auto page = STRATA_TRY(load_page(connection, table_id, open.table.columns, {}, {}, Params(),
+                                   by_key, {static_cast<std::int64_t>(kMostTermColors)}));
+  return std::optional(terms_palette(list_terms(*columns, page.rows)));
+}
+
+}  // namespace strata::store

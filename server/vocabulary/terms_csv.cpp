@@ -1,0 +1,137 @@
+#include "vocabulary/terms_csv.h"
+
+#include <algorithm>
+#include <map>
+
+#include "core/text/csv.h"
+
+namespace strata {
+namespace {
+
+constexpr std::pair<const char*, std::string Term::*> kParts[] = {
+    {"code", &Term::code},      {"parent", &Term::parent},
+    {"label", &Term::label},    {"definition", &Term::definition},
+    {"uri", &Term::uri},        {"color", &Term::color},
+    {"pattern", &Term::pattern}};
+
+std::string trimmed(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return std::string(text);
+}
+
+// What the cells below one of the first row are: a part of a term, or labels in a language.
+struct Head {
+  std::string slug;
+  std::string Term::*part = nullptr;
+  std::string language;
+};
+
+std::optional<Head> head_of(const std::string& cell) {
+  Head head{trimmed(cell), nullptr, {}};
+  std::transform(head.slug.begin(), head.slug.end(), head.slug.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  for (const auto& [name, part] : kParts)
+    if (head.slug == name) head.part = part;
+  if (head.part) return head;
+  const auto language = label_language(head.slug);
+  if (!language) return std::nullopt;
+  head.language = *language;
+  return head;
+}
+
+Result<std::vector<Head>> read_heads(const CsvRow& row, TermList& list) {
+  std::vector<Head> heads;
+  std::size_t languages = 0;
+  for (const std::string& cell : row.cells) {
+    auto head = head_of(cell);
+    if (!head)
+      return fail(
+          ErrorCode::invalid, "Unknown column",
+          "\"" + cell +
+              "\" is none of code, parent, label, label-es (or another language), definition, uri, color, pattern.",
+          "body");
+    if (!list.columns.insert(head->slug).second)
+      return fail(ErrorCode::invalid, "Column named twice",
+                  "\"" + head->slug + "\" stands twice in the first row.", "body");
+    languages += !head->language.empty();
+    heads.push_back(std::move(*head));
+  }
+  if (!list.columns.contains("code"))
+    return fail(ErrorCode::invalid, "No codes", "The first row must name the column `code`.",
+                "body");
+  if (languages > kMostTermLanguages)
+    return fail(ErrorCode::invalid, "Too many languages",
+                "A list of terms has labels in at most " + std::to_string(kMostTermLanguages) +
+                    " languages.",
+                "body");
+  return heads;
+}
+
+}  // namespace
+
+Result<TermList> read_terms_csv(std::string_view text) {
+  auto csv =
+      STRATA_TRY(parse_csv(text, {kMostTerms + 1, std::size(kParts) + kMostTermLanguages + 1}));
+  if (csv.rows.empty())
+    return fail(ErrorCode::invalid, "Empty table", "The first row names the columns.", "body");
+  TermList list;
+  auto heads = STRATA_TRY(read_heads(csv.rows.front(), list));
+  list.rows = csv.rows.size() - 1;
+  std::map<std::string, int> lines;
+  for (std::size_t r = 1; r < csv.rows.size(); ++r) {
+    const CsvRow& row = csv.rows[r];
+    Term term;
+    term.line = row.line;
+    for (std::size_t c = 0; c < std::min(row.cells.size(), heads.size()); ++c) {
+      const Head& head = heads[c];
+      std::string value = unguard_formula(trimmed(row.cells[c]));
+      if (head.part)
+        term.*head.part = std::move(value);
+      else if (!value.empty())
+        term.labels[head.language] = std::move(value);
+    }
+    Result<void> good;
+    if (row.cells.size() != heads.size())
+      good = fail(ErrorCode::invalid, "Cells missing or too many",
+                  "The row has " + std::to_string(row.cells.size()) + " cells, the first row " +
+                      std::to_string(heads.size()) + ".");
+    if (good) good = check_term(term);
+    if (good)
+      if (const auto [first, is_new] = lines.emplace(term.code, row.line); !is_new)
+        good =
+            fail(ErrorCode::invalid, "Code twice",
+                 "\"" + term.code + "\" stands in line " + std::to_string(first->second) + ", too.",
+                 "code");
+    if (good)
+      list.terms.push_back(std::move(term));
+    else if (list.mistakes.size() < kMostTermMistakes)
+      list.mistakes.push_back({row.line, term.code, good.error().field, good.error()});
+  }
+  return list;
+}
+
+std::string terms_csv(std::span<const Term> terms, char separator) {
+  std::set<std::string> languages;
+  for (const Term& term : terms)
+    for (const auto& [language, label] : term.labels) languages.insert(language);
+  std::vector<std::string> cells{"code", "parent", "label"};
+  for (const auto& language : languages) cells.push_back(label_slug(language));
+  cells.insert(cells.end(), {"definition", "uri", "color", "pattern"});
+  std::string text(kUtf8Mark);
+  text += csv_line(cells, separator);
+  for (const Term& term : terms) {
+    cells = {term.code, term.parent, term.label};
+    for (const auto& language : languages) {
+      const auto label = term.labels.find(language);
+      cells.push_back(label == term.labels.end() ? std::string() : label->second);
+    }
+    cells.insert(cells.end(), {term.definition, term.uri, term.color, term.pattern});
+    for (std::string& cell : cells) cell = guard_formula(std::move(cell));
+    text += csv_line(cells, separator);
+  }
+  return text;
+}
+
+}  // namespace strata

@@ -1,0 +1,273 @@
+// Edits of whole areas: expressions, pieces of the surface, connected values, polygons. With a real
+// database and renderer.
+#include <gmock/gmock.h>
+
+#include <bit>
+#include <cmath>
+
+#include "domain/layers/mask_texels.h"
+#include "support/room_fixture.h"
+
+namespace strata {
+namespace {
+
+using Op = Expression::Op;
+using room::FillEdit;
+using test::RoomTest;
+
+class RoomAreas : public RoomTest {
+ protected:
+  void SetUp() override {
+    RoomTest::SetUp();
+    wet_ = make_layer(ValueType::u8, 2048, "wet");
+    crack_ = make_layer(ValueType::u8, 2048, "crack");
+    marks_ = make_layer(ValueType::u16, 2048, "marks");
+  }
+
+  // What the fixture's strokes are seen through.
+  Camera view() const { return camera({0.3, -1, 0.4}); }
+
+  static Expression layer_value(const std::string& slug) {
+    Expression e;
+    e.op = Op::layer;
+    e.name = slug;
+    return e;
+  }
+  static Expression valid(const std::string& slug) {
+    Expression e = layer_value(slug);
+    e.op = Op::valid;
+    return e;
+  }
+  static Expression number(double value) {
+    Expression e;
+    e.number = value;
+    return e;
+  }
+  static Expression of(Op op, std::vector<Expression> parts) {
+    Expression e;
+    e.op = op;
+    e.parts = std::move(parts);
+    return e;
+  }
+
+  TileMap tiles(const std::string& slug, std::optional<std::int64_t> at = {}) {
+    auto snapshot = room()->tiles(slug, at);
+    EXPECT_TRUE(snapshot) << (snapshot ? "" : snapshot.error().detail);
+    return snapshot ? snapshot->tiles : TileMap{};
+  }
+
+  // Undo brings back what was there, redo what the edit made, and all of it can be read as of its
+  // sequence and after a restart.
+  void expect_durable_and_undoable(const Layer& layer, room::EditRequest edit) {
+    const TileMap before = tiles(layer.slug);
+    const auto answer = send(edit);
+    ASSERT_TRUE(answer) << answer.error().detail;
+    EXPECT_GT(answer->texels_changed, 0u);
+    EXPECT_GT(answer->area_m2, 0);
+    const TileMap after = tiles(layer.slug);
+    EXPECT_FALSE(test::equal(before, after));
+    ASSERT_TRUE(send(request(layer, room::UndoEdit{})));
+    EXPECT_TRUE(test::equal(tiles(layer.slug), before));
+    ASSERT_TRUE(send(request(layer, room::RedoEdit{})));
+    EXPECT_TRUE(test::equal(tiles(layer.slug), after));
+    EXPECT_TRUE(test::equal(tiles(layer.slug, answer->sequence - 1), before));
+    EXPECT_TRUE(test::equal(tiles(layer.slug, answer->sequence), after));
+    restart();
+    EXPECT_TRUE(test::equal(tiles(layer.slug), after));
+    const auto again = send(edit);
+    ASSERT_TRUE(again);
+    EXPECT_TRUE(again->repeated);
+    EXPECT_EQ(again->texels_changed, answer->texels_changed);
+    expect_room_equals_journal(layer);
+  }
+
+  room::PolygonEdit polygon(std::vector<glm::dvec2> path, std::uint32_t value,
+                            bool through = false) const {
+    room::PolygonEdit edit;
+    edit.value_bits = value;
+    edit.outline.camera = view();
+    edit.outline.path = std::move(path);
+    edit.outline.through = through;
+    return edit;
+  }
+
+  Layer wet_, crack_, marks_;
+};
+
+std::uint64_t valid_texels(const TileMap& tiles) {
+  std::uint64_t count = 0;
+  for (const auto& [address, tile] : tiles)
+    count += static_cast<std::uint64_t>(tile->valid.count());
+  return count;
+}
+
+// Texels that are valid in just one of them, or hold different values.
+std::uint64_t differing_texels(const TileMap& a, const TileMap& b) {
+  std::set<TileAddress> addresses;
+  for (const TileMap* tiles : {&a, &b})
+    for (const auto& [address, tile] : *tiles) addresses.insert(address);
+  std::uint64_t count = 0;
+  for (const TileAddress address : addresses) {
+    const auto bits = [&](const TileMap& tiles, int texel) -> std::optional<std::uint32_t> {
+      const auto found = tiles.find(address);
+      if (found == tiles.end() || !found->second->valid.test(texel)) return std::nullopt;
+      return found->second->bits(texel);
+    };
+    for (int i = 0; i < kTexelsPerTile; ++i) count += bits(a, i) != bits(b, i);
+  }
+  return count;
+}
+
+TEST_F(RoomAreas, a_fill_where_a_condition_holds_follows_the_other_layers) {
+  ASSERT_TRUE(send(stroke(wet_, 5, {{250, 240}, {390, 240}}, 40)));
+  ASSERT_TRUE(send(stroke(wet_, 6, {{250, 300}}, 30)));
+  ASSERT_TRUE(send(stroke(crack_, 1, {{320, 200}, {320, 280}}, 15)));
+  FillEdit fill;
+  fill.value_bits = 900;
+  fill.region = FillEdit::Where{of(Op::all, {of(Op::equal, {layer_value("wet"), number(5)}),
+                                             of(Op::negation, {valid("crack")})})};
+  expect_durable_and_undoable(marks_, request(marks_, fill));
+  const TileMap wet = tiles("wet"), crack = tiles("crack"), marks = tiles("marks");
+  std::uint64_t checked = 0;
+  for (const auto& [address, tile] : wet)
+    for_each_texel(tile->valid, [&](int texel) {
+      const bool cracked = crack.contains(address) && crack.at(address)->valid.test(texel);
+      const bool expected = tile->bits(texel) == 5 && !cracked;
+      const bool is = marks.contains(address) && marks.at(address)->valid.test(texel);
+      ASSERT_EQ(is, expected) << address.x << "," << address.y << " texel " << texel;
+      checked += is;
+    });
+  EXPECT_EQ(checked, valid_texels(marks)) << "nothing else is painted, gutter included";
+}
+
+TEST_F(RoomAreas, a_fill_over_a_layer_that_is_not_there_is_refused_and_paints_nothing) {
+  FillEdit fill;
+  fill.region = FillEdit::Where{valid("salt")};
+  const auto answer = send(request(marks_, fill));
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().code, ErrorCode::invalid);
+  EXPECT_EQ(answer.error().field, "where");
+  EXPECT_EQ(room()->sequence(), 0);
+  EXPECT_TRUE(tiles("marks").empty());
+}
+
+TEST_F(RoomAreas, a_layer_can_be_filled_by_what_it_holds_itself) {
+  ASSERT_TRUE(send(stroke(marks_, 3, {{300, 240}}, 30)));
+  ASSERT_TRUE(send(stroke(marks_, 4, {{340, 240}}, 30)));
+  const auto before = room()->statistics("marks");
+  FillEdit fill;
+  fill.erase = true;
+  fill.region = FillEdit::Where{of(Op::greater, {layer_value("marks"), number(3)})};
+  const auto answer = send(request(marks_, fill));
+  ASSERT_TRUE(answer) << answer.error().detail;
+  const auto after = room()->statistics("marks");
+  EXPECT_FALSE(after->keys.contains(4));
+  EXPECT_EQ(after->keys.at(3).texels, before->keys.at(3).texels);
+  EXPECT_EQ(answer->texels_changed, before->keys.at(4).texels);
+}
+
+TEST_F(RoomAreas, the_piece_under_a_pixel_is_the_whole_pot_across_all_its_seams) {
+  FillEdit fill;
+  fill.value_bits = 12;
+  fill.region = FillEdit::Island{room::PixelPlace{view(), 320, 240}};
+  const auto edit = request(marks_, fill);
+  expect_durable_and_undoable(marks_, edit);
+  const double area_m2 = room()->model().area_m2();
+  EXPECT_NEAR(room()->statistics("marks")->area_m2, area_m2, area_m2 * 1e-3);
+  // The same from a point in space, for another layer.
+  fill.region = FillEdit::Island{(model_.bounds_min + model_.bounds_max) * 0.5};
+  const auto answer = send(request(wet_, fill));
+  ASSERT_TRUE(answer) << answer.error().detail;
+  EXPECT_NEAR(answer->area_m2, area_m2, area_m2 * 1e-3);
+}
+
+TEST_F(RoomAreas, what_is_connected_with_a_place_is_filled_and_nothing_else) {
+  ASSERT_TRUE(send(stroke(marks_, 3, {{260, 240}}, 25)));
+  const TileMap one = tiles("marks");
+  ASSERT_TRUE(send(stroke(marks_, 3, {{380, 240}}, 25)));
+  const auto both = room()->statistics("marks")->keys.at(3).texels;
+  FillEdit fill;
+  fill.value_bits = 7;
+  fill.region = FillEdit::Connected{room::PixelPlace{view(), 380, 240}};
+  expect_durable_and_undoable(marks_, request(marks_, fill));
+  const auto keys = room()->statistics("marks")->keys;
+  EXPECT_EQ(keys.at(3).texels + keys.at(7).texels, both);
+  for (const auto& [address, tile] : one)
+    for_each_texel(tile->valid, [&, tile = tile](int texel) {
+      ASSERT_EQ(tiles("marks").at(address)->bits(texel), 3u) << "the other dab";
+    });
+}
+
+TEST_F(RoomAreas, from_where_nothing_is_all_that_holds_nothing_is_filled) {
+  ASSERT_TRUE(send(stroke(marks_, 3, {{320, 240}}, 40)));
+  const auto painted = room()->statistics("marks")->texels;
+  FillEdit fill;
+  fill.value_bits = 1;
+  fill.region = FillEdit::Connected{room::PixelPlace{view(), 320, 320}};
+  ASSERT_TRUE(send(request(marks_, fill)));
+  const auto statistics = room()->statistics("marks");
+  EXPECT_EQ(statistics->keys.at(3).texels, painted);
+  const double area_m2 = room()->model().area_m2();
+  EXPECT_NEAR(statistics->area_m2, area_m2, area_m2 * 2e-3);
+}
+
+TEST_F(RoomAreas, a_place_beside_the_model_is_refused) {
+  FillEdit fill;
+  fill.region = FillEdit::Island{room::PixelPlace{view(), 2, 2}};
+  const auto answer = send(request(marks_, fill));
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().code, ErrorCode::invalid);
+  EXPECT_EQ(answer.error().field, "at");
+  EXPECT_EQ(room()->sequence(), 0);
+}
+
+TEST_F(RoomAreas, a_polygon_paints_what_a_square_brush_of_its_shape_does) {
+  for (const bool through : {false, true}) {
+    auto dab = stroke(wet_, 9, {{330, 250}}, 60);
+    std::get<room::StrokeEdit>(dab.edit).batch.shape = ToolShape::square;
+    std::get<room::StrokeEdit>(dab.edit).batch.through = through;
+    const auto painted = send(dab);
+    ASSERT_TRUE(painted) << painted.error().detail;
+    auto square = polygon({{270, 190}, {390, 190}, {390, 310}, {270, 310}}, 9, through);
+    const auto answer = send(request(crack_, square));
+    ASSERT_TRUE(answer) << answer.error().detail;
+    EXPECT_GT(answer->texels_changed, 1000u);
+    const std::uint64_t count = valid_texels(tiles("wet"));
+    EXPECT_LE(differing_texels(tiles("wet"), tiles("crack")), 2 + count / 20'000)
+        << "rounding at the border";
+    FillEdit erase;
+    erase.erase = true;
+    for (const Layer& layer : {wet_, crack_}) ASSERT_TRUE(send(request(layer, erase)));
+  }
+}
+
+TEST_F(RoomAreas, a_polygon_is_durable_and_undoable) {
+  expect_durable_and_undoable(
+      marks_, request(marks_, polygon({{220, 140}, {420, 200}, {300, 220}, {360, 360}}, 77)));
+}
+
+TEST_F(RoomAreas, a_polygon_erases_and_its_notch_stays) {
+  ASSERT_TRUE(send(request(marks_, FillEdit{false, 5})));
+  auto edit = polygon({{200, 150}, {440, 150}, {440, 330}, {320, 240}, {200, 330}}, 0);
+  edit.erase = true;
+  ASSERT_TRUE(send(request(marks_, edit)));
+  const auto value_at = [&](double x, double y) {
+    return room()->pick(view(), x, y, {"marks"})->values.at(0);
+  };
+  EXPECT_FALSE(value_at(320, 180).valid);
+  EXPECT_FALSE(value_at(230, 250).valid);
+  EXPECT_TRUE(value_at(320, 300).valid) << "in the notch";
+}
+
+TEST_F(RoomAreas, a_polygon_out_of_the_window_paints_nothing_and_is_an_edit_all_the_same) {
+  const auto answer = send(request(marks_, polygon({{-900, -900}, {-800, -900}, {-800, -800}}, 1)));
+  ASSERT_TRUE(answer) << answer.error().detail;
+  EXPECT_EQ(answer->texels_changed, 0u);
+  const auto whole =
+      send(request(marks_, polygon({{-1e6, -1e6}, {1e6, -1e6}, {1e6, 1e6}, {-1e6, 1e6}}, 1)));
+  ASSERT_TRUE(whole);
+  EXPECT_GT(whole->texels_changed, 10'000u);
+}
+
+}  // namespace
+}  // namespace strata

@@ -1,0 +1,495 @@
+// Faults: the GPU's memory is used up or its context goes, the database is away or holds more than
+// the room knows, the room closes. Whatever happens, what was answered as saved is in the journal,
+// and the room and the GPU hold what the journal holds.
+#include <gmock/gmock.h>
+#include <libpq-fe.h>
+
+#include <chrono>
+#include <thread>
+
+#include "room/tile_changes.h"
+#include "store/content/layers.h"
+#include "store/content/models.h"
+#include "store/journal/journal_reads.h"
+#include "store/journal/journal_writer.h"
+#include "support/room_fixture.h"
+
+namespace strata {
+namespace {
+
+using test::RoomTest;
+using Answer = Result<room::EditAnswer>;
+
+constexpr auto kLong = std::chrono::minutes(5);
+
+// What a person in the room hears.
+class Ears : public room::Listener {
+ public:
+  void edit_applied(const Edit&) override { count(applied_); }
+  void edits_unsaved(const std::vector<Edit>&, const Error&) override {}
+  void layer_changed(LayerChange, const Layer&) override {}
+  void model_changed(const Model&) override {}
+  void look_changed(LayerChange, const Look&) override {}
+  void model_deleted() override { count(deleted_); }
+  void presence_changed() override { count(presence_); }
+  void view_refused(std::uint32_t, const Error&) override {}
+
+  void wait_for_applied(int wanted) { wait(applied_, wanted); }
+  void wait_for_presence(int wanted) { wait(presence_, wanted); }
+  int deleted() {
+    std::lock_guard lock(mutex_);
+    return deleted_;
+  }
+
+ private:
+  void count(int& what) {
+    std::lock_guard lock(mutex_);
+    ++what;
+    changed_.notify_all();
+  }
+  void wait(const int& what, int wanted) {
+    std::unique_lock lock(mutex_);
+    ASSERT_TRUE(changed_.wait_for(lock, kLong, [&] { return what >= wanted; }));
+  }
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int applied_ = 0, deleted_ = 0, presence_ = 0;
+};
+
+class Connection {
+ public:
+  explicit Connection(const std::string& dsn) : connection_(PQconnectdb(dsn.c_str()), &PQfinish) {}
+  void execute(const char* sql) {
+    std::unique_ptr<PGresult, decltype(&PQclear)> result(PQexec(connection_.get(), sql), &PQclear);
+    ASSERT_EQ(PQresultStatus(result.get()), PGRES_COMMAND_OK) << PQerrorMessage(connection_.get());
+  }
+
+ private:
+  std::unique_ptr<PGconn, decltype(&PQfinish)> connection_;
+};
+
+class RoomRecovery : public RoomTest {
+ protected:
+  void execute(const char* sql) { Connection(dsn_).execute(sql); }
+
+  // Starts again with a GPU that has room for one slice of pages of four bytes, 20 MiB: for a layer
+  // of 2048² that is painted all over, not for one of 4096². What is shown and painted is not more
+  // than that now.
+  void restart_with_little_gpu_memory(std::initializer_list<Layer> layers) {
+    for (const Layer& layer : layers) {
+      EXPECT_TRUE(send(stroke(layer, 5, {{320, 240}}, 20)));
+    }
+    EXPECT_TRUE(room()->picture({}, camera({0.3, -1, 0.4})));
+    restart(renderer_->gpu_bytes_used() + (9u << 20));
+  }
+
+  // Commits an edit behind the room's back, as a commit does whose answer was lost.
+  void commit_behind(const room::EditRequest& edit, const Layer& layer, std::int64_t sequence,
+                     bool damaged) {
+    store::JournalEntry entry;
+    entry.model_id = model_.id;
+    entry.layer_id = layer.id;
+    entry.sequence = sequence;
+    entry.id = entry.stroke = edit.id;
+    entry.user = edit.author.user;
+    entry.op = "stroke";
+    entry.record = edit.record;
+    entry.answer = {{"sequence", sequence}, {"texels_changed", 1}, {"area_m2", 0.5}};
+    entry.time = std::chrono::system_clock::now();
+    const TileAddress address{3, 3};
+    const auto tiles = store_->journal().load_tiles(layer)->tiles;
+    const auto before = room::tile_or_empty(tiles, address, layer.type);
+    TileData after = *before;
+    TileMask written;
+    for (int texel = 0; texel < 2000; ++texel) {
+      written.set(texel);
+      after.write(texel, 77);
+    }
+    entry.revisions.push_back(
+        {address, encode_revision(make_revision(address, *before, after, written)), {}});
+    if (damaged) entry.revisions[0].difference = {1, 2, 3};
+    store::JournalWriter writer(*store_, {});
+    std::promise<Result<void>> saved;
+    ASSERT_TRUE(writer.submit(std::move(entry),
+                              [&](Result<void> result) { saved.set_value(std::move(result)); }));
+    const auto result = saved.get_future().get();
+    ASSERT_TRUE(result) << result.error().detail;
+  }
+};
+
+TEST(TileChanges, a_stroke_changes_what_it_wrote_whatever_the_gpu_holds_elsewhere) {
+  TileData before(ValueType::u8), read_back(ValueType::u8);
+  for (int texel = 0; texel < 100; ++texel) before.write(texel, 3);
+  TileMask written;
+  for (int texel : {5, 6, 200}) {
+    written.set(texel);
+    read_back.write(texel, 9);
+  }
+  const auto change =
+      room::painted_change({1, 2}, std::make_shared<const TileData>(before), written, read_back);
+  TileData expected = before;
+  for (int texel : {5, 6, 200}) expected.write(texel, 9);
+  EXPECT_TRUE(*change.after == expected);
+  EXPECT_TRUE(*change.before == before);
+}
+
+// --- the GPU
+
+TEST_F(RoomRecovery, layers_that_do_not_fit_the_gpu_together_are_painted_in_turn) {
+  const Layer a = make_layer(ValueType::u32, 2048, "a"), b = make_layer(ValueType::u32, 2048, "b");
+  restart_with_little_gpu_memory({a});
+  for (std::uint32_t value = 1; value < 4; ++value)
+    for (const Layer& layer : {a, b}) {
+      ASSERT_TRUE(send(request(layer, room::FillEdit{false, value})));
+      ASSERT_TRUE(send(stroke(layer, 10 + value, {{310, 250}}, 20)));
+    }
+  expect_room_equals_journal(a);
+  expect_room_equals_journal(b);
+  const auto both = room()->picture({}, camera({0.3, -1, 0.4}));
+  ASSERT_FALSE(both) << "two full layers in one picture";
+  EXPECT_EQ(both.error().code, ErrorCode::out_of_memory);
+  restart();
+  expect_picture_of_journal();
+}
+
+TEST_F(RoomRecovery, a_fill_that_does_not_fit_the_gpu_is_refused_and_leaves_all_as_it_was) {
+  const Layer other = make_layer(ValueType::u32, 2048, "other"),
+              layer = make_layer(ValueType::u32, 4096, "large");
+  restart_with_little_gpu_memory({other, layer});
+  const auto before = room()->tiles(layer.slug, {});
+  const Answer filled = send(request(layer, room::FillEdit{false, 3}));
+  ASSERT_FALSE(filled);
+  EXPECT_EQ(filled.error().code, ErrorCode::out_of_memory);
+  EXPECT_TRUE(test::equal(room()->tiles(layer.slug, {})->tiles, before->tiles));
+  const auto next = send_until_taken(stroke(layer, 7, {{310, 250}}, 20));
+  ASSERT_TRUE(next) << next.error().detail;
+  expect_room_equals_journal(layer);
+  expect_picture_of_journal();
+}
+
+TEST_F(RoomRecovery, what_was_erased_comes_back_when_other_paint_has_taken_its_pages) {
+  options_.retry_for = std::chrono::milliseconds(500);
+  restart();
+  const Layer a = make_layer(ValueType::u32, 2048, "a"), b = make_layer(ValueType::u32, 2048, "b");
+  restart_with_little_gpu_memory({a});
+  ASSERT_TRUE(send(request(a, room::FillEdit{false, 3})));
+  const auto saved = room()->tiles("a", {});
+  Ears ears;
+  auto member = room()->join({"anna", Role::owner}, {}, &ears, [](const stream::FrameMessages&) {});
+
+  Connection blocker(dsn_);
+  blocker.execute("begin; lock table edits in exclusive mode");  // reading goes on, commits wait
+  auto erased = start(request(a, room::FillEdit{true, 0}));
+  auto filled = start(request(b, room::FillEdit{false, 4}));
+  ears.wait_for_applied(2);
+  EXPECT_TRUE(room()->tiles("a", {})->tiles.empty());
+  EXPECT_FALSE(erased.get());
+  EXPECT_FALSE(filled.get());
+  blocker.execute("rollback");
+
+  EXPECT_TRUE(test::equal(room()->tiles("a", {})->tiles, saved->tiles));
+  EXPECT_TRUE(room()->tiles(b.slug, {})->tiles.empty());
+  expect_picture_of_journal();
+  ASSERT_TRUE(send_until_taken(stroke(a, 8, {{300, 240}}, 20)));
+  expect_room_equals_journal(a);
+  expect_room_equals_journal(b);
+}
+
+TEST_F(RoomRecovery, contexts_lost_in_the_middle_of_edits_lose_none_that_was_saved) {
+  const Layer layer = make_layer(ValueType::u8, 2048);
+  ASSERT_TRUE(send(stroke(layer, 1, {{320, 240}}, 20)));
+  std::vector<std::int64_t> sequences{1};
+  for (int round = 0; round < 8; ++round) {
+    std::vector<std::future<Answer>> answers;
+    for (int i = 0; i < 4; ++i)
+      answers.push_back(start(stroke(layer, 10 + i, {{300.0 + 10 * i, 240.0 + round}}, 12)));
+    answers.push_back(start(request(layer, room::FillEdit{false, std::uint32_t(round + 2)})));
+    for (int i = 0; i < 4; ++i)
+      answers.push_back(start(stroke(layer, 20 + i, {{310.0 + 10 * i, 240.0 - round}}, 12)));
+    // At another moment each time: before, among and after the strokes and in the middle of the
+    // fill.
+    for (int i = 0; i < round; ++i) answers[i].wait();
+    renderer_->lose_context_for_test();
+    for (auto& future : answers) {
+      const Answer answer = future.get();
+      if (answer)
+        sequences.push_back(answer->sequence);
+      else
+        EXPECT_THAT(answer.error().code,
+                    ::testing::AnyOf(ErrorCode::gpu_lost, ErrorCode::unavailable))
+            << answer.error().title;
+    }
+    const auto next = send_until_taken(stroke(layer, 40 + round, {{320, 230}}, 10));
+    ASSERT_TRUE(next) << next.error().detail;
+    sequences.push_back(next->sequence);
+  }
+  // Each sequence was given once, and without a gap.
+  for (std::size_t i = 0; i < sequences.size(); ++i) EXPECT_EQ(sequences[i], std::int64_t(i + 1));
+  expect_room_equals_journal(layer);
+  expect_picture_of_journal();
+}
+
+TEST_F(RoomRecovery, layers_made_changed_and_deleted_while_the_gpu_comes_back_stay_so) {
+  make_layer(ValueType::u8, 2048, "kept");
+  for (int round = 0; round < 6; ++round) {
+    renderer_->lose_context_for_test();
+    Layer made;
+    made.name = made.slug = "made-" + std::to_string(round);
+    made.type = ValueType::u8;
+    made.resolution = 2048;
+    made.palette = default_palette(made.type, false);
+    Result<Layer> created = fail(ErrorCode::unavailable, "", "");
+    for (int i = 0; i < 6000 && !created; ++i) created = room()->create_layer(made);
+    ASSERT_TRUE(created) << created.error().detail;
+    renderer_->lose_context_for_test();
+    Layer renamed = room()->layer("kept").value();
+    renamed.name = "Round " + std::to_string(round);
+    ASSERT_TRUE(room()->update_layer(renamed));
+    if (round % 2) {
+      ASSERT_TRUE(room()->delete_layer(created->id));
+    }
+    EXPECT_EQ(room()->layer("kept")->name, renamed.name);
+  }
+  const Layer last = room()->layer("made-4").value();
+  const auto painted = send_until_taken(stroke(last, 9, {{320, 240}}, 20));
+  ASSERT_TRUE(painted) << painted.error().title << ": " << painted.error().detail;
+  EXPECT_EQ(room()->layer("kept")->name, "Round 5");
+  std::vector<std::string> here, stored;
+  for (const auto& layer : room()->layers()) here.push_back(layer.slug + "/" + layer.name);
+  const auto rows = store_->layers().of_model(model_.id, Role::owner);
+  for (const auto& layer : *rows) stored.push_back(layer.slug + "/" + layer.name);
+  EXPECT_EQ(here, stored);
+  expect_picture_of_journal();
+}
+
+TEST_F(RoomRecovery, a_context_lost_after_the_rooms_are_gone_harms_nobody) {
+  make_layer(ValueType::u8);
+  rooms_.reset();
+  renderer_->lose_context_for_test();
+  std::promise<Result<render::ModelHandle>> answered;
+  renderer_->add_model(
+      {}, [&](Result<render::ModelHandle> model) { answered.set_value(std::move(model)); });
+  EXPECT_FALSE(answered.get_future().get());  // refused by a thread that is still there
+}
+
+// --- the database
+
+TEST_F(RoomRecovery, an_edit_whose_commit_was_in_doubt_is_answered_only_when_the_room_holds_it) {
+  const Layer layer = make_layer(ValueType::u8);
+  ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
+  execute("alter table edits add constraint no_more check (sequence < 2) not valid");
+  const auto edit = stroke(layer, 6, {{340, 240}}, 20);
+  ASSERT_FALSE(send(edit));
+  execute("alter table edits drop constraint no_more");
+  commit_behind(edit, layer, 2, false);
+
+  const auto resent = send(edit);
+  ASSERT_TRUE(resent) << resent.error().detail;
+  EXPECT_TRUE(resent->repeated);
+  EXPECT_EQ(resent->sequence, 2);
+  EXPECT_EQ(room()->sequence(), 2);
+  expect_room_equals_journal(layer);
+  ASSERT_TRUE(send(stroke(layer, 7, {{320, 240}}, 20)));
+  expect_room_equals_journal(layer);
+  expect_picture_of_journal();
+}
+
+TEST_F(RoomRecovery, an_edit_that_reaches_the_journal_behind_the_room_is_not_painted_over) {
+  const Layer layer = make_layer(ValueType::u8);
+  ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
+  commit_behind(stroke(layer, 6, {{340, 240}}, 20), layer, 2, false);
+  // The room takes sequence 2 for its own edit; the journal refuses it, and the room reads what is
+  // there.
+  const auto edit = stroke(layer, 7, {{320, 240}}, 20);
+  EXPECT_FALSE(send(edit));
+  const auto resent = send_until_taken(edit);
+  ASSERT_TRUE(resent) << resent.error().detail;
+  EXPECT_EQ(resent->sequence, 3);
+  expect_room_equals_journal(layer);
+  expect_picture_of_journal();
+}
+
+TEST_F(RoomRecovery, a_room_that_cannot_be_read_again_refuses_edits_until_it_can) {
+  const Layer layer = make_layer(ValueType::u8);
+  ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
+  const auto picture = room()->picture({}, camera());
+  const auto edit = stroke(layer, 6, {{340, 240}}, 20);
+  commit_behind(edit, layer, 2, true);
+  const auto refused = send(edit);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::unavailable);
+  EXPECT_EQ(room()->picture({}, camera())->pixels, picture->pixels);  // viewing goes on
+
+  execute(
+      "update tile_revisions set difference = (select difference from tile_revisions where sequence = 1 limit 1) where sequence = 2");
+  const auto resent = send_until_taken(edit);
+  ASSERT_TRUE(resent) << resent.error().detail;
+  EXPECT_TRUE(resent->repeated);
+  expect_room_equals_journal(layer);
+}
+
+TEST_F(RoomRecovery, a_server_stops_though_a_room_cannot_be_read_again) {
+  const Layer layer = make_layer(ValueType::u8);
+  ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
+  const auto edit = stroke(layer, 6, {{340, 240}}, 20);
+  commit_behind(edit, layer, 2, true);
+  auto waiting = start(edit);
+  rooms_->drain();
+  EXPECT_EQ(waiting.wait_for(std::chrono::seconds(0)), std::future_status::ready);
+  rooms_.reset();  // joins every thread
+}
+
+TEST_F(RoomRecovery, a_database_that_hangs_holds_up_neither_the_room_nor_the_end_of_the_server) {
+  options_.max_waiting_edits = 8;
+  options_.drain_for = std::chrono::milliseconds(100);
+  options_.retry_for = std::chrono::milliseconds(500);
+  restart();
+  const Layer layer = make_layer(ValueType::u8);
+  ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
+  Ears ears;
+  auto member = room()->join({"anna", Role::owner}, {}, &ears, [](const stream::FrameMessages&) {});
+  ears.wait_for_presence(1);
+
+  std::vector<std::future<Answer>> answers;
+  {
+    const test::Hang hang(test::shared_cluster());
+    for (int i = 0; i < 12; ++i)
+      answers.push_back(start(stroke(layer, 6 + i, {{300.0 + i, 240}}, 10)));
+    for (int i = 8; i < 12; ++i) {
+      ASSERT_EQ(answers[i].wait_for(std::chrono::seconds(0)), std::future_status::ready)
+          << "refused before anything waits";
+      EXPECT_EQ(answers[i].get().error().code, ErrorCode::too_many_requests);
+    }
+    member->pointer(room::Pointing{{1, 2, 3}, {}});
+    ears.wait_for_presence(2);
+    EXPECT_EQ(answers[0].wait_for(std::chrono::seconds(0)), std::future_status::timeout)
+        << "the strand did not wait for the database";
+    rooms_->drain();
+    for (int i = 0; i < 8; ++i) EXPECT_EQ(answers[i].get().error().code, ErrorCode::unavailable);
+    EXPECT_EQ(send(stroke(layer, 50, {{300, 240}}, 10)).error().code, ErrorCode::unavailable);
+  }
+  member.reset();
+  restart();
+  EXPECT_EQ(room()->sequence(), 1);
+}
+
+TEST_F(RoomRecovery, edits_that_waited_for_the_database_keep_their_order) {
+  options_.retry_for = std::chrono::milliseconds(60'000);
+  restart();
+  const Layer layer = make_layer(ValueType::u8);
+  ASSERT_TRUE(send(stroke(layer, 1, {{300, 240}}, 20)));
+  std::vector<std::future<Answer>> answers;
+  {
+    const test::Hang hang(test::shared_cluster());
+    for (int i = 0; i < 40; ++i)
+      answers.push_back(start(stroke(layer, 2 + i, {{300.0 + i % 5, 240}}, 12)));
+  }
+  for (int i = 0; i < 40; ++i) {
+    const Answer answer = answers[i].get();
+    ASSERT_TRUE(answer) << answer.error().detail;
+    EXPECT_EQ(answer->sequence, i + 2);
+  }
+  expect_room_equals_journal(layer);
+}
+
+// --- undo
+
+TEST_F(RoomRecovery, undo_goes_back_through_more_revisions_than_are_read_at_once) {
+  const Layer layer = make_layer(ValueType::u8, 2048, "layer");
+  const Layer without_ben = make_layer(ValueType::u8, 2048, "without-ben");
+  ASSERT_TRUE(send(stroke(layer, 200, {{320, 240}}, 30, "ben")));
+  for (int i = 0; i < 70; ++i)
+    for (const Layer* each : {&layer, &without_ben})
+      ASSERT_TRUE(send(stroke(*each, 1 + i, {{312.0 + i % 9, 240.0 + i % 4}}, 8)));
+  ASSERT_TRUE(send(request(layer, room::UndoEdit{}, "ben")));
+  EXPECT_TRUE(
+      test::equal(room()->tiles("layer", {})->tiles, room()->tiles("without-ben", {})->tiles));
+  ASSERT_TRUE(send(request(layer, room::RedoEdit{}, "ben")));
+  EXPECT_TRUE(room()->statistics("layer")->keys.contains(200));
+}
+
+// --- closing
+
+TEST_F(RoomRecovery, people_in_a_deleted_model_are_told_and_their_edits_are_refused_for_good) {
+  const Layer layer = make_layer(ValueType::u8);
+  const auto held = room();
+  Ears ears;
+  auto member = held->join({"anna", Role::owner}, {}, &ears, [](const stream::FrameMessages&) {});
+  ASSERT_TRUE(store_->models().remove(model_.id));
+  rooms_->forget(model_.id);
+  EXPECT_EQ(ears.deleted(), 1);
+  std::promise<Answer> answered;
+  held->edit(stroke(layer, 5, {{300, 240}}, 20), {},
+             [&](Answer answer) { answered.set_value(std::move(answer)); });
+  EXPECT_EQ(answered.get_future().get().error().code, ErrorCode::gone);
+}
+
+TEST_F(RoomRecovery, layers_of_a_closed_room_are_not_waited_for) {
+  const Layer layer = make_layer(ValueType::u8);
+  const auto held = room();
+  ASSERT_TRUE(store_->models().remove(model_.id));
+  rooms_->forget(model_.id);
+  EXPECT_EQ(held->delete_layer(layer.id).error().code, ErrorCode::gone);
+  EXPECT_EQ(held->create_layer(layer).error().code, ErrorCode::gone);
+}
+
+TEST_F(RoomRecovery, a_layer_that_waits_for_edits_is_answered_when_its_room_closes) {
+  const Layer layer = make_layer(ValueType::u8);
+  const auto held = room();
+  std::future<Answer> painted;
+  std::future<Result<void>> deleted;
+  {
+    const test::Hang hang(test::shared_cluster());
+    painted = start(stroke(layer, 5, {{300, 240}}, 20));
+    deleted = std::async(std::launch::async, [&] { return held->delete_layer(layer.id); });
+    rooms_->forget(model_.id);
+    EXPECT_EQ(painted.get().error().code, ErrorCode::gone);
+    EXPECT_EQ(deleted.get().error().code, ErrorCode::gone);
+  }
+}
+
+TEST_F(RoomRecovery,
+       who_waits_until_the_rooms_are_settled_waits_for_what_is_on_its_way_to_the_journal) {
+  options_.retry_for = std::chrono::milliseconds(60'000);
+  restart();
+  const Layer layer = make_layer(ValueType::u8);
+  std::future<Answer> painted;
+  std::future<Result<void>> settled;
+  {
+    const test::Hang hang(test::shared_cluster());
+    painted = start(stroke(layer, 5, {{300, 240}}, 20));
+    settled = std::async(std::launch::async, [&] { return rooms_->settle(); });
+    EXPECT_EQ(settled.wait_for(std::chrono::milliseconds(50)), std::future_status::timeout);
+  }
+  ASSERT_TRUE(settled.get());
+  EXPECT_EQ(room()->durable_sequence(), 1);
+  EXPECT_TRUE(painted.get());
+}
+
+TEST_F(RoomRecovery, rooms_that_close_before_they_are_settled_say_so) {
+  options_.drain_for = std::chrono::milliseconds(100);
+  restart();
+  const Layer layer = make_layer(ValueType::u8);
+  std::future<Answer> painted;
+  {
+    const test::Hang hang(test::shared_cluster());
+    painted = start(stroke(layer, 5, {{300, 240}}, 20));
+    auto settled = std::async(std::launch::async, [&] { return rooms_->settle(); });
+    rooms_->drain();
+    EXPECT_EQ(painted.get().error().code, ErrorCode::unavailable);
+    const auto answer = settled.get();
+    ASSERT_FALSE(answer) << "whether the edit is durable is not known";
+    EXPECT_EQ(answer.error().code, ErrorCode::unavailable);
+  }
+}
+
+TEST_F(RoomRecovery, no_layers_means_no_values) {
+  make_layer(ValueType::u8);
+  const auto point = room()->position({0, 0, 0}, {});
+  ASSERT_TRUE(point);
+  EXPECT_TRUE(point->values.empty());
+  EXPECT_EQ(room()->position({0, 0, 0}, {"layer"})->values.size(), 1u);
+}
+
+}  // namespace
+}  // namespace strata

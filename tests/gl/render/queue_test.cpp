@@ -1,0 +1,405 @@
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <map>
+
+#include "render/thread/frame_queue.h"
+
+namespace strata::render {
+namespace {
+
+using Box = FrameRequest::Box;
+using Boxes = std::vector<Box>;
+
+const Box kBox{{0, 0, 0}, {1, 1, 1}}, kOther{{2, 2, 2}, {3, 3, 3}};
+
+using Answer = std::optional<ErrorCode>;
+constexpr Answer kDrawn = std::nullopt;
+
+// Requests are told apart by what they answered.
+class FrameTurns : public testing::Test {
+ protected:
+  FrameQueue::Pushed push(FrameQueue& queue, const FrameRequest& request, int number = 0) {
+    return queue.push(request, [this, number](const Result<SharedFrame>& frame) {
+      answers_[number] = frame ? kDrawn : Answer(frame.error().code);
+    });
+  }
+  static FrameRequest whole(ViewHandle view, int width = 1) {
+    FrameRequest request;
+    request.view = view;
+    request.width = width;
+    return request;
+  }
+  static FrameRequest part(ViewHandle view, Boxes boxes = {kBox}, int width = 1) {
+    FrameRequest request = whole(view, width);
+    request.changed = std::move(boxes);
+    return request;
+  }
+  static FrameRequest large(FrameRequest request) {
+    request.large = true;
+    return request;
+  }
+  static FrameRequest acting(FrameRequest request) {
+    request.acting = true;
+    return request;
+  }
+  static FrameRequest shared(FrameRequest request, ModelHandle model = 7) {
+    request.model = model;
+    return request;
+  }
+  // Takes what is next and says whose it was.
+  static ViewHandle draw(FrameQueue& queue, double took_ms = 1) {
+    const auto task = queue.take();
+    if (!task) return 0;
+    queue.finished(*task, took_ms);
+    return task->askers.front().view;
+  }
+
+  std::map<int, Answer> answers_;
+};
+
+TEST_F(FrameTurns, the_latest_request_of_a_view_wins_and_inherits_what_was_to_be_redrawn) {
+  FrameQueue queue(8);
+  EXPECT_FALSE(push(queue, part(1, {kBox}, 10), 1).displaced);
+  const auto pushed = push(queue, part(1, {kOther}, 20), 2);
+  ASSERT_TRUE(pushed.displaced);
+  (*pushed.displaced)(fail(ErrorCode::superseded, "Superseded", ""));
+  EXPECT_EQ(answers_, (std::map<int, Answer>{{1, ErrorCode::superseded}}));
+  const auto taken = queue.take();
+  ASSERT_TRUE(taken);
+  EXPECT_EQ(taken->request.width, 20);
+  EXPECT_EQ(*taken->request.changed, (Boxes{kOther, kBox}));
+  // A replaced request for everything makes its successor one for everything.
+  queue.finished(*taken, 1);
+  push(queue, whole(1, 10));
+  push(queue, part(1, {kOther}, 20));
+  EXPECT_FALSE(queue.take()->request.changed.has_value());
+}
+
+TEST_F(FrameTurns, a_view_has_one_frame_under_way_and_one_that_waits_and_too_many_are_refused) {
+  FrameQueue queue(2);
+  push(queue, whole(1));
+  push(queue, whole(2));
+  EXPECT_FALSE(push(queue, whole(3)).accepted);
+  const auto first = queue.take();
+  EXPECT_EQ(first->request.view, 1u);
+  push(queue, whole(1));
+  EXPECT_EQ(queue.take()->request.view, 2u);
+  EXPECT_FALSE(queue.take()) << "view 1 has a frame under way";
+  queue.finished(*first, 1);
+  EXPECT_EQ(queue.take()->request.view, 1u);
+}
+
+TEST_F(FrameTurns, turns_are_fair_by_what_drawing_took) {
+  FrameQueue queue(8);
+  std::map<ViewHandle, int> turns;
+  push(queue, whole(1));
+  push(queue, whole(2));
+  for (int i = 0; i < 500; ++i) {
+    const auto task = queue.take();
+    const ViewHandle view = task->request.view;
+    ++turns[view];
+    queue.finished(*task, view == 1 ? 40 : 10);
+    push(queue, whole(view));
+  }
+  EXPECT_NEAR(turns[2], 4.0 * turns[1], 8) << "each had the same milliseconds";
+}
+
+TEST_F(FrameTurns, who_only_looks_is_served_before_the_next_picture_of_who_turns_the_model) {
+  FrameQueue queue(16);
+  for (int i = 0; i < 5; ++i) {
+    for (ViewHandle turning = 1; turning <= 4; ++turning) push(queue, whole(turning));
+    for (int n = 0; n < 4; ++n) draw(queue, 50);
+  }
+  for (ViewHandle turning = 1; turning <= 4; ++turning) push(queue, whole(turning));
+  push(queue, part(9));
+  EXPECT_EQ(draw(queue, 1), 9u);
+  // Rest is no credit for later: who asked for nothing so long takes turns from now on.
+  int looked = 0;
+  for (int i = 0; i < 20; ++i) {
+    push(queue, part(9));
+    if (draw(queue, 50) == 9)
+      ++looked;
+    else
+      for (ViewHandle turning = 1; turning <= 4; ++turning) push(queue, whole(turning));
+  }
+  EXPECT_LE(looked, 6);
+}
+
+TEST_F(FrameTurns, only_a_rectangle_whose_turn_it_is_goes_before_a_picture_that_is_half_done) {
+  FrameQueue queue(8);
+  push(queue, whole(1));
+  const auto drawn = queue.take();
+  push(queue, whole(2));
+  const auto half_done = [&](double ms) {
+    return std::vector{FrameTask::Turn{false, drawn->turn.ms + ms}};
+  };
+  EXPECT_FALSE(queue.take_part(half_done(100))) << "a whole picture waits";
+  push(queue, part(3));
+  EXPECT_FALSE(queue.take_part(half_done(0))) << "no one was served more";
+  const auto part = queue.take_part(half_done(5));
+  ASSERT_TRUE(part);
+  EXPECT_EQ(part->request.view, 3u);
+}
+
+TEST_F(FrameTurns, any_smaller_picture_whose_turn_it_is_goes_before_a_band_of_a_large_one) {
+  FrameQueue queue(8);
+  push(queue, large(whole(1)));
+  const auto band = queue.take();
+  ASSERT_TRUE(band);
+  EXPECT_TRUE(band->turn.large);
+  const auto half_done = [&](double ms) {
+    return std::vector{FrameTask::Turn{false, band->turn.ms + ms, true}};
+  };
+  push(queue, large(whole(2)));
+  EXPECT_FALSE(queue.take_part(half_done(5))) << "of large ones each is done when it has begun";
+  push(queue, whole(3));
+  EXPECT_FALSE(queue.take_part(half_done(0))) << "no one was served more";
+  const auto small = queue.take_part(half_done(5));
+  ASSERT_TRUE(small);
+  EXPECT_EQ(small->request.view, 3u);
+  // Beside a picture that is not large they wait as ever.
+  push(queue, whole(4));
+  EXPECT_FALSE(queue.take_part(
+      std::vector{FrameTask::Turn{false, 100, false}, FrameTask::Turn{false, 100, true}}));
+}
+
+TEST_F(FrameTurns, bands_of_large_pictures_take_turns_with_live_views_and_leave_them_room) {
+  FrameQueue queue(16);
+  for (const ViewHandle view : {1, 2, 3}) push(queue, large(whole(view)));
+  const auto first = queue.take(), second = queue.take();
+  ASSERT_TRUE(first && second);
+  EXPECT_FALSE(queue.take()) << "two bands are enough to keep the GPU at work";
+  push(queue, whole(4));
+  EXPECT_EQ(draw(queue), 4u);
+  queue.finished(*first, 50);
+  queue.finished(*second, 50);
+  // Large ones of three and a view that always wants more: by time all have the same.
+  std::map<ViewHandle, int> drawn;
+  push(queue, large(whole(1)));
+  push(queue, large(whole(2)));
+  push(queue, whole(4));
+  for (int i = 0; i < 120; ++i) {
+    const auto task = queue.take();
+    ASSERT_TRUE(task);
+    const ViewHandle view = task->askers.front().view;
+    drawn[view] += view == 4 ? 10 : 50;
+    queue.finished(*task, view == 4 ? 10 : 50);
+    push(queue, view == 4 ? whole(view) : large(whole(view)));
+  }
+  for (const ViewHandle view : {1, 2, 3}) EXPECT_NEAR(drawn[view], drawn[4], 110) << view;
+}
+
+TEST_F(FrameTurns, a_hundred_onlookers_and_one_who_acts_have_half_of_the_time_each) {
+  FrameQueue queue(256);
+  constexpr ViewHandle kActor = 500;
+  const auto look_on = [&](ViewHandle view) { push(queue, part(view)); };
+  const auto act = [&] { push(queue, acting(part(kActor))); };
+  for (ViewHandle view = 1; view <= 100; ++view) look_on(view);
+  for (int i = 0; i < 50; ++i) look_on(draw(queue, 20));
+  act();
+  EXPECT_EQ(draw(queue, 20), kActor) << "who comes waits for one picture at most";
+  std::map<ViewHandle, int> turns;
+  for (int i = 0; i < 400; ++i) {
+    act();
+    const ViewHandle view = draw(queue, 20);
+    ++turns[view];
+    if (view != kActor) look_on(view);
+  }
+  EXPECT_NEAR(turns[kActor], 200, 2);
+  EXPECT_EQ(turns.size(), 101u) << "everybody sees something";
+  for (const auto& [view, count] : turns) EXPECT_LE(count, view == kActor ? 202 : 3) << view;
+  // Alone, onlookers have all of it, which is no credit for who acts later.
+  for (int i = 0; i < 400; ++i) look_on(draw(queue, 20));
+  int acted = 0;
+  for (int i = 0; i < 20; ++i) {
+    act();
+    const ViewHandle view = draw(queue, 20);
+    view == kActor ? ++acted : (look_on(view), 0);
+  }
+  EXPECT_NEAR(acted, 10, 1);
+}
+
+TEST_F(FrameTurns, a_rectangle_of_who_acts_goes_before_the_half_done_picture_of_an_onlooker) {
+  FrameQueue queue(8);
+  push(queue, whole(1));
+  const auto drawn = queue.take();
+  const std::vector half_done{FrameTask::Turn{false, drawn->turn.ms}};
+  push(queue, part(2));
+  EXPECT_FALSE(queue.take_part(half_done)) << "an onlooker as well";
+  push(queue, acting(part(3)));
+  const auto part_of_3 = queue.take_part(half_done);
+  ASSERT_TRUE(part_of_3);
+  EXPECT_EQ(part_of_3->request.view, 3u);
+  queue.finished(*part_of_3, 10);
+  push(queue, acting(part(3)));
+  EXPECT_FALSE(queue.take_part(half_done)) << "that half has had its share";
+}
+
+TEST_F(FrameTurns, rectangles_do_not_use_up_the_time_of_whole_pictures_of_those_who_act) {
+  FrameQueue queue(256);
+  constexpr ViewHandle kTurning = 500, kPainting = 501;
+  struct Drawing {
+    FrameTask task;
+    double busy_ms = 0;
+  };
+  std::deque<Drawing> under_way;  // as GpuThread has them: what comes before others in front
+  double turning_ms = 0, painting_ms = 0, onlookers_ms = 0;
+  const auto look_on = [&](ViewHandle view) { push(queue, part(view)); };
+  for (ViewHandle view = 1; view <= 100; ++view) look_on(view);
+  for (int now_ms = 0; now_ms < 20'000; now_ms += 5) {
+    // Newer requests take the place of what waits all the time.
+    push(queue, acting(whole(kTurning, now_ms + 1)));
+    push(queue, acting(part(kPainting)));
+    if (under_way.empty()) {
+      under_way.push_back({*queue.take()});
+    } else if (under_way.size() < 4) {
+      std::vector<FrameTask::Turn> turns;
+      for (const auto& [task, busy_ms] : under_way)
+        turns.push_back({task.turn.acting, task.turn.ms + busy_ms});
+      if (auto before = queue.take_part(turns)) under_way.push_front({std::move(*before)});
+    }
+    Drawing& drawing = under_way.front();
+    const ViewHandle view = drawing.task.askers.front().view;
+    (view == kTurning ? turning_ms : view == kPainting ? painting_ms : onlookers_ms) += 5;
+    drawing.busy_ms += 5;
+    if (drawing.busy_ms < (view == kTurning ? 60 : view == kPainting ? 10 : 30)) continue;
+    queue.finished(drawing.task, drawing.busy_ms);
+    under_way.pop_front();
+    if (view < kTurning) look_on(view);
+  }
+  EXPECT_NEAR(onlookers_ms, 10'000, 500);
+  EXPECT_NEAR(turning_ms, 5'000, 500);
+  EXPECT_NEAR(painting_ms, 5'000, 500);
+}
+
+TEST_F(FrameTurns, who_asks_anew_while_they_wait_keep_their_turn) {
+  FrameQueue queue(8);
+  push(queue, part(3));
+  draw(queue, 5);
+  push(queue, whole(1));
+  const auto half_done = queue.take();
+  push(queue, whole(2));
+  push(queue, part(3));
+  ASSERT_TRUE(queue.take_part(std::vector{FrameTask::Turn{false, half_done->turn.ms + 20}}));
+  push(queue, part(4));
+  push(queue, whole(2));
+  EXPECT_EQ(draw(queue), 2u);
+}
+
+TEST_F(FrameTurns, who_ends_to_act_is_an_onlooker_like_others) {
+  FrameQueue queue(8);
+  for (int i = 0; i < 20; ++i) {
+    push(queue, acting(whole(1)));
+    draw(queue, 100);
+  }
+  push(queue, part(1));
+  push(queue, part(2));
+  EXPECT_EQ(draw(queue, 1), 1u) << "what it was served while it acted counts no more";
+  EXPECT_EQ(draw(queue, 1), 2u);
+}
+
+TEST_F(FrameTurns, a_picture_that_one_of_its_askers_acts_in_is_theirs) {
+  FrameQueue queue(8);
+  push(queue, shared(part(1)));
+  push(queue, part(2));
+  push(queue, acting(shared(part(3))));
+  auto task = queue.take();
+  EXPECT_TRUE(task->turn.acting);
+  EXPECT_EQ(task->askers.size(), 2u);
+  queue.finished(*task, 0);
+  // Who acted asks for something else meanwhile: what is left is an onlooker's.
+  push(queue, shared(part(1)));
+  push(queue, acting(shared(part(3))));
+  push(queue, acting(whole(3, 5)));
+  EXPECT_EQ(queue.take()->request.width, 5);
+  EXPECT_FALSE(queue.take()->turn.acting);
+}
+
+TEST_F(FrameTurns, the_same_picture_of_several_views_is_drawn_once_by_the_view_that_has_it) {
+  FrameQueue queue(8);
+  push(queue, shared(whole(1)), 1);
+  EXPECT_EQ(draw(queue), 1u);
+  // An edit: view 1 draws, and the others, of which none has drawn anything, wait for it.
+  push(queue, shared(part(1)), 1);
+  const auto first = queue.take();
+  push(queue, shared(part(2)), 2);
+  push(queue, shared(part(3, {kOther})), 3);
+  EXPECT_FALSE(queue.take());
+  queue.finished(*first, 1);
+  const auto second = queue.take();
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->request.view, 1u);
+  ASSERT_EQ(second->askers.size(), 2u);
+  EXPECT_EQ(*second->request.changed, (Boxes{kBox, kOther}));
+  for (const auto& asker : second->askers) asker.done(std::make_shared<const Frame>());
+  EXPECT_EQ(answers_, (std::map<int, Answer>{{2, kDrawn}, {3, kDrawn}}));
+  EXPECT_FALSE(queue.take());
+}
+
+TEST_F(FrameTurns, pictures_that_differ_in_anything_are_not_shared) {
+  FrameQueue queue(64);
+  const auto base = shared(part(1));
+  std::vector<FrameRequest> others(9, base);
+  others[0].model = 8;
+  others[1].moving = true;
+  others[2].height = 4;
+  others[3].camera.view[3][0] = 1;
+  others[4].layers = {{1, nullptr, 1}};
+  others[5].looks = {{1, 1}};
+  others[6].marks = std::make_shared<const std::vector<DrawnMark>>();
+  others[7].unit_mm = 1;
+  others[8].changed.reset();  // nobody is sent a whole picture who lacks a rectangle
+  push(queue, base);
+  ViewHandle view = 1;
+  for (auto& other : others) {
+    other.view = ++view;
+    push(queue, other);
+  }
+  auto not_told = part(++view);
+  push(queue, not_told);
+  for (ViewHandle i = 1; i <= view; ++i) EXPECT_EQ(queue.take()->askers.size(), 1u);
+  EXPECT_FALSE(queue.take());
+}
+
+TEST_F(FrameTurns, what_is_shared_costs_each_a_part) {
+  FrameQueue queue(8);
+  push(queue, shared(whole(1)));
+  push(queue, shared(whole(2)));
+  push(queue, whole(3, 5));
+  draw(queue, 30);
+  draw(queue, 20);
+  push(queue, whole(3, 5));
+  push(queue, whole(2));
+  EXPECT_EQ(draw(queue), 2u) << "15 ms against 20";
+}
+
+TEST_F(FrameTurns, a_view_that_is_removed_draws_no_more_for_others) {
+  FrameQueue queue(8);
+  push(queue, shared(whole(1)));
+  EXPECT_EQ(draw(queue), 1u);
+  queue.forget(1);
+  push(queue, shared(part(2)));
+  EXPECT_EQ(queue.take()->request.view, 2u);
+  // One that waits meanwhile is answered all the same, when its turn comes.
+  push(queue, part(3));
+  queue.forget(3);
+  EXPECT_EQ(queue.take()->request.view, 3u);
+}
+
+TEST_F(FrameTurns, a_request_that_leaves_a_shared_picture_leaves_the_others_there) {
+  FrameQueue queue(8);
+  push(queue, shared(part(1)), 1);
+  push(queue, shared(part(2)), 2);
+  EXPECT_TRUE(push(queue, shared(part(1, {kOther}, 9)), 3).displaced);
+  const auto left = queue.take();
+  ASSERT_EQ(left->askers.size(), 1u);
+  EXPECT_EQ(left->askers.front().view, 2u);
+  EXPECT_EQ(queue.take()->request.width, 9);
+  push(queue, whole(4));
+  EXPECT_EQ(queue.take_all().size(), 1u);
+  EXPECT_FALSE(queue.take());
+}
+
+}  // namespace
+}  // namespace strata::render

@@ -1,0 +1,138 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <stdexcept>
+#include <utility>
+
+#include "domain/scene/camera.h"
+#include "media/picture.h"
+#include "media/picture_writer.h"
+#include "support/gradient.h"
+
+namespace strata {
+namespace {
+
+using test::gradient;
+
+TEST(Picture, a_jpeg_shows_what_was_drawn_top_row_first) {
+  const auto rgba = gradient(200, 120);
+  for (const bool full_color : {false, true}) {
+    const auto back = decode_picture(encode_jpeg(rgba, 200, 120, {90, full_color}));
+    ASSERT_TRUE(back);
+    ASSERT_EQ(std::pair(back->width, back->height), std::pair(200, 120));
+    int worst = 0;
+    for (std::size_t i = 0; i < rgba.size(); ++i)
+      worst = std::max(worst, std::abs(int(rgba[i]) - int(back->rgba[i])));
+    EXPECT_LE(worst, 12);
+  }
+}
+
+TEST(Picture, higher_quality_costs_more_bytes) {
+  const auto rgba = gradient(256, 256);
+  EXPECT_LT(encode_jpeg(rgba, 256, 256, {40, false}).size(),
+            encode_jpeg(rgba, 256, 256, {95, true}).size());
+}
+
+TEST(PictureWriter, writes_what_the_whole_picture_would_be_however_its_rows_come) {
+  const int width = 61, height = 133;
+  auto rgba = gradient(width, height);
+  rgba[3] = 128;
+  for (const std::size_t rows : {std::size_t{1}, std::size_t{40}, std::size_t{133}}) {
+    const auto write = [&](PictureFormat format, JpegSettings jpeg) {
+      PictureWriter writer(format, width, height, jpeg);
+      const std::span<const std::uint8_t> all(rgba);
+      for (std::size_t top = 0; top < height; top += rows)
+        writer.put(all.subspan(4 * width * top, 4 * width * std::min(rows, height - top)));
+      return writer.finish();
+    };
+    const auto png = decode_picture(write(PictureFormat::png, {}));
+    ASSERT_TRUE(png);
+    EXPECT_EQ(png->rgba, rgba);
+    for (const JpegSettings settings : {JpegSettings{90, true}, JpegSettings{60, false}}) {
+      const auto jpeg = decode_picture(write(PictureFormat::jpeg, settings));
+      ASSERT_TRUE(jpeg);
+      EXPECT_EQ(jpeg->rgba, decode_picture(encode_jpeg(rgba, width, height, settings))->rgba);
+    }
+  }
+}
+
+TEST(PictureWriter, fails_where_rows_are_missing_or_are_no_rows) {
+  PictureWriter writer(PictureFormat::jpeg, 8, 8);
+  EXPECT_THROW(writer.put(std::vector<std::uint8_t>(31)), std::invalid_argument);
+  EXPECT_THROW(writer.finish(), std::runtime_error);
+  EXPECT_THROW(PictureWriter(PictureFormat::png, 0, 8), std::invalid_argument);
+}
+
+TEST(Camera, of_some_rows_sees_there_what_the_whole_one_sees) {
+  Camera camera;
+  camera.width = 640;
+  camera.height = 480;
+  camera.projection = glm::dmat4(1.5, 0, 0, 0, 0, 2, 0, 0, 0.1, 0.2, -1.02, -1, 0, 0, -0.2, 0);
+  camera.view[3] = glm::dvec4(0.1, -0.3, -5, 1);
+  for (const auto& [top, rows] :
+       {std::pair(0, 480), std::pair(0, 32), std::pair(100, 7), std::pair(448, 32)}) {
+    const Camera part = camera_of_rows(camera, top, rows);
+    EXPECT_EQ(part.height, rows);
+    for (const double y : {0.0, 0.5, 6.25}) {
+      const Ray whole = ray_through_pixel(camera, 123.5, top + y),
+                own = ray_through_pixel(part, 123.5, y);
+      EXPECT_LT(glm::distance(whole.origin, own.origin), 1e-9);
+      EXPECT_LT(glm::distance(whole.direction, own.direction), 1e-9);
+    }
+  }
+}
+
+TEST(Picture, a_png_keeps_every_pixel) {
+  auto rgba = gradient(61, 33);
+  rgba[3] = 128;
+  const auto png = encode_png(rgba, 61, 33);
+  const auto back = decode_picture(png);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->width, 61);
+  EXPECT_EQ(back->rgba, rgba);
+}
+
+TEST(Picture, a_picture_of_one_pixel_is_encoded) {
+  const std::vector<std::uint8_t> red{255, 0, 0, 255};
+  EXPECT_EQ(decode_picture(encode_jpeg(red, 1, 1, {90, true}))->width, 1);
+  EXPECT_EQ(decode_picture(encode_png(red, 1, 1))->rgba, red);
+}
+
+TEST(Picture, pixels_that_do_not_have_the_size_are_refused) {
+  const std::vector<std::uint8_t> few(16);
+  EXPECT_THROW(encode_jpeg(few, 4, 4, {}), std::invalid_argument);
+  EXPECT_THROW(encode_png(few, 0, 4), std::invalid_argument);
+}
+
+TEST(Picture, format_and_size_are_told_without_decoding) {
+  const auto rgba = gradient(200, 120);
+  const auto jpeg = encode_jpeg(rgba, 200, 120, {}), png = encode_png(rgba, 200, 120);
+  EXPECT_EQ(picture_format(jpeg), PictureFormat::jpeg);
+  EXPECT_EQ(picture_format(png), PictureFormat::png);
+  EXPECT_EQ(media_type(PictureFormat::png), "image/png");
+  for (const auto& bytes : {jpeg, png}) {
+    const auto info = inspect_picture(bytes);
+    ASSERT_TRUE(info);
+    EXPECT_EQ(std::pair(info->width, info->height), std::pair(200, 120));
+  }
+}
+
+TEST(Picture, what_is_no_picture_or_too_large_or_cut_short_is_refused) {
+  const auto rgba = gradient(200, 120);
+  const std::vector<std::uint8_t> text{'B', 'M', 1, 2, 3};
+  EXPECT_EQ(decode_picture(text).error().code, ErrorCode::unsupported);
+  EXPECT_EQ(inspect_picture({}).error().code, ErrorCode::unsupported);
+  for (auto bytes : {encode_jpeg(rgba, 200, 120, {}), encode_png(rgba, 200, 120)}) {
+    EXPECT_EQ(decode_picture(bytes, 199).error().code, ErrorCode::invalid);
+    EXPECT_EQ(inspect_picture(bytes, 199).error().code, ErrorCode::invalid);
+    EXPECT_TRUE(decode_picture(bytes, 200));
+    for (const std::size_t kept : {bytes.size() / 2, std::size_t{30}, std::size_t{9}}) {
+      const auto cut = decode_picture(std::span(bytes).first(kept));
+      ASSERT_FALSE(cut) << kept;
+      EXPECT_EQ(cut.error().code, ErrorCode::invalid);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace strata
