@@ -2,14 +2,16 @@
 
 #include <utility>
 
-#include "room/await.h"
+#include "room/edit.h"
+#include "room/edits.h"
+#include "room/open/await.h"
 
 namespace strata::app {
 
 Result<room::EditAnswer> edit_and_wait(room::Room& room, room::EditRequest edit,
                                        EditCounters& counters) {
   auto answer = room::await<room::EditAnswer>([&](auto saved) {
-    room.edit(
+    room.edits().submit(
         std::move(edit), [&counters](const room::EditAnswer&) { ++counters.applied; },
         std::move(saved));
   });

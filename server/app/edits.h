@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "room/edit.h"
 #include "room/room.h"
 
 namespace strata::app {

@@ -14,10 +14,12 @@
 #include "net/transport/server.h"
 #include "render/renderer.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/people/accounts.h"
 #include "store/people/tokens.h"
 #include "store/tables/attachments.h"
 #include "stream/jpeg_pool.h"
+#include "stream/viewer.h"
 
 namespace strata::cli {
 namespace {

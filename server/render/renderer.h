@@ -122,11 +122,7 @@ struct FrameRequest {
   bool large = false;
   bool acting = false;  // for someone who is doing something, so that onlookers do not hold it up
   int width = 0, height = 0;  // pixels of the picture (the camera's window scaled to this size)
-  std::vector<LayerStyle> layers;
-  std::vector<LookStyle> looks;  // kMaxLooksShown at most
-  MarksShown marks;              // over the layers, the last ones on top
-  Light light;
-  double unit_mm = 1000;  // length of the model's unit, for patterns of palettes
+  ViewStyle style;
   // Empty: everything is shaded. Otherwise only these model-space boxes changed since this view's
   // last frame: the rectangles they cover are shaded and returned. A changed camera, size or style
   // shades everything anyway.
@@ -135,7 +131,6 @@ struct FrameRequest {
     bool operator==(const Box&) const = default;
   };
   std::optional<std::vector<Box>> changed;
-  Background background;
   // The part of the background's height that the picture has, from the top: 0 … 1 but for a band.
   glm::vec2 background_rows{0, 1};
   bool align_to_16 = true;  // grow the rectangles to multiples of 16 for JPEG parts

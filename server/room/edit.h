@@ -16,6 +16,8 @@
 #include "domain/scene/stroke.h"
 #include "expression/expression.h"
 #include "query/sampling/values.h"
+#include "room/edit_answer.h"
+#include "room/place.h"
 #include "store/journal/journal.h"
 
 namespace strata::room {
@@ -25,18 +27,6 @@ struct StrokeEdit {
   StrokeBatch batch;
   Uuid stroke;
   int n = 0;  // number of the batch in its stroke
-};
-struct PixelPlace {  // what the camera shows there
-  Camera camera;
-  double x = 0, y = 0;
-};
-// or the surface point nearest to a point of the world
-using Place = std::variant<PixelPlace, glm::dvec3>;
-struct Outline {
-  // what is seen inside it in the camera's window (even-odd rule)
-  Camera camera;
-  std::vector<glm::dvec2> path;  // window pixels, origin top left; 3…4096 points
-  bool through = false;          // what is hidden, too
 };
 struct FillEdit {
   bool erase = false;
@@ -111,15 +101,6 @@ bool computes(const EditRequest& edit);
 // others only where they would change something else before that.
 Result<void> check_not_locked(const Layer& layer, Role role, bool computing = false);
 
-struct EditAnswer {
-  std::int64_t sequence = 0;
-  std::uint64_t texels_changed = 0;  // surface texels whose value or validity changed
-  double area_m2 = 0;                // their surface
-  bool repeated = false;             // the id was known: nothing was painted now
-  bool provisional = false;          // it waits for review
-};
-
-nlohmann::json to_json(const EditAnswer& answer);
 // What a repeat of an edit in the journal is told.
 EditAnswer first_answer(const store::JournalRow& row);
 

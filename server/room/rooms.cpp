@@ -1,3 +1,5 @@
+#include "room/rooms.h"
+
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,8 +14,9 @@
 #include "core/give_back_memory.h"
 #include "core/log.h"
 #include "core/text/slug.h"
-#include "room/open_room.h"
-#include "room/seen_room.h"
+#include "room/layers.h"
+#include "room/open/open_room.h"
+#include "room/role_filtered_room.h"
 #include "store/content/models.h"
 
 namespace strata::room {
@@ -53,8 +56,8 @@ struct Rooms::Impl {
         readers(kReaderThreads),
         memory("main memory", "--memory",
                options.memory_bytes > 0 ? options.memory_bytes : default_budget()),
-        parts{store,   writer, renderer, stream,       strands,
-              workers, memory, readers,  retired_keys, options} {
+        services{store,   writer, renderer, stream,       strands,
+                 workers, memory, readers,  retired_keys, options} {
     memory.set_evictor([this] { return drop_a_map(); });
     renderer.on_context_lost([this] {
       std::lock_guard lock(mutex);
@@ -72,7 +75,7 @@ struct Rooms::Impl {
     }
     sweeper.join();
     renderer.on_context_lost({});
-    for (auto& [id, room] : rooms) room->shut(kStopping);
+    for (auto& [id, room] : rooms) room->close(kStopping);
     writer.drain();
     workers.join();
     readers.join();
@@ -104,14 +107,14 @@ struct Rooms::Impl {
         if (changed.wait_for(lock, kSweepEvery, [&] { return stopping; })) return;
       }
       const auto now = std::chrono::steady_clock::now();
-      bool closed = close_rooms([&](const OpenRoom& room) { return room.deserted(now); },
-                                "nobody is looking");
+      bool closed =
+          close_rooms([&](const OpenRoom& room) { return room.is_idle(now); }, "nobody is looking");
       for (const auto& room : open_ones()) closed |= room->drop_large_unused_maps(now);
       if (std::exchange(due, false)) give_back_memory();
       std::size_t here = 0;
       for (const auto& room : open_ones()) {
-        here += room->people();
-        departed += room->take_departed();
+        here += room->participant_count();
+        departed += room->take_leave_count();
       }
       if (!closed && (departed == 0 || departed < here)) continue;
       due = true;
@@ -136,7 +139,7 @@ struct Rooms::Impl {
 
   // Without waiting for their time; false when somebody is in every room.
   bool close_empty_rooms() {
-    return close_rooms([](const OpenRoom& room) { return room.people() == 0; },
+    return close_rooms([](const OpenRoom& room) { return room.participant_count() == 0; },
                        "for another that needs its memory");
   }
 
@@ -156,7 +159,7 @@ struct Rooms::Impl {
       }
     }
     for (auto& room : leaving) {
-      room->shut(kClosing);
+      room->close(kClosing);
       log::info("closed model " + std::to_string(room->id()) + ", " + why);
     }
     return !leaving.empty();
@@ -174,7 +177,7 @@ struct Rooms::Impl {
   boost::asio::thread_pool strands, workers, readers;
   MemoryLedger memory;
   RetiredKeys retired_keys;
-  const RoomParts parts;
+  const RoomServices services;
   std::mutex mutex;
   std::condition_variable changed;
   std::map<std::int64_t, std::shared_ptr<OpenRoom>> rooms;
@@ -185,7 +188,7 @@ struct Rooms::Impl {
   std::thread sweeper;
 };
 
-Rooms::Rooms(store::Store& store, render::Renderer& renderer, stream::StreamContext stream,
+Rooms::Rooms(store::Store& store, render::Renderer& renderer, const stream::StreamContext& stream,
              RoomOptions options)
     : impl_(std::make_unique<Impl>(store, renderer, stream, options)) {}
 
@@ -199,7 +202,7 @@ Result<std::shared_ptr<Room>> Rooms::open(const std::string& model_ref, Role see
 Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref) {
   // An open room is found without the database, so that viewing goes on when that is away.
   if (auto room = find(model_ref)) return room;
-  auto model = STRATA_TRY(parts.store.models().find(model_ref));
+  auto model = STRATA_TRY(services.store.models().find(model_ref));
   const int losses_before = context_losses;
   {
     std::unique_lock lock(mutex);
@@ -212,9 +215,9 @@ Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref
     }
     opening.insert(model.id);
   }
-  auto room = OpenRoom::open(parts, std::to_string(model.id));
+  auto room = OpenRoom::open(services, std::to_string(model.id));
   if (!room && room.error().code == ErrorCode::out_of_memory && close_empty_rooms())
-    room = OpenRoom::open(parts, std::to_string(model.id));
+    room = OpenRoom::open(services, std::to_string(model.id));
   std::unique_lock lock(mutex);
   opening.erase(model.id);
   changed.notify_all();
@@ -222,7 +225,7 @@ Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref
   if (!room) return tl::unexpected(room.error());
   if (deleted || draining) {
     lock.unlock();
-    (*room)->shut(kClosing);
+    (*room)->close(kClosing);
     if (!deleted) return tl::unexpected(kStopping);
     return fail(ErrorCode::not_found, "Not found", "The model was deleted.");
   }
@@ -232,13 +235,13 @@ Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref
 }
 
 void Rooms::records_changed(std::int64_t table_id) {
-  for (const auto& room : impl_->open_ones()) room->records_changed(table_id);
+  for (const auto& room : impl_->open_ones()) room->layers().records_changed(table_id);
 }
 
 Result<void> Rooms::retire_key(std::int64_t table_id, std::int64_t key) {
   impl_->retired_keys.retire(table_id, key);
   for (const auto& room : impl_->open_ones()) {
-    const auto layers = room->layers();
+    const auto layers = room->layers().all();
     if (std::ranges::none_of(layers, [&](const Layer& layer) { return layer.table == table_id; }))
       continue;
     STRATA_TRY(room->settle());
@@ -268,7 +271,7 @@ void Rooms::forget(std::int64_t model_id) {
     room = std::move(found->second);
     impl_->rooms.erase(found);
   }
-  room->shut_deleted();
+  room->close_deleted();
 }
 
 std::uint64_t Rooms::memory_bytes_used() const { return impl_->memory.used(); }
@@ -287,14 +290,14 @@ void Rooms::drain() {
   }
   const auto rooms = impl_->open_ones();
   for (const auto& room : rooms) room->take_no_edits();
-  const auto deadline = std::chrono::steady_clock::now() + impl_->parts.options.drain_for;
+  const auto deadline = std::chrono::steady_clock::now() + impl_->services.options.drain_for;
   for (const auto& room : rooms) {
-    while (!room->idle() && std::chrono::steady_clock::now() < deadline)
+    while (!room->has_no_edits() && std::chrono::steady_clock::now() < deadline)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    if (room->idle()) continue;
+    if (room->has_no_edits()) continue;
     log::error("model " + std::to_string(room->id()) +
                ": edits still wait and are refused, since the server stops");
-    room->shut(kStopping);
+    room->close(kStopping);
   }
   impl_->writer.drain();
 }

@@ -325,12 +325,7 @@ void Viewer::step() {
     draw = std::move(*next);
     request.view = impl_->view;
     request.model = impl_->model;
-    request.layers = impl_->style.layers;
-    request.looks = impl_->style.looks;
-    request.light = impl_->style.light;
-    request.background = impl_->style.background;
-    request.marks = impl_->style.marks;
-    request.unit_mm = impl_->style.unit_mm;
+    request.style = impl_->style;
     request.acting = Clock::now() - impl_->last_act < kActsFor;
     request.moving = draw.quality == FlowControl::Quality::moving;
     // A rectangle is added to the picture as it is.

@@ -8,6 +8,7 @@
 #include "domain/scene/camera.h"
 #include "render/renderer.h"
 #include "stream/flow_control.h"
+#include "stream/frame_messages.h"
 #include "stream/jpeg_pool.h"
 
 namespace strata::stream {
@@ -17,12 +18,6 @@ struct StreamContext {
   render::Renderer* renderer = nullptr;
   JpegPool* encoder = nullptr;
 };
-
-// An encoded message as it goes to the socket: frame header (protocol/frame_header.h) and payload
-// in one buffer.
-using FrameBytes = std::shared_ptr<const std::vector<std::uint8_t>>;
-// of one frame, a message for each rectangle, in order
-using FrameMessages = std::vector<FrameBytes>;
 
 // One view of one client: from camera and changes to encoded frames, by the flow rules of
 // ARCHITECTURE.md: the newest camera wins; frames echo the camera's number; at most `window` frames
@@ -41,7 +36,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     int max_width = 3840, max_height = 2160;
     std::int64_t sequence = 0;  // of the scene at the start
   };
-  using Send = std::function<void(FrameMessages)>;
+  using Send = SendFrames;
   // Why nothing can be drawn as asked for (invalid). Told once; the next camera, layers or edit are
   // tried again.
   using Refused = std::function<void(const Error&)>;

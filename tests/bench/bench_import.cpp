@@ -7,6 +7,10 @@
 #include "bench/harness.h"
 #include "bench/step_watch.h"
 #include "jobs/import_job.h"
+#include "room/edit.h"
+#include "room/layers.h"
+#include "room/rooms.h"
+#include "support/whole_picture.h"
 
 namespace strata::bench {
 namespace {
@@ -17,16 +21,16 @@ struct Options {
 };
 
 // From around, at full detail: what a camera that stands still shows.
-render::Frame frame(Site& site, const std::string& model, glm::dvec3 from) {
+Picture frame(Site& site, const std::string& model, glm::dvec3 from) {
   auto room = must(site.rooms->open(model, Role::owner));
   const Model info = room->model();
   mesh::Geometry box;
   box.origin = (info.bounds_min + info.bounds_max) * 0.5;
   box.box_min = glm::vec3(info.bounds_min - box.origin);
   box.box_max = glm::vec3(info.bounds_max - box.origin);
-  return must(room->picture({}, look_at(box, from, 1280, 720)));
+  return must(test::whole_picture(room->pictures(), {}, look_at(box, from, 1280, 720)));
 }
-render::Frame first_frame(Site& site, const std::string& model) {
+Picture first_frame(Site& site, const std::string& model) {
   return frame(site, model, {0.4, -1, 0.6});
 }
 
@@ -67,7 +71,7 @@ int run(const Options& options) {
     layer.resolution = options.resolution;
     layer.palette = default_palette(layer.type, false);
     layer.opacity = 0.6;
-    layer = must(room->create_layer(layer));
+    layer = must(room->layers().create(layer));
     edit_and_wait(*room, {random_uuid(),
                           {"bench", Role::owner},
                           layer.id,

@@ -112,7 +112,7 @@ int run(const Options& options) {
         request.camera = look_at(*mesh.geometry, {0.4, -1, 0.6}, 320, 240);
         request.width = 320;
         request.height = 240;
-        request.layers = {{layer, std::make_shared<Palette>(default_palette(type, true)), 1}};
+        request.style.layers = {{layer, std::make_shared<Palette>(default_palette(type, true)), 1}};
         await<render::SharedFrame>([&](auto done) { renderer->draw(request, std::move(done)); });
         const std::uint64_t on_gpu = renderer->layer_bytes_used(layer), in_memory = mirror->bytes();
         renderer->remove_layer(layer);

@@ -14,6 +14,13 @@
 #include "jobs/import_job.h"
 #include "jobs/job_queue.h"
 #include "net/transport/server.h"
+#include "room/edit.h"
+#include "room/layers.h"
+#include "room/participants.h"
+#include "room/room.h"
+#include "room/rooms.h"
+#include "room/surface.h"
+#include "room/view_settings.h"
 #include "store/tables/records.h"
 #include "store/tables/tables.h"
 #include "strata_dirs.h"
@@ -109,8 +116,9 @@ class Queries {
   void light_up() {
     make_parts();
     FrameClient viewer;
-    auto member = room_->join({"bench", Role::owner}, {}, nullptr,
-                              [&](const stream::FrameMessages& frame) { viewer.receive(frame); });
+    auto member = room_->participants().join(
+        {"bench", Role::owner}, {}, nullptr,
+        [&](const stream::FrameMessages& frame) { viewer.receive(frame); });
     const auto show = [&](const char* filter) {
       room::LayerView parts{layers_.at("parts").id, true, {}, {}, {}};
       if (filter)
@@ -150,7 +158,8 @@ class Queries {
     thickness.name = thickness.slug = "thickness", thickness.kind = ColumnKind::numeric;
     state.name = state.slug = "state", state.kind = ColumnKind::enumeration,
     state.choices = {"loose", "firm"};
-    const Layer made = layers_["parts"] = must(room_->create_layer(layer, {}, {thickness, state}));
+    const Layer made = layers_["parts"] =
+        must(room_->layers().create(layer, {}, {thickness, state}));
     const Table table = must(site_.store->tables().find(std::to_string(*made.table), Role::owner));
     store::WriteRecords records;
     for (int i = 0; i < kParts; ++i)
@@ -182,7 +191,7 @@ class Queries {
     layer.type = type;
     layer.resolution = kResolution;
     layer.palette = default_palette(type, false);
-    layers_[name] = must(room_->create_layer(layer));
+    layers_[name] = must(room_->layers().create(layer));
     refill(name, value);
   }
   void refill(const std::string& name, std::optional<double> value = {}) {
@@ -195,7 +204,7 @@ class Queries {
                            room::FillEdit{false, must(encode_value(layer.type, filled)), {}},
                            {{"op", "fill"}}});
   }
-  Camera camera() const { return look_at(*room_->geometry(), {0.5, -1, 0.6}, 1280, 720); }
+  Camera camera() const { return look_at(*room_->surface().geometry(), {0.5, -1, 0.6}, 1280, 720); }
   void stroke(const std::string& name) {
     const double x = 400 + static_cast<double>(random_() % 480),
                  y = 200 + static_cast<double>(random_() % 320);
@@ -218,7 +227,7 @@ class Queries {
   }
 
   glm::dvec3 place() {
-    const auto geometry = room_->geometry();
+    const auto geometry = room_->surface().geometry();
     std::uniform_real_distribution<double> jitter(-1, 1);
     const double reach = 0.002 * glm::length(model_.bounds_max - model_.bounds_min);
     return geometry->positions[random_() % geometry->positions.size()] +

@@ -147,7 +147,7 @@ std::string row(render::Renderer& renderer, const BenchMesh& mesh, int top) {
     glm::dvec3 from = kDirections[i];
     if (lies_flat(mesh)) from.z = std::max(from.z, kAboveFlat);
     request.camera = fitted_camera(*mesh.geometry, mesh.standing, from, request.width);
-    request.layers = {{layer, checker_palette(), 1}};
+    request.style.layers = {{layer, checker_palette(), 1}};
     const auto drawn = await<SharedFrame>([&](auto done) { renderer.draw(request, done); });
     const Frame& frame = *drawn;
     static_assert(kFiner == 2);

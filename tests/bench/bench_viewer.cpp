@@ -14,6 +14,13 @@
 #include "bench/harness.h"
 #include "bench/wander.h"
 #include "jobs/import_job.h"
+#include "room/edit.h"
+#include "room/edits.h"
+#include "room/layers.h"
+#include "room/participants.h"
+#include "room/queries.h"
+#include "room/room.h"
+#include "room/rooms.h"
 #include "store/content/models.h"
 #include "store/content/projects.h"
 #include "store/journal/journal_reads.h"
@@ -45,8 +52,9 @@ class OneViewer {
     model_ = must(site_.store->models().create(made, [] { return false; }));
     room_ = must(site_.rooms->open(model_.slug, Role::owner));
     for (int i = 0; i < options.layers; ++i) add_filled_layer(i);
-    member_ = room_->join({"bench", Role::owner}, {}, nullptr,
-                          [&](const stream::FrameMessages& frame) { client_.receive(frame); });
+    member_ = room_->participants().join(
+        {"bench", Role::owner}, {}, nullptr,
+        [&](const stream::FrameMessages& frame) { client_.receive(frame); });
     member_->camera(0, ++camera_number_, still_, false);
     client_.wait_for(*member_, [&](const auto& a) {
       return a.header.still && a.header.camera_seq == camera_number_.load();
@@ -66,7 +74,7 @@ class OneViewer {
       std::promise<std::int64_t> sequence;
       auto sequence_known = sequence.get_future();
       std::promise<void> saved;
-      room_->edit(
+      room_->edits().submit(
           std::move(request),
           [&](const room::EditAnswer& answer) { sequence.set_value(answer.sequence); },
           [&](Result<room::EditAnswer> answer) {
@@ -191,7 +199,7 @@ class OneViewer {
     layer.palette = default_palette(layer.type, false);
     layer.opacity = 0.6;
     layer.order = number;
-    layers_.push_back(must(room_->create_layer(layer)));
+    layers_.push_back(must(room_->layers().create(layer)));
     edit_and_wait(*room_, {random_uuid(),
                            {"bench", Role::owner},
                            layers_.back().id,
@@ -202,7 +210,7 @@ class OneViewer {
     std::uniform_real_distribution<double> x(440, 840), y(200, 520);
     while (true) {
       const glm::dvec2 point{x(random_), y(random_)};
-      if (must(room_->pick(still_, point.x, point.y, {})).hit) return point;
+      if (must(room_->queries().pick(still_, point.x, point.y, {})).hit) return point;
     }
   }
 
@@ -214,7 +222,7 @@ class OneViewer {
   std::shared_ptr<room::Room> room_;
   std::vector<Layer> layers_;
   FrameClient client_;
-  std::shared_ptr<room::Member> member_;
+  std::shared_ptr<room::Participant> member_;
   std::atomic<std::uint64_t> camera_number_{0};
   std::mt19937 random_{7};
 };

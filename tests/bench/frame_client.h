@@ -10,6 +10,7 @@
 
 #include "bench/harness.h"
 #include "protocol/frame_header.h"
+#include "room/participants.h"
 #include "room/room.h"
 
 namespace strata::bench {
@@ -38,7 +39,7 @@ class FrameClient {
     changed_.notify_all();
   }
   template <class Wanted>
-  Arrival wait_for(room::Member& member, Wanted wanted) {
+  Arrival wait_for(room::Participant& member, Wanted wanted) {
     std::unique_lock lock(mutex_);
     while (true) {
       if (!changed_.wait_for(lock, std::chrono::seconds(30), [&] { return !arrivals_.empty(); })) {

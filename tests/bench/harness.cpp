@@ -9,7 +9,12 @@
 #include <iostream>
 #include <thread>
 
+#include "room/edit.h"
+#include "room/edits.h"
+#include "room/rooms.h"
+#include "store/store.h"
 #include "strata_dirs.h"
+#include "stream/viewer.h"
 #include "support/shader_dirs.h"
 
 namespace strata::bench {
@@ -149,8 +154,9 @@ void Site::restart() {
 room::EditAnswer edit_and_wait(room::Room& room, room::EditRequest request) {
   auto promise = std::make_shared<std::promise<Result<room::EditAnswer>>>();
   auto future = promise->get_future();
-  room.edit(std::move(request), {},
-            [promise](Result<room::EditAnswer> answer) { promise->set_value(std::move(answer)); });
+  room.edits().submit(std::move(request), {}, [promise](Result<room::EditAnswer> answer) {
+    promise->set_value(std::move(answer));
+  });
   return must(future.get());
 }
 

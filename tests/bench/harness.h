@@ -11,7 +11,9 @@
 
 #include "mesh/surface/geometry.h"
 #include "render/renderer.h"
+#include "room/edit.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/cluster/cluster.h"
 #include "stream/jpeg_pool.h"
 

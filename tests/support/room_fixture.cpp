@@ -5,10 +5,17 @@
 
 #include "mesh/demo/demo_pot.h"
 #include "mesh/surface/geometry.h"
+#include "room/edit.h"
+#include "room/edits.h"
+#include "room/layers.h"
+#include "room/queries.h"
+#include "room/rooms.h"
 #include "store/content/models.h"
 #include "store/content/projects.h"
 #include "store/journal/journal_reads.h"
+#include "stream/viewer.h"
 #include "support/shader_dirs.h"
+#include "support/whole_picture.h"
 
 namespace strata::test {
 
@@ -104,7 +111,7 @@ Layer RoomTest::make_layer(ValueType type, int resolution, const std::string& na
   layer.type = type;
   layer.resolution = resolution;
   layer.palette = default_palette(type, false);
-  auto made = room()->create_layer(layer);
+  auto made = room()->layers().create(layer);
   EXPECT_TRUE(made) << (made ? "" : made.error().detail);
   return *made;
 }
@@ -140,7 +147,7 @@ room::EditRequest RoomTest::stroke(const Layer& layer, double value, std::vector
 std::future<Result<room::EditAnswer>> RoomTest::start(room::EditRequest edit) {
   auto promise = std::make_shared<std::promise<Result<room::EditAnswer>>>();
   auto future = promise->get_future();
-  room()->edit(std::move(edit), {}, [promise](Result<room::EditAnswer> answer) {
+  room()->edits().submit(std::move(edit), {}, [promise](Result<room::EditAnswer> answer) {
     promise->set_value(std::move(answer));
   });
   return future;
@@ -160,13 +167,13 @@ Result<room::EditAnswer> RoomTest::send_until_taken(const room::EditRequest& edi
 }
 
 void RoomTest::expect_room_equals_journal(const Layer& layer) {
-  const auto live = room()->tiles(layer.slug, {});
+  const auto live = room()->queries().tiles(layer.slug, {});
   ASSERT_TRUE(live) << live.error().detail;
   const auto stored = store_->journal().load_tiles(layer);
   ASSERT_TRUE(stored) << stored.error().detail;
   EXPECT_TRUE(equal(live->tiles, stored->tiles));
   EXPECT_EQ(live->sequence, stored->sequence);
-  EXPECT_EQ(room()->durable_sequence(), store_->journal().last_sequence(model_.id).value());
+  EXPECT_EQ(room()->edits().durable_sequence(), store_->journal().last_sequence(model_.id).value());
 }
 
 void RoomTest::expect_picture_of_journal() {
@@ -175,23 +182,23 @@ void RoomTest::expect_picture_of_journal() {
   options.shader_dir = shader_dir().string();
   auto renderer = render::Renderer::start(options);
   ASSERT_TRUE(renderer) << renderer.error().detail;
-  Result<render::Frame> expected = fail(ErrorCode::unavailable, "", "");
+  Result<Picture> expected = fail(ErrorCode::unavailable, "", "");
   {
     room::Rooms rooms(*store_, **renderer, stream::StreamContext{renderer->get(), encoder_.get()},
                       {});
     auto fresh = rooms.open("pot", Role::owner);
     ASSERT_TRUE(fresh) << fresh.error().detail;
-    expected = (*fresh)->picture({}, camera({0.3, -1, 0.4}));
+    expected = whole_picture((*fresh)->pictures(), {}, camera({0.3, -1, 0.4}));
   }
   ASSERT_TRUE(expected) << expected.error().detail;
-  Result<render::Frame> shown = fail(ErrorCode::unavailable, "", "");
-  for (int i = 0; i < 3000 && !(shown && shown->pixels == expected->pixels); ++i) {
-    shown = room()->picture({}, camera({0.3, -1, 0.4}));
-    if (!shown || shown->pixels != expected->pixels)
+  Result<Picture> shown = fail(ErrorCode::unavailable, "", "");
+  for (int i = 0; i < 3000 && !(shown && shown->rgba == expected->rgba); ++i) {
+    shown = whole_picture(room()->pictures(), {}, camera({0.3, -1, 0.4}));
+    if (!shown || shown->rgba != expected->rgba)
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   ASSERT_TRUE(shown) << shown.error().detail;
-  EXPECT_EQ(shown->pixels, expected->pixels);
+  EXPECT_EQ(shown->rgba, expected->rgba);
 }
 
 bool equal(const TileMap& a, const TileMap& b) {

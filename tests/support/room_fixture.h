@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "room/edit.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "stream/jpeg_pool.h"
 #include "support/test_cluster.h"
 

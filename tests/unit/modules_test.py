@@ -15,7 +15,9 @@ def linked() -> Graph:
     """The modules with those that their CMakeLists.txt links."""
     links: Graph = {"protocol": {"domain", "core"}}
     for file in sorted((ROOT / "server").glob("*/CMakeLists.txt")):
-        call = re.search(r"strata_module\((\w+)\s+SOURCES(.*?)\n?\s*\)", file.read_text(), re.DOTALL)
+        call = re.search(
+            r"strata_module\((\w+)\s+SOURCES(.*?)\n?\s*\)", file.read_text(), re.DOTALL
+        )
         if call:
             links[call.group(1)] = set(re.findall(r"\bstrata_(\w+)\b", call.group(2)))
     return {module: {to for to in links[module] if to in links} for module in links}

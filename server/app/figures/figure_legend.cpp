@@ -5,7 +5,10 @@
 #include <set>
 
 #include "domain/tables/label_text.h"
-#include "room/provisional.h"
+#include "room/edits.h"
+#include "room/pictures.h"
+#include "room/pipeline/provisional.h"
+#include "room/queries.h"
 #include "store/tables/records.h"
 #include "store/tables/tables.h"
 
@@ -63,7 +66,7 @@ Result<bool> is_seen(const FigureRequest& request, const Camera& camera, const g
   const glm::dvec2 pixel((clip.x + 1) / 2 * camera.width, (1 - clip.y) / 2 * camera.height);
   if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x <= camera.width && pixel.y <= camera.height))
     return false;
-  const auto hit = request.room->pick(camera, pixel.x, pixel.y, {}, {});
+  const auto hit = request.room->queries().pick(camera, pixel.x, pixel.y, {}, {});
   if (!hit) return tl::unexpected(hit.error());
   if (!hit->hit) return true;
   const glm::dvec3 apart = place - glm::dvec3(hit->position);
@@ -77,7 +80,7 @@ Result<std::set<double>> marked_keys(store::Store& store, const FigureRequest& r
                                      const Layer& layer, const Camera& camera) {
   const Model model = request.room->model();
   std::optional<std::int64_t> at;  // of the table; none: now, as the picture has it
-  if (*request.shown.at < request.room->durable_sequence()) {
+  if (*request.shown.at < request.room->edits().durable_sequence()) {
     const auto then =
         STRATA_TRY(store.tables().sequence_when(*layer.table, model.id, *request.shown.at));
     at = then;
@@ -113,7 +116,7 @@ Result<std::vector<figure::Legend>> legends_of(store::Store& store, const Figure
   }
   std::vector<figure::Legend> legends;
   if (refs.empty()) return legends;
-  const auto seen = request.room->seen_layers(
+  const auto seen = request.room->pictures().seen_layers(
       refs, covers, camera, std::max(1, static_cast<int>(camera.width / coarser)),
       std::max(1, static_cast<int>(camera.height / coarser)), request.shown.at);
   if (!seen) return tl::unexpected(seen.error());

@@ -10,6 +10,8 @@
 #include "core/text/number_text.h"
 #include "core/uuid.h"
 #include "domain/scene/compass.h"
+#include "room/pictures.h"
+#include "room/surface.h"
 #include "store/tables/records.h"
 
 namespace strata::app {
@@ -87,8 +89,8 @@ Result<std::vector<figure::Label>> labels_of(store::Store& store, const FigureRe
   const int columns = std::max(1, static_cast<int>(drawing_mm.x / kLabelCell_mm.x));
   const int rows = std::max(1, static_cast<int>(drawing_mm.y / kLabelCell_mm.y));
   const glm::dvec2 cell_mm = drawing_mm / glm::dvec2(columns, rows);
-  const auto keys = request.room->seen_keys(request.labels->layer.slug, figure::camera_of(drawing),
-                                            columns, rows, request.shown.at);
+  const auto keys = request.room->pictures().seen_keys(
+      request.labels->layer.slug, figure::camera_of(drawing), columns, rows, request.shown.at);
   if (!keys) return tl::unexpected(keys.error());
   const auto texts = STRATA_TRY(texts_of(store, request));
   auto areas = areas_of(*keys, columns, rows);
@@ -170,9 +172,8 @@ Result<Picture> draw(const FigureRequest& request, const figure::Drawing& drawin
         {part.camera, static_cast<double>(part.width + 2 * part.margin) / part.camera.width});
   // Where each pixel is the mean of four, a band may end between two rows of a pair.
   std::vector<std::uint8_t> upper;
-  auto drawn = request.room->pictures(
-      request.shown, wanted,
-      [&](std::size_t i, const room::Room::PictureBand& band) -> Result<void> {
+  auto drawn = request.room->pictures().draw(
+      request.shown, wanted, [&](std::size_t i, const room::PictureBand& band) -> Result<void> {
         const int left = parts[i].x / finer, top = parts[i].y / finer;  // parts are of whole inches
         const int margin = parts[i].margin;
         const int columns = std::min(parts[i].width / finer, picture.width - left);
@@ -230,7 +231,7 @@ Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, By
   progress.begin_stage(0, 0.05);
   progress.report(0, "Measuring");
   const Model model = request.room->model();
-  const auto geometry = request.room->geometry();
+  const auto geometry = request.room->surface().geometry();
   const auto extent = figure::extent_of(geometry->positions, request.plane, request.section);
   if (!extent)
     return fail(ErrorCode::invalid, "Nothing to draw", "The section cuts everything away.",

@@ -14,6 +14,7 @@
 #include "domain/tables/table.h"
 #include "figure/files.h"
 #include "figure/layout.h"
+#include "room/pictures.h"
 #include "room/room.h"
 #include "store/store.h"
 

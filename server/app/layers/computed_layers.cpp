@@ -1,4 +1,6 @@
 #include "app/layers/computed_layers.h"
+#include "room/room.h"
+#include "room/surface.h"
 #include "store/content/models.h"
 #include "store/people/personal_views.h"
 
@@ -28,8 +30,9 @@ Result<jobs::ShapeRecipe> check_recipe(store::Store& store, jobs::ShapeRecipe re
 Result<Layer> add_shape_layer(store::Store& store, const room::Room& room, NewLayers& layers,
                               const Layer& wish, const jobs::ShapeRecipe& recipe, bool has_palette,
                               const std::string& user, Progress& progress) {
-  auto computed = STRATA_TRY(jobs::compute_shape_layer(store, room.model(), room.geometry(), recipe,
-                                                       wish.type, wish.resolution, progress));
+  auto computed =
+      STRATA_TRY(jobs::compute_shape_layer(store, room.model(), room.surface().geometry(), recipe,
+                                           wish.type, wish.resolution, progress));
   Layer layer = wish;
   layer.origin = LayerOrigin::shape;
   if (layer.unit.empty()) layer.unit = computed.unit;

@@ -11,8 +11,12 @@
 #include "domain/scene/model.h"
 #include "expression/expression_parser.h"
 #include "jobs/shape_layer.h"
-#include "room/expression_binding.h"
+#include "room/edit.h"
+#include "room/layers.h"
+#include "room/pipeline/expression_binding.h"
+#include "room/queries.h"
 #include "room/room.h"
+#include "room/surface.h"
 #include "store/content/layers.h"
 #include "store/people/personal_views.h"
 #include "store/store.h"
@@ -37,14 +41,15 @@ Result<TileMap> shape_tiles(store::Store& store, const room::Room& room, const s
                             int resolution, Progress& progress) {
   const Model model = room.model();
   for (const auto& [normal, axis] : {std::pair("nx", 0), std::pair("ny", 1), std::pair("nz", 2)})
-    if (name == normal) return jobs::paint_normals(room.geometry(), axis, resolution, progress);
+    if (name == normal)
+      return jobs::paint_normals(room.surface().geometry(), axis, resolution, progress);
   jobs::ShapeRecipe recipe;
   recipe.kind = name == "height"  ? jobs::ShapeKind::height
                 : name == "slope" ? jobs::ShapeKind::slope
                                   : jobs::ShapeKind::mean_curvature;
   auto complete = STRATA_TRY(jobs::completed(std::move(recipe), model));
-  auto shape = STRATA_TRY(jobs::compute_shape_layer(store, model, room.geometry(), complete,
-                                                    ValueType::f32, resolution, progress));
+  auto shape = STRATA_TRY(jobs::compute_shape_layer(
+      store, model, room.surface().geometry(), complete, ValueType::f32, resolution, progress));
   return std::move(shape.tiles);
 }
 
@@ -52,7 +57,7 @@ Result<std::vector<query::LayerView>> shape_views(store::Store& store, const roo
                                                   const Expression& expression, int resolution,
                                                   Progress& progress) {
   std::vector<query::LayerView> views;
-  for (const std::string& name : room::shapes_read(expression, views_of(room.layers()))) {
+  for (const std::string& name : room::shapes_read(expression, views_of(room.layers().all()))) {
     auto tiles = STRATA_TRY(shape_tiles(store, room, name, resolution, progress));
     query::LayerView view;
     view.layer.slug = std::string(room::kShapePrefix) + name;
@@ -73,14 +78,14 @@ bool is_condition(const Layer& layer) {
 // Colours over most of the values; those of a condition are as they were made.
 Result<Layer> with_colors(room::Room& room, Layer layer) {
   if (is_condition(layer)) return layer;
-  const auto values = STRATA_TRY(room.statistics(layer.slug, {}, {.quantiles = true}));
+  const auto values = STRATA_TRY(room.queries().statistics(layer.slug, {}, {.quantiles = true}));
   if (!values.quantiles || !(values.max > values.min)) return layer;
   jobs::ValueRange range{values.min, values.quantiles->front(), values.quantiles->back(),
                          values.max};
   if (!(range.high > range.low))
     std::tie(range.low, range.high) = std::pair(range.least, range.most);
   layer.palette = jobs::palette_of(jobs::ShapeKind::vertex_property, range);
-  return room.update_layer(std::move(layer));
+  return room.layers().update(std::move(layer));
 }
 
 }  // namespace
@@ -95,7 +100,7 @@ Result<Expression> parse_formula(const std::string& text) {
 Result<LayerFormula> read_formula(const room::Room& room, const std::string& text, bool automatic,
                                   Visibility visibility, std::optional<std::int64_t> self) {
   const auto expression = STRATA_TRY(parse_formula(text));
-  const std::vector<Layer> layers = room.layers();
+  const std::vector<Layer> layers = room.layers().all();
   const auto shapes = room::shapes_read(expression, views_of(layers));
   LayerFormula formula;
   formula.expression = text;
@@ -111,7 +116,7 @@ Result<LayerFormula> read_formula(const room::Room& room, const std::string& tex
     formula.inputs.push_back(std::move(input));
   }
   std::ranges::sort(formula.inputs, {}, &LayerFormula::Input::slug);
-  STRATA_TRY(room.check_expression(expression, "expression", visibility));
+  STRATA_TRY(room.layers().check_expression(expression, "expression", visibility));
   return formula;
 }
 
@@ -137,11 +142,11 @@ Result<Layer> compute_layer(const Services& services, const std::shared_ptr<room
   edit.record = {{"op", "compute"}, {"expression", layer.formula->expression}};
   edit.edit = room::ComputeEdit{expression, std::move(shapes), overwrites};
   const auto done = STRATA_TRY(edit_and_wait(*room, std::move(edit), services.edits));
-  return room->layer_computed(layer.id, layer.formula->expression, done.sequence, tables);
+  return room->layers().mark_computed(layer.id, layer.formula->expression, done.sequence, tables);
 }
 
 bool reads_shape(const room::Room& room, const Expression& expression) {
-  return !room::shapes_read(expression, views_of(room.layers())).empty();
+  return !room::shapes_read(expression, views_of(room.layers().all())).empty();
 }
 
 Result<Layer> add_formula_layer(const Services& services, const std::shared_ptr<room::Room>& room,

@@ -9,6 +9,8 @@
 #include "app/records/record_csv.h"
 #include "domain/tables/column_value.h"
 #include "domain/tables/mark.h"
+#include "room/queries.h"
+#include "room/surface.h"
 #include "store/tables/records.h"
 #include "store/tables/tables.h"
 
@@ -226,11 +228,12 @@ int epsg_of(const Model& model, const query::OutlinePlane& plane) {
 
 Result<FeatureSet> layer_features(store::Store& store, const FeatureRequest& request) {
   const Model model = request.room->model();
-  const auto areas = request.room->layer_areas(request.layer.slug, request.at);
+  const auto areas = request.room->queries().layer_areas(request.layer.slug, request.at);
   if (!areas) return tl::unexpected(areas.error());
   const query::Quantities& all = areas->quantities;
-  auto outlines = query::plane_outlines(areas->view, *request.room->geometry(), *areas->map,
-                                        query::classes_of(request.layer), request.plane);
+  auto outlines =
+      query::plane_outlines(areas->view, *request.room->surface().geometry(), *areas->map,
+                            query::classes_of(request.layer), request.plane);
   if (!outlines) return tl::unexpected(outlines.error());
   Records records;
   if (request.layer.table) {

@@ -4,6 +4,7 @@
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
 #include "query/maps/plane_outlines.h"
+#include "room/at.h"
 #include "room/room.h"
 #include "store/store.h"
 
@@ -12,7 +13,7 @@ namespace strata::app {
 struct FeatureRequest {
   std::shared_ptr<room::Room> room;  // as who asks sees it
   Layer layer;
-  room::Room::At at;  // nothing: now
+  room::At at;  // nothing: now
   query::OutlinePlane plane;
   Role role = Role::viewer;
   std::string language;  // of terms

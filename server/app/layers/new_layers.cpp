@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "core/log.h"
+#include "room/edit.h"
+#include "room/layers.h"
 
 namespace strata::app {
 namespace {
@@ -15,7 +17,7 @@ Result<Layer> NewLayers::add(Layer layer, const std::function<Result<Layer>(cons
   const bool visible = layer.visible;
   layer.visible = false;
   auto created =
-      room_->create_layer(std::move(layer), {.key = {}, .make = {}, .user = author_.user});
+      room_->layers().create(std::move(layer), {.key = {}, .make = {}, .user = author_.user});
   if (!created) return created;
   made_.push_back({*created, visible});
   return fill(*created);
@@ -41,9 +43,9 @@ Result<void> NewLayers::show(const store::FirstAnswer<Layer>& answer) {
   for (std::size_t i = 0; i < made_.size(); ++i) {
     const bool is_last = i + 1 == made_.size();
     for (int tries = 0;; ++tries) {
-      auto now = STRATA_TRY(room_->layer(std::to_string(made_[i].layer.id)));
+      auto now = STRATA_TRY(room_->layers().find(std::to_string(made_[i].layer.id)));
       now.visible = made_[i].visible;
-      auto shown = room_->update_layer(now, is_last ? last : store::FirstAnswer<Layer>{});
+      auto shown = room_->layers().update(now, is_last ? last : store::FirstAnswer<Layer>{});
       if (shown) break;
       // Someone renamed it at this very moment: then what they made of it is shown.
       if (shown.error().code != ErrorCode::stale || tries == kMostTries)
@@ -55,7 +57,7 @@ Result<void> NewLayers::show(const store::FirstAnswer<Layer>& answer) {
 
 void NewLayers::take_back() {
   for (const Made& made : made_)
-    if (auto gone = room_->delete_layer(made.layer.id);
+    if (auto gone = room_->layers().erase(made.layer.id);
         !gone && gone.error().code != ErrorCode::not_found && gone.error().code != ErrorCode::gone)
       log::warning("layer " + std::to_string(made.layer.id) +
                    " of work that failed could not be removed: " + gone.error().detail);

@@ -7,7 +7,9 @@
 #include "core/log.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
+#include "room/edits.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/content/layers.h"
 #include "store/store.h"
 
@@ -56,8 +58,9 @@ void Recomputer::run() {
       if (!uncounted) continue;
       for (const Layer& layer : *uncounted) {
         if (is_stopping()) return;
-        attempt(layer, "counted",
-                [&](const std::shared_ptr<room::Room>& room) { return room->sum_layer(layer.id); });
+        attempt(layer, "counted", [&](const std::shared_ptr<room::Room>& room) {
+          return room->edits().keep_sums(layer.id);
+        });
       }
     } catch (const std::exception& error) {
       log::error(std::string("computing layers failed: ") + error.what());
@@ -67,7 +70,7 @@ void Recomputer::run() {
 
 bool Recomputer::is_quiet(const room::Room& room, std::int64_t layer_id) {
   Wait& wait = waits_[layer_id];
-  const std::int64_t sequence = room.sequence();
+  const std::int64_t sequence = room.edits().sequence();
   if (wait.sequence != sequence && ++wait.looks < kMostLooks) {
     wait.sequence = sequence;
     return false;

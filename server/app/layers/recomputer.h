@@ -8,6 +8,7 @@
 
 #include "app/services.h"
 #include "core/progress.h"
+#include "domain/layers/layer.h"
 #include "room/room.h"
 
 namespace strata::app {

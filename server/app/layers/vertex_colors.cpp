@@ -1,10 +1,16 @@
 #include "app/layers/vertex_colors.h"
 
+#include "core/memory_ledger.h"
 #include "domain/people/role.h"
 #include "media/picture.h"
-#include "room/look_shelf.h"
-#include "room/record_colors.h"
+#include "query/sampling/values.h"
+#include "room/caches/look_shelf.h"
+#include "room/caches/record_colors.h"
+#include "room/looks.h"
 #include "room/room.h"
+#include "room/rooms.h"
+#include "room/surface.h"
+#include "room/view_settings.h"
 #include "store/content/looks.h"
 #include "store/store.h"
 
@@ -39,8 +45,8 @@ Result<query::DrawnLayer> drawn(const Services& services, Role role, const query
 
 Result<ComposedVertices> compose_vertices(const Services& services, room::Room& room, Role role,
                                           const std::vector<query::LayerView>& bottom_to_top) {
-  const auto looks = room::looks_shown(room.looks());
-  const auto geometry = room.geometry();
+  const auto looks = room::looks_shown(room.looks().all());
+  const auto geometry = room.surface().geometry();
   const std::uint64_t bytes = looks.empty() ? 0 : geometry->vertices.size() * 3;
   auto memory =
       STRATA_TRY(services.rooms.memory().reserve(bytes, "the colours of a model's vertices"));

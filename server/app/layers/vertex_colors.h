@@ -2,6 +2,7 @@
 
 #include "app/services.h"
 #include "core/memory_ledger.h"
+#include "query/sampling/values.h"
 #include "query/sampling/vertex_colors.h"
 #include "room/room.h"
 

@@ -1,4 +1,6 @@
 #include "app/maps/map_legend.h"
+#include "room/layers.h"
+#include "room/queries.h"
 
 #include <algorithm>
 
@@ -13,7 +15,7 @@ constexpr std::size_t kMostNamed = 5;
 Result<std::optional<query::KeyNames>> keys_of(room::Room& room, const Layer& layer,
                                                const std::set<double>& records) {
   if (!lists_values(layer.palette)) return std::nullopt;
-  const auto statistics = STRATA_TRY(room.statistics(layer.slug));
+  const auto statistics = STRATA_TRY(room.queries().statistics(layer.slug));
   std::set<double> taken = records;
   for (const auto& [key, of_key] : statistics.keys) taken.insert(key);
   return query::KeyNames(layer.palette, taken);
@@ -43,7 +45,7 @@ Result<void> extend_legend(Role role, room::Room& room, const Layer& layer,
   if (changed.palette.points.size() > kMostPoints)
     return fail(ErrorCode::invalid, "Too many names",
                 "A legend holds at most " + std::to_string(kMostPoints) + " entries.", "attribute");
-  STRATA_TRY(room.update_layer(std::move(changed)));
+  STRATA_TRY(room.layers().update(std::move(changed)));
   return {};
 }
 

@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "domain/layers/layer.h"
 #include "query/maps/key_names.h"
 #include "room/room.h"
 

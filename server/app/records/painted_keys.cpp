@@ -10,7 +10,10 @@
 #include "domain/people/role.h"
 #include "domain/tables/table.h"
 #include "expression/expression.h"
+#include "room/edit.h"
+#include "room/queries.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/content/layers.h"
 #include "store/store.h"
 #include "store/tables/records.h"
@@ -38,7 +41,7 @@ Result<std::vector<PaintedLayer>> painted_layers(const Services& services, std::
   for (Layer& layer : layers) {
     if (layer.sequence == 0) continue;  // nothing was ever painted there
     auto room = STRATA_TRY(services.rooms.open(std::to_string(layer.model_id), seen_by));
-    auto areas = room->key_areas(layer.slug);
+    auto areas = room->queries().key_areas(layer.slug);
     if (!areas && areas.error().code == ErrorCode::not_found) continue;  // deleted meanwhile
     if (!areas) return tl::unexpected(areas.error());
     painted.push_back({std::move(room), std::move(layer), std::move(*areas)});

@@ -7,6 +7,7 @@
 #include "app/services.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
+#include "query/statistics/key_areas.h"
 #include "room/room.h"
 #include "store/store.h"
 

@@ -6,7 +6,9 @@
 #include "domain/scene/model.h"
 #include "domain/tables/mark.h"
 #include "domain/tables/table.h"
+#include "room/queries.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/content/models.h"
 #include "store/store.h"
 
@@ -21,7 +23,7 @@ Result<RecordMeasures> RecordMeasures::of_place(const Services& services, const 
     if (place.layer->sequence > 0) {  // otherwise nothing was ever painted there
       auto room = services.rooms.open(std::to_string(place.model->id), Role::owner);
       if (!room) return tl::unexpected(room.error());
-      auto areas = STRATA_TRY((*room)->key_areas(place.layer->slug));
+      auto areas = STRATA_TRY((*room)->queries().key_areas(place.layer->slug));
       measures.areas_ = std::move(areas);
     }
   }

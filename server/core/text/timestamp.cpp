@@ -1,6 +1,7 @@
 #include "core/text/timestamp.h"
 
 #include <cstdio>
+#include <ctime>
 
 #include "core/text/edtf.h"
 
@@ -92,6 +93,20 @@ std::optional<std::string> utc_timestamp(std::string_view text) {
                 date.day, of_day / 3'600'000, of_day / 60'000 % 60, of_day / 1000 % 60,
                 of_day % 1000);
   return out;
+}
+
+std::string utc_text(std::chrono::system_clock::time_point time) {
+  const auto milliseconds =
+      std::chrono::duration_cast<std::chrono::milliseconds>(time.time_since_epoch()).count();
+  const std::time_t seconds = static_cast<std::time_t>(
+      milliseconds >= 0 ? milliseconds / 1000 : (milliseconds - 999) / 1000);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  char text[40];
+  const std::size_t length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &utc);
+  std::snprintf(text + length, sizeof text - length, ".%03dZ",
+                static_cast<int>(milliseconds - std::int64_t{seconds} * 1000));
+  return text;
 }
 
 }  // namespace strata

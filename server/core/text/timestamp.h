@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -15,5 +16,8 @@ std::optional<std::int64_t> day_of(std::string_view text);
 // UTC) in UTC; milliseconds are kept. Without a zone it is UTC. Nothing where it leaves the years 1
 // to 9999.
 std::optional<std::string> utc_timestamp(std::string_view text);
+
+// RFC 3339 in UTC, with milliseconds.
+std::string utc_text(std::chrono::system_clock::time_point time);
 
 }  // namespace strata

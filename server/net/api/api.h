@@ -26,7 +26,9 @@
 #include "net/transport/server_options.h"
 #include "protocol/messages.h"
 #include "render/renderer.h"
+#include "room/participants.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/store.h"
 
 namespace strata::net {

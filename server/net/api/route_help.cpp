@@ -7,7 +7,10 @@
 #include "jobs/job_queue.h"
 #include "net/api/metrics.h"
 #include "net/http/edit_book.h"
-#include "net/serialization/wire.h"
+#include "net/serialization/job_serialization.h"
+#include "room/edit.h"
+#include "room/edits.h"
+#include "room/layers.h"
 #include "room/room.h"
 #include "store/content/layers.h"
 #include "store/content/models.h"
@@ -94,7 +97,7 @@ Uuid edit_id(const Request& request, const Layer& layer, std::string_view operat
 void apply_edit(const RouteContext& context, const Request& request,
                 const std::shared_ptr<room::Room>& room, room::EditRequest edit,
                 const Respond& respond, std::function<nlohmann::json(nlohmann::json)> body_of) {
-  const auto layer = room->layer(std::to_string(edit.layer_id));
+  const auto layer = room->layers().find(std::to_string(edit.layer_id));
   if (!layer) return respond(layer.error());
   if (auto known = app::check_keys(context.store, *layer, room::painted_by(*layer, edit)); !known)
     return respond(known.error());
@@ -104,7 +107,7 @@ void apply_edit(const RouteContext& context, const Request& request,
     if (auto same = context.edit_book.begin(room->model().id, edit); !same)
       return respond(same.error());
   const Uuid id = edit.id;
-  room->edit(
+  room->edits().submit(
       std::move(edit),
       [&metrics = context.metrics](const room::EditAnswer& answer) {
         if (!answer.repeated) ++metrics.edits.applied;
@@ -131,7 +134,7 @@ Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector
                                        const std::string& field) {
   std::vector<Layer> layers;
   for (const auto& ref : refs) {
-    auto layer = room.layer(ref);
+    auto layer = room.layers().find(ref);
     if (!layer) {
       Error problem = layer.error();
       problem.field = field;

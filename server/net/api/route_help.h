@@ -10,12 +10,13 @@
 #include <vector>
 
 #include "core/uuid.h"
-#include "domain/layers/layer.h"
-#include "domain/scene/model.h"
 #include "net/api/route_context.h"
 #include "net/http/router.h"
 #include "protocol/parse.h"
 
+namespace strata {
+struct Layer;
+}  // namespace strata
 namespace strata::room {
 class Room;
 struct EditRequest;

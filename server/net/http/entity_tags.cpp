@@ -8,7 +8,11 @@
 #include "domain/scene/look.h"
 #include "domain/scene/model.h"
 #include "net/api/route_help.h"
+#include "room/edits.h"
+#include "room/layers.h"
+#include "room/looks.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/content/layers.h"
 #include "store/content/looks.h"
 #include "store/content/models.h"
@@ -56,21 +60,21 @@ std::optional<std::int64_t> past_sequence(const Request& request) {
 // What the room has in memory, which follows the database a moment later. `past`: an answer shows
 // that sequence in place of the newest.
 bool add_room(std::string& text, const room::Room& room, std::optional<std::int64_t> past = {}) {
-  const std::int64_t durable = room.durable_sequence();
+  const std::int64_t durable = room.edits().durable_sequence();
   const bool is_past = past && *past <= durable;
-  if (!is_past && room.sequence() != durable) return false;
+  if (!is_past && room.edits().sequence() != durable) return false;
   const Model model = room.model();
   add(text, model.id);
   add(text, model.version);
   add(text, is_past ? *past : durable);
-  for (const Layer& layer : room.layers()) {
+  for (const Layer& layer : room.layers().all()) {
     add(text, layer.id);
     add(text, layer.version);
     // may come from terms, whose records change by themselves
     add(text, to_json(layer).at("palette").dump());
   }
   text += ';';
-  for (const Look& look : room.looks()) {
+  for (const Look& look : room.looks().all()) {
     add(text, look.id);
     add(text, look.version);
   }

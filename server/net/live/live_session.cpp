@@ -5,11 +5,22 @@
 #include "app/records/painted_keys.h"
 #include "net/auth/auth.h"
 #include "net/auth/kiosk_gate.h"
+#include "net/live/close_codes.h"
 #include "net/live/live_sockets.h"
-#include "net/serialization/wire.h"
+#include "net/serialization/edit_serialization.h"
+#include "net/serialization/point_serialization.h"
+#include "net/serialization/view_settings_serialization.h"
 #include "protocol/problem.h"
+#include "room/edit.h"
+#include "room/edits.h"
+#include "room/layers.h"
+#include "room/listener.h"
+#include "room/looks.h"
+#include "room/participants.h"
+#include "room/queries.h"
 #include "room/room.h"
 #include "store/journal/journal_reads.h"
+#include "stream/viewer.h"
 
 namespace strata::net {
 namespace {
@@ -89,8 +100,15 @@ LiveSession::Work LiveSession::on_text(const std::string& text) {
            ref);
     return {};
   }
-  std::visit([this](const auto& m) { on(m); }, *message);
-  return std::exchange(work_, {});
+  return std::visit(
+      [this](const auto& each) -> Work {
+        if constexpr (!std::is_void_v<decltype(on(each))>)
+          return on(each);
+        else
+          on(each);
+        return {};
+      },
+      *message);
 }
 
 void LiveSession::on_binary() {
@@ -103,7 +121,7 @@ void LiveSession::on_binary() {
 }
 
 void LiveSession::on_closed() {
-  std::shared_ptr<room::Member> leaving;
+  std::shared_ptr<room::Participant> leaving;
   {
     std::lock_guard lock(mutex_);
     leaving = std::move(member_);
@@ -131,7 +149,7 @@ void LiveSession::on(const protocol::Hello& message) {
                    "Pictures are sent as jpeg.", "accept"},
                   std::string());
 
-  std::shared_ptr<room::Member> joined = room_->join(
+  std::shared_ptr<room::Participant> joined = room_->participants().join(
       author(), portrait_, this,
       [socket = socket_, metrics = shared_->metrics](const stream::FrameMessages& frame) {
         ++metrics->frames_sent;
@@ -145,8 +163,8 @@ void LiveSession::on(const protocol::Hello& message) {
   welcome.role = static_cast<protocol::Role>(static_cast<int>(principal_.role));
   const Model model = room_->model();
   welcome.model = to_json(model, project_slug_);
-  for (const auto& layer : room_->layers()) welcome.layers.push_back(to_json(layer));
-  for (const auto& look : room_->looks()) welcome.looks.push_back(to_json(look));
+  for (const auto& layer : room_->layers().all()) welcome.layers.push_back(to_json(layer));
+  for (const auto& look : room_->looks().all()) welcome.looks.push_back(to_json(look));
   welcome.personal_view = personal_view_;
   const LiveLimits& limits = shared_->limits;
   welcome.limits.message_bytes = static_cast<int>(limits.message_bytes);
@@ -189,11 +207,13 @@ void LiveSession::on(const protocol::LayersUpdate& message) {
     refuse(done.error(), std::string());
 }
 
-void LiveSession::on(const protocol::StrokeBegin& message) {
-  if (!may_edit(message.id)) return;
-  if (!names_tool(message) && !has_records(message.layer)) return begin(message);
+LiveSession::Work LiveSession::on(const protocol::StrokeBegin& message) {
+  if (!may_edit(message.id)) return {};
   // to look for tool or record may block
-  work_ = [self = shared_from_this(), message] { self->begin(message); };
+  if (names_tool(message) || has_records(message.layer))
+    return [self = shared_from_this(), message] { self->begin(message); };
+  begin(message);
+  return {};
 }
 
 void LiveSession::begin(const protocol::StrokeBegin& message) {
@@ -208,15 +228,17 @@ void LiveSession::begin(const protocol::StrokeBegin& message) {
     refuse(begun.error(), message.id);
 }
 
-void LiveSession::on(const protocol::StrokeExtend& message) {
-  if (!may_edit(message.id)) return;
-  if (!shared_->strokes->lacks_start(owner_, message.stroke, message.n)) return paint(message);
+LiveSession::Work LiveSession::on(const protocol::StrokeExtend& message) {
+  if (!may_edit(message.id)) return {};
   // Only after a restart of the server: the batch before this one is in the journal, and reading it
   // may block.
-  work_ = [self = shared_from_this(), message] {
-    self->find_start(message);
-    self->paint(message);
-  };
+  if (shared_->strokes->lacks_start(owner_, message.stroke, message.n))
+    return [self = shared_from_this(), message] {
+      self->find_start(message);
+      self->paint(message);
+    };
+  paint(message);
+  return {};
 }
 
 void LiveSession::on(const protocol::StrokeEnd& message) {
@@ -224,10 +246,12 @@ void LiveSession::on(const protocol::StrokeEnd& message) {
     refuse(ended.error(), message.id);
 }
 
-void LiveSession::on(const protocol::EditRequest& message) {
-  if (!may_edit(message.id)) return;
-  if (!names_tool(message.edit) && !has_records(message.layer)) return edit(message);
-  work_ = [self = shared_from_this(), message] { self->edit(message); };
+LiveSession::Work LiveSession::on(const protocol::EditRequest& message) {
+  if (!may_edit(message.id)) return {};
+  if (names_tool(message.edit) || has_records(message.layer))
+    return [self = shared_from_this(), message] { self->edit(message); };
+  edit(message);
+  return {};
 }
 
 void LiveSession::edit(const protocol::EditRequest& message) {
@@ -267,13 +291,12 @@ void LiveSession::on(const protocol::Undo& message) { step_through_history(messa
 void LiveSession::on(const protocol::Redo& message) { step_through_history(message); }
 
 // Somebody else may have the record: what all hear tells whose it is.
-void LiveSession::on(const protocol::RecordEdit& message) {
-  if (!may_edit(ref_of(message.id))) return;
+LiveSession::Work LiveSession::on(const protocol::RecordEdit& message) {
+  if (!may_edit(ref_of(message.id))) return {};
   // to look for the record blocks
-  if (message.editing)
-    work_ = [self = shared_from_this(), message] { self->edit_record(message); };
-  else
-    shared_->editors->end({message.table, message.key}, member()->session(), tell_project());
+  if (message.editing) return [self = shared_from_this(), message] { self->edit_record(message); };
+  shared_->editors->end({message.table, message.key}, member()->session(), tell_project());
+  return {};
 }
 
 void LiveSession::edit_record(const protocol::RecordEdit& message) {
@@ -328,8 +351,8 @@ void LiveSession::on(const protocol::Pick& message) {
   const bool posted =
       shared_->queries->post([self = shared_from_this(), message, camera = *camera] {
         std::vector<std::string> layers;
-        for (const auto& layer : self->room_->layers()) layers.push_back(layer.slug);
-        auto point = self->room_->pick(camera, message.x, message.y, layers);
+        for (const auto& layer : self->room_->layers().all()) layers.push_back(layer.slug);
+        auto point = self->room_->queries().pick(camera, message.x, message.y, layers);
         if (!point) return self->refuse(point.error(), ref_of(message.id));
         self->send(to_picked(*point, message.id));
       });
@@ -374,7 +397,7 @@ void LiveSession::submit(room::EditRequest request, std::optional<BatchName> bat
   }
   if (const auto here = member()) here->edits();
   // The answer counts even when this connection is gone by then: the stroke book outlives it.
-  room_->edit(
+  room_->edits().submit(
       std::move(request),
       [weak = weak_from_this(), shared = shared_, id, batch](const room::EditAnswer& answer) {
         if (!answer.repeated) ++shared->metrics->edits.applied;
@@ -555,7 +578,7 @@ void LiveSession::send_presence() {
     own = member_->session();
   }
   protocol::Presence presence;
-  for (auto& person : room_->presence(own)) {
+  for (auto& person : room_->participants().presence(own)) {
     if (is_kiosk_name(person.user)) continue;  // nobody stands there whom one could talk to
     protocol::PresenceUser user;
     user.session = person.session;
@@ -583,7 +606,7 @@ void LiveSession::send_presence() {
 void LiveSession::resolve_pointer() {
   for (;;) {
     Pointer asked;
-    std::shared_ptr<room::Member> here;
+    std::shared_ptr<room::Participant> here;
     {
       std::lock_guard lock(mutex_);
       if (!pointer_ || !member_) {
@@ -594,7 +617,7 @@ void LiveSession::resolve_pointer() {
       here = member_;
     }
     // where, not what is there
-    auto point = room_->pick(asked.camera, asked.pixel.x, asked.pixel.y, {});
+    auto point = room_->queries().pick(asked.camera, asked.pixel.x, asked.pixel.y, {});
     here->pointer(point && point->hit ? std::optional(room::Pointing{point->position, asked.radius})
                                       : std::nullopt);
   }
@@ -629,14 +652,14 @@ bool LiveSession::has_view(int view_id, const std::string& ref) {
 }
 
 Result<Layer> LiveSession::layer_of(const protocol::LayerRef& ref) const {
-  auto layer = room_->layer(protocol::to_ref(ref));
+  auto layer = room_->layers().find(protocol::to_ref(ref));
   if (layer) return layer;
   Error problem = layer.error();
   if (problem.field.empty()) problem.field = "layer";
   return tl::unexpected(std::move(problem));
 }
 
-std::shared_ptr<room::Member> LiveSession::member() const {
+std::shared_ptr<room::Participant> LiveSession::member() const {
   std::lock_guard lock(mutex_);
   return member_;
 }

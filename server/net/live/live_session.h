@@ -12,6 +12,7 @@
 
 #include "app/strokes/editor_book.h"
 #include "app/strokes/stroke_book.h"
+#include "app/strokes/tool_shelf.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
 #include "domain/scene/look.h"
@@ -21,9 +22,12 @@
 #include "net/http/http_types.h"
 #include "net/http/token_bucket.h"
 #include "net/http/worker_pool.h"
-#include "net/serialization/wire.h"
+#include "net/live/live_limits.h"
 #include "protocol/messages.h"
 #include "protocol/parse.h"
+#include "room/edit.h"
+#include "room/listener.h"
+#include "room/participants.h"
 #include "room/room.h"
 #include "store/store.h"
 
@@ -39,17 +43,6 @@ class LiveSocket {
   virtual void close(int code, std::string reason) = 0;
   // on the socket's strand
   virtual void run_after(std::chrono::milliseconds delay, std::function<void()> work) = 0;
-};
-
-struct LiveLimits {
-  std::size_t message_bytes = 256 * 1024;
-  double messages_per_second = 500;
-  double burst = 1000;
-  int max_refusals = 2000;  // more refused for speed than taken, then the connection is closed
-  int views = room::Member::kMaxViews;
-  std::chrono::milliseconds presence_every{50};
-  // more make it rarer: to one session goes the same in a second, however many are there
-  int presence_people = 8;
 };
 
 class LiveSockets;
@@ -70,11 +63,6 @@ struct LiveShared {
   CheckRecord check_record;
   LiveLimits limits;
 };
-
-// WebSocket close codes (RFC 6455).
-constexpr int kCloseGoingAway = 1001;
-constexpr int kClosePolicy = 1008;
-constexpr int kCloseTryAgain = 1013;
 
 // One person at one model: subprotocol strata.v1, see protocol/messages. `on_text` and `on_closed`
 // are called on the socket's strand; what the room tells arrives on the room's.
@@ -117,13 +105,13 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   void on(const protocol::Hello& message);
   void on(const protocol::CameraUpdate& message);
   void on(const protocol::LayersUpdate& message);
-  void on(const protocol::StrokeBegin& message);
-  void on(const protocol::StrokeExtend& message);
+  Work on(const protocol::StrokeBegin& message);
+  Work on(const protocol::StrokeExtend& message);
   void on(const protocol::StrokeEnd& message);
-  void on(const protocol::EditRequest& message);
+  Work on(const protocol::EditRequest& message);
   void on(const protocol::Undo& message);
   void on(const protocol::Redo& message);
-  void on(const protocol::RecordEdit& message);
+  Work on(const protocol::RecordEdit& message);
   void on(const protocol::Ack& message);
   void on(const protocol::PresenceUpdate& message);
   void on(const protocol::Pick& message);
@@ -147,7 +135,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   bool has_view(int view_id, const std::string& ref);
   Result<Layer> layer_of(const protocol::LayerRef& ref) const;
   bool has_records(const protocol::LayerRef& ref) const;
-  std::shared_ptr<room::Member> member() const;
+  std::shared_ptr<room::Participant> member() const;
   void resolve_pointer();
   void send_presence();
   void send(const protocol::ServerMessage& message);
@@ -166,11 +154,10 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   // On the socket's strand.
   TokenBucket bucket_;
   int refusals_ = 0;
-  Work work_;
   std::map<int, Camera> cameras_;
 
   mutable std::mutex mutex_;
-  std::shared_ptr<room::Member> member_;
+  std::shared_ptr<room::Participant> member_;
   std::unordered_map<Uuid, bool> own_edits_;  // on their way; true: applied
   bool presence_scheduled_ = false;
   std::chrono::steady_clock::time_point presence_sent_{};

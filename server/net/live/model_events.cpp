@@ -1,7 +1,7 @@
 #include "net/live/model_events.h"
 
 #include "net/auth/still_welcome.h"
-#include "net/serialization/activity_wire.h"
+#include "net/serialization/activity_serialization.h"
 #include "store/content/models.h"
 #include "store/content/projects.h"
 #include "store/store.h"

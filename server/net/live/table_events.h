@@ -5,6 +5,7 @@
 #include "app/change_notifier.h"
 #include "net/live/live_sockets.h"
 #include "room/room.h"
+#include "room/rooms.h"
 
 namespace strata::net {
 

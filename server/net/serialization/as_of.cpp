@@ -3,7 +3,10 @@
 #include <charconv>
 
 #include "core/text/timestamp.h"
+#include "room/edits.h"
+#include "room/layers.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/journal/journal_reads.h"
 #include "store/store.h"
 
@@ -24,9 +27,9 @@ Result<std::optional<std::int64_t>> find_sequence(const RouteContext& context,
                                                   const std::optional<protocol::At>& at) {
   if (!at) return std::nullopt;
   if (const auto* sequence = std::get_if<std::int64_t>(&*at)) {
-    if (*sequence >= 0 && *sequence <= room.sequence()) return *sequence;
+    if (*sequence >= 0 && *sequence <= room.edits().sequence()) return *sequence;
     return fail(ErrorCode::invalid, "Not yet there",
-                "`at` is a sequence from 0 to " + std::to_string(room.sequence()) +
+                "`at` is a sequence from 0 to " + std::to_string(room.edits().sequence()) +
                     ", the newest of this model.",
                 "at");
   }
@@ -43,9 +46,9 @@ Result<std::optional<std::int64_t>> find_sequence(const RouteContext& context,
 
 Result<LayerQuery> LayerQuery::from(const RouteContext& context, const Request& request) {
   auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
-  auto layer = STRATA_TRY(room->layer(request.param("layer")));
+  auto layer = STRATA_TRY(room->layers().find(request.param("layer")));
   const auto at = STRATA_TRY(find_sequence(context, *room, as_of(request)));
-  const auto sequence = at.value_or(room->sequence());
+  const auto sequence = at.value_or(room->edits().sequence());
   return LayerQuery{std::move(room), std::move(layer), at, sequence};
 }
 

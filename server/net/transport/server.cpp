@@ -16,6 +16,7 @@
 
 #include "core/log.h"
 #include "net/api/api.h"
+#include "net/live/close_codes.h"
 #include "net/transport/certificate.h"
 #include "net/transport/http_session.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "net/live/live_session.h"
+#include "net/live/live_limits.h"
 
 namespace strata::net {
 

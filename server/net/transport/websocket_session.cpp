@@ -11,6 +11,7 @@
 #include <deque>
 
 #include "core/log.h"
+#include "net/live/close_codes.h"
 #include "net/transport/on_worker.h"
 
 namespace strata::net {

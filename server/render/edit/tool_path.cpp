@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include "media/shape_texture.h"
 
 namespace strata::render {
 namespace {

@@ -41,7 +41,7 @@ ShadeInput::Patterns patterns_of(const FrameRequest& request, const mesh::Geomet
   // Any cell of the pattern serves as the first; numbers that stay small keep it sharp.
   const auto near = [](double v) { return static_cast<float>(std::clamp(v, -1e6, 1e6)); };
   return {{near(origin.x), near(origin.y)},
-          static_cast<float>(std::clamp(pixel * request.unit_mm, 1e-30, 1e30)),
+          static_cast<float>(std::clamp(pixel * request.style.unit_mm, 1e-30, 1e30)),
           static_cast<float>(size.x / camera.width)};
 }
 
@@ -122,7 +122,7 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
     return fail(ErrorCode::invalid, "Size out of range",
                 "A picture is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.", "width");
   }
-  for (const LayerStyle& style : request.layers) {
+  for (const LayerStyle& style : request.style.layers) {
     auto layer = STRATA_TRY(scene.layer(style.layer));
     if (layer->model() != view.model)
       return fail(ErrorCode::invalid, "Layer of another model",
@@ -135,11 +135,11 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
     }
     layer_uses_.push_back(layer->use(view.last_used));
   }
-  STRATA_TRY(validate(request.light));
-  if (request.looks.size() > kMaxLooksShown)
+  STRATA_TRY(validate(request.style.light));
+  if (request.style.looks.size() > kMaxLooksShown)
     return fail(ErrorCode::invalid, "Too many looks",
                 "A view shows at most " + std::to_string(kMaxLooksShown) + " looks.", "looks");
-  for (const LookStyle& style : request.looks) {
+  for (const LookStyle& style : request.style.looks) {
     auto look = STRATA_TRY(scene.look(style.look));
     if (look->model != view.model)
       return fail(ErrorCode::invalid, "Look of another model",
@@ -150,8 +150,8 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   auto key = depth_key(view.model, request.camera, request.width, request.height);
   view.drawing = true;
   const auto has_gbuffer = [&](const DepthKey& wanted) {
-    return view.gbuffer_complete && view.key == wanted && view.looks == request.looks &&
-           view.lighting == request.light;
+    return view.gbuffer_complete && view.key == wanted && view.looks == request.style.looks &&
+           view.lighting == request.style.light;
   };
   if (request.moving) {
     key.level = view.key.level;  // what there is of this camera serves
@@ -160,13 +160,13 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
     key.level = level;
   }
   if (has_gbuffer(key)) return {};
-  view.looks = request.looks;
-  view.lighting = request.light;
+  view.looks = request.style.looks;
+  view.lighting = request.style.light;
   return prepare_gbuffer(view, key, scene.depths(), scene.memory());
 }
 
 Result<bool> FrameJob::bring_layers(GpuScene& scene) {
-  for (const LayerStyle& style : task_.request.layers) {
+  for (const LayerStyle& style : task_.request.style.layers) {
     auto layer = STRATA_TRY(scene.layer(style.layer));
     const auto here = layer->bring();
     if (!here || !*here) return here;
@@ -222,8 +222,8 @@ Result<void> FrameJob::choose_area(GpuScene& scene, View& view) {
   } else {
     frame_.rects = {{0, 0, request.width, request.height}};
     std::vector<shader::MarkSegment> pieces;
-    if (request.marks)
-      pieces = project_marks(*request.marks, request.camera, request.width, request.height,
+    if (request.style.marks)
+      pieces = project_marks(*request.style.marks, request.camera, request.width, request.height,
                              {view.key.level == 0 ? kMarkReach_px : kMarkReachOfCopies_px,
                               glm::distance(geometry.box_min, geometry.box_max)});
     const bool cut_open = !request.camera.section.empty() && eye_is_cut_away(request.camera);
@@ -243,8 +243,9 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   const FrameRequest& request = task_.request;
   auto model = STRATA_TRY(scene.model(view.model));
   const PixelRect& rect = frame_.rects[shaded_.rect];
-  const int rows = std::max(
-      1, scene.pixels_per_band() / (rect.width * (1 + static_cast<int>(request.layers.size()))));
+  const int rows =
+      std::max(1, scene.pixels_per_band() /
+                      (rect.width * (1 + static_cast<int>(request.style.layers.size()))));
   const PixelRect band{rect.x, rect.y + shaded_.done, rect.width,
                        std::min(rows, rect.height - shaded_.done)};
   ShadeInput input{view.uv,
@@ -252,11 +253,11 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
                    view.shading,
                    band,
                    intersection(band, surface_),
-                   request.background,
+                   request.style.background,
                    request.background_rows,
                    {},
                    patterns_of(request, model->mesh().geometry())};
-  for (const LayerStyle& style : request.layers) {
+  for (const LayerStyle& style : request.style.layers) {
     auto layer = STRATA_TRY(scene.layer(style.layer));
     input.layers.push_back({&layer->textures(), style.palette, style.opacity, style.bare});
   }
@@ -278,11 +279,11 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   if (!complete(shaded_)) return false;
   pixels_.submit();
   view.picture_complete = true;
-  view.layers = request.layers;
-  view.background = request.background;
+  view.layers = request.style.layers;
+  view.background = request.style.background;
   view.background_rows = request.background_rows;
-  view.unit_mm = request.unit_mm;
-  view.marks = request.marks;
+  view.unit_mm = request.style.unit_mm;
+  view.marks = request.style.marks;
   return true;
 }
 

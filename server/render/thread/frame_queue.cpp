@@ -29,10 +29,9 @@ void inherit(FrameRequest& request, const FrameRequest& other) {
 // surface.
 bool same_picture(const FrameRequest& a, const FrameRequest& b) {
   return a.model != 0 && a.model == b.model && a.moving == b.moving && a.width == b.width &&
-         a.height == b.height && a.camera == b.camera && a.layers == b.layers &&
-         a.looks == b.looks && a.marks == b.marks && a.light == b.light && a.unit_mm == b.unit_mm &&
-         a.background == b.background && a.background_rows == b.background_rows &&
-         a.large == b.large && a.align_to_16 == b.align_to_16;
+         a.height == b.height && a.camera == b.camera && a.style == b.style &&
+         a.background_rows == b.background_rows && a.large == b.large &&
+         a.align_to_16 == b.align_to_16;
 }
 
 }  // namespace

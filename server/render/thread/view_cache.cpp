@@ -17,9 +17,9 @@ void View::drop_buffers() {
 }
 
 bool View::shows(const FrameRequest& request) const {
-  return picture_complete && unit_mm == request.unit_mm && background == request.background &&
-         background_rows == request.background_rows && layers == request.layers &&
-         marks == request.marks;
+  return picture_complete && unit_mm == request.style.unit_mm &&
+         background == request.style.background && background_rows == request.background_rows &&
+         layers == request.style.layers && marks == request.style.marks;
 }
 
 Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& depths,

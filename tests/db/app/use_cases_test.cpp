@@ -11,6 +11,9 @@
 #include "app/layers/formula_layers.h"
 #include "app/layers/recomputer.h"
 #include "app/services.h"
+#include "room/edits.h"
+#include "room/layers.h"
+#include "room/queries.h"
 #include "store/content/layers.h"
 #include "support/room_fixture.h"
 
@@ -39,7 +42,7 @@ class NobodyListens final : public ChangeNotifier {
 class UseCases : public RoomTest {
  protected:
   Services services() { return {*store_, *rooms_, counters_, nobody_}; }
-  double highest(const std::string& layer) { return room()->statistics(layer)->max; }
+  double highest(const std::string& layer) { return room()->queries().statistics(layer)->max; }
 
   // A layer of double what is painted on the source.
   Layer make_double(const Layer& source) {
@@ -84,7 +87,7 @@ TEST_F(UseCases, an_edit_that_is_refused_is_counted_and_its_layer_is_taken_back)
   const Layer source = make_layer(ValueType::u8, 2048, "values");
   ASSERT_TRUE(send(stroke(source, 5, {{320, 240}}, 20)));
   const Layer twice = make_double(source);
-  ASSERT_TRUE(room()->bin_layer(source.id, {.key = {}, .make = {}, .user = "carl"}));
+  ASSERT_TRUE(room()->layers().put_in_trash(source.id, {.key = {}, .make = {}, .user = "carl"}));
   Progress progress;
   const auto now = store_->layers().find(model_.id, twice.slug, Role::owner);
   ASSERT_TRUE(now);
@@ -99,7 +102,7 @@ TEST_F(UseCases, what_was_in_the_trash_for_long_enough_is_erased_and_nothing_els
               other = make_layer(ValueType::u8, 2048, "new");
   ASSERT_TRUE(send(stroke(layer, 9, {{320, 240}}, 20)));
   ASSERT_TRUE(send(stroke(other, 9, {{320, 240}}, 20)));
-  ASSERT_TRUE(room()->bin_layer(layer.id, {.key = {}, .make = {}, .user = "carl"}));
+  ASSERT_TRUE(room()->layers().put_in_trash(layer.id, {.key = {}, .make = {}, .user = "carl"}));
   const auto in_trash = [&] {
     return store_->bin()
         .of_project(model_.project_id, {Role::owner, std::chrono::days(30)}, 10, 0)
@@ -114,7 +117,7 @@ TEST_F(UseCases, what_was_in_the_trash_for_long_enough_is_erased_and_nothing_els
   keeper.look();
   EXPECT_TRUE(wait_until([&] { return in_trash() == 0; }));
   keeper.stop();
-  EXPECT_TRUE(room()->layer(other.slug));
+  EXPECT_TRUE(room()->layers().find(other.slug));
   EXPECT_EQ(highest(other.slug), 9);
 }
 
@@ -126,7 +129,7 @@ TEST_F(UseCases, a_figure_is_drawn_to_a_file_that_goes_with_its_last_owner) {
   request.role = Role::viewer;
   request.layers = {layer};
   request.shown.layers.emplace({std::to_string(layer.id)});
-  request.shown.at = room()->durable_sequence();
+  request.shown.at = room()->edits().durable_sequence();
   request.plane = figure::plane_from(figure::Direction::top, model_.up);
   request.from = "top";
   request.dpi = 100;

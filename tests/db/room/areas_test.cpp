@@ -6,6 +6,10 @@
 #include <cmath>
 
 #include "domain/layers/mask_texels.h"
+#include "room/edit.h"
+#include "room/edits.h"
+#include "room/place.h"
+#include "room/queries.h"
 #include "support/room_fixture.h"
 
 namespace strata {
@@ -51,7 +55,7 @@ class RoomAreas : public RoomTest {
   }
 
   TileMap tiles(const std::string& slug, std::optional<std::int64_t> at = {}) {
-    auto snapshot = room()->tiles(slug, at);
+    auto snapshot = room()->queries().tiles(slug, at);
     EXPECT_TRUE(snapshot) << (snapshot ? "" : snapshot.error().detail);
     return snapshot ? snapshot->tiles : TileMap{};
   }
@@ -147,20 +151,20 @@ TEST_F(RoomAreas, a_fill_over_a_layer_that_is_not_there_is_refused_and_paints_no
   ASSERT_FALSE(answer);
   EXPECT_EQ(answer.error().code, ErrorCode::invalid);
   EXPECT_EQ(answer.error().field, "where");
-  EXPECT_EQ(room()->sequence(), 0);
+  EXPECT_EQ(room()->edits().sequence(), 0);
   EXPECT_TRUE(tiles("marks").empty());
 }
 
 TEST_F(RoomAreas, a_layer_can_be_filled_by_what_it_holds_itself) {
   ASSERT_TRUE(send(stroke(marks_, 3, {{300, 240}}, 30)));
   ASSERT_TRUE(send(stroke(marks_, 4, {{340, 240}}, 30)));
-  const auto before = room()->statistics("marks");
+  const auto before = room()->queries().statistics("marks");
   FillEdit fill;
   fill.erase = true;
   fill.region = FillEdit::Where{of(Op::greater, {layer_value("marks"), number(3)})};
   const auto answer = send(request(marks_, fill));
   ASSERT_TRUE(answer) << answer.error().detail;
-  const auto after = room()->statistics("marks");
+  const auto after = room()->queries().statistics("marks");
   EXPECT_FALSE(after->keys.contains(4));
   EXPECT_EQ(after->keys.at(3).texels, before->keys.at(3).texels);
   EXPECT_EQ(answer->texels_changed, before->keys.at(4).texels);
@@ -173,7 +177,7 @@ TEST_F(RoomAreas, the_piece_under_a_pixel_is_the_whole_pot_across_all_its_seams)
   const auto edit = request(marks_, fill);
   expect_durable_and_undoable(marks_, edit);
   const double area_m2 = room()->model().area_m2();
-  EXPECT_NEAR(room()->statistics("marks")->area_m2, area_m2, area_m2 * 1e-3);
+  EXPECT_NEAR(room()->queries().statistics("marks")->area_m2, area_m2, area_m2 * 1e-3);
   // The same from a point in space, for another layer.
   fill.region = FillEdit::Island{(model_.bounds_min + model_.bounds_max) * 0.5};
   const auto answer = send(request(wet_, fill));
@@ -185,12 +189,12 @@ TEST_F(RoomAreas, what_is_connected_with_a_place_is_filled_and_nothing_else) {
   ASSERT_TRUE(send(stroke(marks_, 3, {{260, 240}}, 25)));
   const TileMap one = tiles("marks");
   ASSERT_TRUE(send(stroke(marks_, 3, {{380, 240}}, 25)));
-  const auto both = room()->statistics("marks")->keys.at(3).texels;
+  const auto both = room()->queries().statistics("marks")->keys.at(3).texels;
   FillEdit fill;
   fill.value_bits = 7;
   fill.region = FillEdit::Connected{room::PixelPlace{view(), 380, 240}};
   expect_durable_and_undoable(marks_, request(marks_, fill));
-  const auto keys = room()->statistics("marks")->keys;
+  const auto keys = room()->queries().statistics("marks")->keys;
   EXPECT_EQ(keys.at(3).texels + keys.at(7).texels, both);
   for (const auto& [address, tile] : one)
     for_each_texel(tile->valid, [&, tile = tile](int texel) {
@@ -200,12 +204,12 @@ TEST_F(RoomAreas, what_is_connected_with_a_place_is_filled_and_nothing_else) {
 
 TEST_F(RoomAreas, from_where_nothing_is_all_that_holds_nothing_is_filled) {
   ASSERT_TRUE(send(stroke(marks_, 3, {{320, 240}}, 40)));
-  const auto painted = room()->statistics("marks")->texels;
+  const auto painted = room()->queries().statistics("marks")->texels;
   FillEdit fill;
   fill.value_bits = 1;
   fill.region = FillEdit::Connected{room::PixelPlace{view(), 320, 320}};
   ASSERT_TRUE(send(request(marks_, fill)));
-  const auto statistics = room()->statistics("marks");
+  const auto statistics = room()->queries().statistics("marks");
   EXPECT_EQ(statistics->keys.at(3).texels, painted);
   const double area_m2 = room()->model().area_m2();
   EXPECT_NEAR(statistics->area_m2, area_m2, area_m2 * 2e-3);
@@ -218,7 +222,7 @@ TEST_F(RoomAreas, a_place_beside_the_model_is_refused) {
   ASSERT_FALSE(answer);
   EXPECT_EQ(answer.error().code, ErrorCode::invalid);
   EXPECT_EQ(answer.error().field, "at");
-  EXPECT_EQ(room()->sequence(), 0);
+  EXPECT_EQ(room()->edits().sequence(), 0);
 }
 
 TEST_F(RoomAreas, a_polygon_paints_what_a_square_brush_of_its_shape_does) {
@@ -252,7 +256,7 @@ TEST_F(RoomAreas, a_polygon_erases_and_its_notch_stays) {
   edit.erase = true;
   ASSERT_TRUE(send(request(marks_, edit)));
   const auto value_at = [&](double x, double y) {
-    return room()->pick(view(), x, y, {"marks"})->values.at(0);
+    return room()->queries().pick(view(), x, y, {"marks"})->values.at(0);
   };
   EXPECT_FALSE(value_at(320, 180).valid);
   EXPECT_FALSE(value_at(230, 250).valid);

@@ -4,7 +4,13 @@
 #include <future>
 #include <thread>
 
+#include "room/edit.h"
+#include "room/edits.h"
+#include "room/listener.h"
+#include "room/participants.h"
+#include "room/queries.h"
 #include "support/room_fixture.h"
+#include "support/whole_picture.h"
 
 namespace strata {
 namespace {
@@ -17,10 +23,10 @@ TEST_F(RoomTest, a_stroke_is_there_after_a_restart) {
   ASSERT_TRUE(answer) << answer.error().detail;
   EXPECT_EQ(answer->sequence, 1);
   EXPECT_GT(answer->texels_changed, 100u);
-  const auto before = room()->tiles("layer", {});
+  const auto before = room()->queries().tiles("layer", {});
   ASSERT_TRUE(before);
   restart();
-  const auto after = room()->tiles("layer", {});
+  const auto after = room()->queries().tiles("layer", {});
   ASSERT_TRUE(after);
   EXPECT_TRUE(test::equal(before->tiles, after->tiles));
   EXPECT_EQ(after->sequence, 1);
@@ -39,7 +45,7 @@ TEST_F(RoomTest, a_repeated_id_gets_the_first_answer_and_paints_nothing) {
     EXPECT_TRUE(again->repeated);
     EXPECT_EQ(again->sequence, first->sequence);
     EXPECT_EQ(again->texels_changed, first->texels_changed);
-    EXPECT_EQ(room()->sequence(), 2);
+    EXPECT_EQ(room()->edits().sequence(), 2);
   }
 }
 
@@ -47,19 +53,19 @@ TEST_F(RoomTest, annas_undo_leaves_what_ben_painted_over_it) {
   const Layer layer = make_layer(ValueType::u8);
   ASSERT_TRUE(send(stroke(layer, 1, {{300, 240}}, 30, "anna")));
   ASSERT_TRUE(send(stroke(layer, 2, {{340, 240}}, 30, "ben")));
-  const auto both = room()->statistics("layer");
+  const auto both = room()->queries().statistics("layer");
   ASSERT_TRUE(both);
   auto undone = send(request(layer, room::UndoEdit{}, "anna"));
   ASSERT_TRUE(undone) << undone.error().detail;
-  auto left = room()->statistics("layer");
+  auto left = room()->queries().statistics("layer");
   EXPECT_FALSE(left->keys.contains(1));
   EXPECT_EQ(left->keys.at(2).texels, both->keys.at(2).texels);
   // Ben undoes too: nothing is left. Both redo: all is as it was.
   ASSERT_TRUE(send(request(layer, room::UndoEdit{}, "ben")));
-  EXPECT_EQ(room()->statistics("layer")->texels, 0u);
+  EXPECT_EQ(room()->queries().statistics("layer")->texels, 0u);
   ASSERT_TRUE(send(request(layer, room::RedoEdit{}, "anna")));
   ASSERT_TRUE(send(request(layer, room::RedoEdit{}, "ben")));
-  left = room()->statistics("layer");
+  left = room()->queries().statistics("layer");
   EXPECT_EQ(left->keys.at(1).texels, both->keys.at(1).texels);
   EXPECT_EQ(left->keys.at(2).texels, both->keys.at(2).texels);
   EXPECT_FALSE(send(request(layer, room::RedoEdit{}, "anna")));
@@ -76,13 +82,13 @@ TEST_F(RoomTest, undo_takes_back_a_whole_stroke_and_survives_a_restart) {
     std::get<room::StrokeEdit>(next.edit).n = n;
     ASSERT_TRUE(send(next));
   }
-  const auto painted = room()->tiles("layer", {});
+  const auto painted = room()->queries().tiles("layer", {});
   restart();
   ASSERT_TRUE(send(request(layer, room::UndoEdit{})));
-  EXPECT_TRUE(room()->tiles("layer", {})->tiles.empty());
+  EXPECT_TRUE(room()->queries().tiles("layer", {})->tiles.empty());
   restart();
   ASSERT_TRUE(send(request(layer, room::RedoEdit{})));
-  EXPECT_TRUE(test::equal(room()->tiles("layer", {})->tiles, painted->tiles));
+  EXPECT_TRUE(test::equal(room()->queries().tiles("layer", {})->tiles, painted->tiles));
 }
 
 TEST_F(RoomTest, filled_everywhere_the_area_is_that_of_the_mesh) {
@@ -92,24 +98,24 @@ TEST_F(RoomTest, filled_everywhere_the_area_is_that_of_the_mesh) {
     ASSERT_TRUE(answer) << answer.error().detail;
     const double area_m2 = room()->model().area_m2();
     EXPECT_NEAR(answer->area_m2, area_m2, area_m2 * 1e-3);
-    auto statistics = room()->statistics(layer.slug);
+    auto statistics = room()->queries().statistics(layer.slug);
     EXPECT_NEAR(statistics->area_m2, area_m2, area_m2 * 1e-3);
     ASSERT_TRUE(send(request(layer, room::FillEdit{true, 0})));
-    EXPECT_EQ(room()->statistics(layer.slug)->texels, 0u);
+    EXPECT_EQ(room()->queries().statistics(layer.slug)->texels, 0u);
   }
 }
 
 TEST_F(RoomTest, a_layer_is_restored_to_a_sequence_and_that_can_be_undone) {
   const Layer layer = make_layer(ValueType::f32);
   ASSERT_TRUE(send(stroke(layer, 0.25, {{320, 240}}, 25)));
-  const auto first = room()->tiles("layer", {});
+  const auto first = room()->queries().tiles("layer", {});
   ASSERT_TRUE(send(stroke(layer, 0.5, {{330, 250}}, 25)));
-  const auto second = room()->tiles("layer", {});
+  const auto second = room()->queries().tiles("layer", {});
   ASSERT_TRUE(send(request(layer, room::RestoreEdit{1})));
-  EXPECT_TRUE(test::equal(room()->tiles("layer", {})->tiles, first->tiles));
-  EXPECT_TRUE(test::equal(room()->tiles("layer", 2)->tiles, second->tiles));
+  EXPECT_TRUE(test::equal(room()->queries().tiles("layer", {})->tiles, first->tiles));
+  EXPECT_TRUE(test::equal(room()->queries().tiles("layer", 2)->tiles, second->tiles));
   ASSERT_TRUE(send(request(layer, room::UndoEdit{})));
-  EXPECT_TRUE(test::equal(room()->tiles("layer", {})->tiles, second->tiles));
+  EXPECT_TRUE(test::equal(room()->queries().tiles("layer", {})->tiles, second->tiles));
 }
 
 TEST_F(RoomTest, many_strokes_at_once_keep_their_order) {
@@ -119,16 +125,17 @@ TEST_F(RoomTest, many_strokes_at_once_keep_their_order) {
   for (int i = 1; i <= 60; ++i) {
     auto promise = std::make_shared<std::promise<Result<room::EditAnswer>>>();
     answers.push_back(promise->get_future());
-    r->edit(stroke(layer, i, {{300.0 + i % 7, 240}}, 12), {},
-            [promise](Result<room::EditAnswer> answer) { promise->set_value(std::move(answer)); });
+    r->edits().submit(
+        stroke(layer, i, {{300.0 + i % 7, 240}}, 12), {},
+        [promise](Result<room::EditAnswer> answer) { promise->set_value(std::move(answer)); });
   }
   for (int i = 0; i < 60; ++i) {
     auto answer = answers[i].get();
     ASSERT_TRUE(answer);
     EXPECT_EQ(answer->sequence, i + 1);
   }
-  const auto live = r->tiles("layer", {});
-  const auto stored = r->tiles("layer", 60);
+  const auto live = r->queries().tiles("layer", {});
+  const auto stored = r->queries().tiles("layer", 60);
   ASSERT_TRUE(stored);
   EXPECT_TRUE(test::equal(live->tiles, stored->tiles));
 }
@@ -136,22 +143,22 @@ TEST_F(RoomTest, many_strokes_at_once_keep_their_order) {
 TEST_F(RoomTest, a_lost_context_comes_back_with_every_layer) {
   const Layer layer = make_layer(ValueType::u8);
   ASSERT_TRUE(send(stroke(layer, 90, {{320, 240}, {360, 260}}, 25)));
-  const auto before = room()->picture({}, camera({0.3, -1, 0.4}));
+  const auto before = test::whole_picture(room()->pictures(), {}, camera({0.3, -1, 0.4}));
   ASSERT_TRUE(before);
   renderer_->lose_context_for_test();
   // The room refuses while the GPU is rebuilt; then the picture is the same.
-  Result<render::Frame> after = fail(ErrorCode::unavailable, "", "");
+  Result<Picture> after = fail(ErrorCode::unavailable, "", "");
   for (int i = 0; i < 3000 && !after; ++i) {
-    after = room()->picture({}, camera({0.3, -1, 0.4}));
+    after = test::whole_picture(room()->pictures(), {}, camera({0.3, -1, 0.4}));
     if (!after) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   ASSERT_TRUE(after) << after.error().detail;
-  EXPECT_EQ(before->pixels, after->pixels);
+  EXPECT_EQ(before->rgba, after->rgba);
   auto answer = send(stroke(layer, 91, {{300, 200}}, 10));
   for (int i = 0; i < 3000 && !answer; ++i) answer = send(stroke(layer, 91, {{300, 200}}, 10));
   ASSERT_TRUE(answer);
-  EXPECT_TRUE(test::equal(room()->tiles("layer", {})->tiles,
-                          room()->tiles("layer", answer->sequence)->tiles));
+  EXPECT_TRUE(test::equal(room()->queries().tiles("layer", {})->tiles,
+                          room()->queries().tiles("layer", answer->sequence)->tiles));
 }
 
 // What the people in a room hear of failed saves.
@@ -180,10 +187,11 @@ void execute(const std::string& dsn, const char* sql) {
 TEST_F(RoomTest, edits_whose_commit_fails_are_taken_back_everywhere) {
   const Layer layer = make_layer(ValueType::u8);
   ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
-  const auto saved = room()->tiles("layer", {});
-  const auto picture = room()->picture({}, camera({0.3, -1, 0.4}));
+  const auto saved = room()->queries().tiles("layer", {});
+  const auto picture = test::whole_picture(room()->pictures(), {}, camera({0.3, -1, 0.4}));
   UnsavedEars ears;
-  auto member = room()->join({"anna", Role::owner}, {}, &ears, [](const stream::FrameMessages&) {});
+  auto member = room()->participants().join({"anna", Role::owner}, {}, &ears,
+                                            [](const stream::FrameMessages&) {});
 
   // Reading goes on, writing does not.
   execute(dsn_, "alter table edits add constraint no_more check (sequence < 2) not valid");
@@ -193,14 +201,15 @@ TEST_F(RoomTest, edits_whose_commit_fails_are_taken_back_everywhere) {
     auto promise = std::make_shared<std::promise<Result<room::EditAnswer>>>();
     answers.push_back(promise->get_future());
     lost.push_back(stroke(layer, 10 + i, {{320.0 + 10 * i, 240}}, 20));
-    room()->edit(lost.back(), {}, [promise](Result<room::EditAnswer> answer) {
+    room()->edits().submit(lost.back(), {}, [promise](Result<room::EditAnswer> answer) {
       promise->set_value(std::move(answer));
     });
   }
   for (auto& answer : answers) EXPECT_FALSE(answer.get());
-  EXPECT_TRUE(test::equal(room()->tiles("layer", {})->tiles, saved->tiles));
-  EXPECT_EQ(room()->picture({}, camera({0.3, -1, 0.4}))->pixels, picture->pixels);
-  EXPECT_EQ(room()->sequence(), 1);
+  EXPECT_TRUE(test::equal(room()->queries().tiles("layer", {})->tiles, saved->tiles));
+  EXPECT_EQ(test::whole_picture(room()->pictures(), {}, camera({0.3, -1, 0.4}))->rgba,
+            picture->rgba);
+  EXPECT_EQ(room()->edits().sequence(), 1);
   {
     std::lock_guard lock(ears.mutex);
     EXPECT_FALSE(ears.unsaved.empty());
@@ -208,21 +217,22 @@ TEST_F(RoomTest, edits_whose_commit_fails_are_taken_back_everywhere) {
 
   execute(dsn_, "alter table edits drop constraint no_more");
   for (const auto& edit : lost) ASSERT_TRUE(send(edit));
-  EXPECT_EQ(room()->durable_sequence(), 6);
-  EXPECT_TRUE(test::equal(room()->tiles("layer", {})->tiles, room()->tiles("layer", 6)->tiles));
+  EXPECT_EQ(room()->edits().durable_sequence(), 6);
+  EXPECT_TRUE(test::equal(room()->queries().tiles("layer", {})->tiles,
+                          room()->queries().tiles("layer", 6)->tiles));
 }
 
 TEST_F(RoomTest, with_the_database_gone_edits_are_refused_and_viewing_goes_on) {
   const Layer layer = make_layer(ValueType::u8);
   ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
-  const auto picture = room()->picture({}, camera());
+  const auto picture = test::whole_picture(room()->pictures(), {}, camera());
   auto& cluster = test::shared_cluster();
   // with its sessions, which may write for a moment after the postmaster is gone
   test::Hang(cluster).kill();
   auto edit = stroke(layer, 6, {{340, 240}}, 20);
   EXPECT_FALSE(send(edit));
-  EXPECT_EQ(room()->picture({}, camera())->pixels, picture->pixels);
-  EXPECT_EQ(room()->durable_sequence(), 1);
+  EXPECT_EQ(test::whole_picture(room()->pictures(), {}, camera())->rgba, picture->rgba);
+  EXPECT_EQ(room()->edits().durable_sequence(), 1);
 
   ASSERT_TRUE(cluster.ensure_running());
   Result<room::EditAnswer> resent = fail(ErrorCode::unavailable, "", "");
@@ -231,8 +241,8 @@ TEST_F(RoomTest, with_the_database_gone_edits_are_refused_and_viewing_goes_on) {
     if (!resent) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   ASSERT_TRUE(resent) << resent.error().detail;
-  EXPECT_TRUE(test::equal(room()->tiles("layer", {})->tiles,
-                          room()->tiles("layer", resent->sequence)->tiles));
+  EXPECT_TRUE(test::equal(room()->queries().tiles("layer", {})->tiles,
+                          room()->queries().tiles("layer", resent->sequence)->tiles));
 }
 
 TEST_F(RoomTest, every_type_is_painted_and_read_back) {
@@ -243,7 +253,7 @@ TEST_F(RoomTest, every_type_is_painted_and_read_back) {
   for (const auto& [type, value] : cases) {
     const Layer layer = make_layer(type, 2048, std::string(name(type)));
     ASSERT_TRUE(send(stroke(layer, value, {{320, 240}}, 20)));
-    auto picked = room()->pick(camera({0.3, -1, 0.4}), 320.5, 240.5, {layer.slug});
+    auto picked = room()->queries().pick(camera({0.3, -1, 0.4}), 320.5, 240.5, {layer.slug});
     ASSERT_TRUE(picked);
     ASSERT_TRUE(picked->hit);
     ASSERT_EQ(picked->values.size(), 1u);
@@ -258,7 +268,7 @@ TEST_F(RoomTest, the_painted_area_is_that_of_a_disc_on_a_flat_spot) {
   const Layer layer = make_layer(ValueType::u8, 4096);
   auto edit = stroke(layer, 1, {{320, 240}}, 0);
   auto& batch = std::get<room::StrokeEdit>(edit.edit).batch;
-  auto spot = room()->pick(batch.camera, 320.5, 240.5, {});
+  auto spot = room()->queries().pick(batch.camera, 320.5, 240.5, {});
   ASSERT_TRUE(spot && spot->hit);
   batch.camera = camera(glm::dvec3(spot->normal), true);
   // Where the spot is in the new window.

@@ -3,6 +3,10 @@
 #include <vector>
 
 #include "expression/expression_parser.h"
+#include "room/edit.h"
+#include "room/edits.h"
+#include "room/layers.h"
+#include "room/queries.h"
 #include "support/room_fixture.h"
 
 namespace strata {
@@ -13,14 +17,14 @@ using test::RoomTest;
 class LockedLayers : public RoomTest {
  protected:
   void lock(const Layer& layer, bool locked = true) {
-    auto now = room()->layer(layer.slug);
+    auto now = room()->layers().find(layer.slug);
     ASSERT_TRUE(now);
     now->locked = locked;
-    const auto changed = room()->update_layer(*now);
+    const auto changed = room()->layers().update(*now);
     ASSERT_TRUE(changed) << changed.error().detail;
     EXPECT_EQ(changed->locked, locked);
   }
-  TileMap tiles(const Layer& layer) { return room()->tiles(layer.slug, {})->tiles; }
+  TileMap tiles(const Layer& layer) { return room()->queries().tiles(layer.slug, {})->tiles; }
   room::EditRequest by_curator(room::EditRequest edit) const {
     edit.author.role = Role::curator;
     return edit;
@@ -59,7 +63,7 @@ TEST_F(LockedLayers, no_edit_below_curator_touches_a_locked_layer) {
   ASSERT_TRUE(send(request(layer, room::UndoEdit{})));
   lock(layer);
   const TileMap before = tiles(layer);
-  const auto sequence = room()->sequence();
+  const auto sequence = room()->edits().sequence();
   const auto edits = edits_of(camera({0.3, -1, 0.4}), other);
   for (const auto& [what, edit] : edits) {
     const auto refused = send(request(layer, edit));
@@ -70,7 +74,7 @@ TEST_F(LockedLayers, no_edit_below_curator_touches_a_locked_layer) {
     EXPECT_EQ(refused.error().field, "layer") << what;
   }
   EXPECT_TRUE(test::equal(tiles(layer), before));
-  EXPECT_EQ(room()->sequence(), sequence);
+  EXPECT_EQ(room()->edits().sequence(), sequence);
   restart();
   EXPECT_EQ(send(stroke(layer, 1, {{320, 240}}, 20)).error().code, ErrorCode::forbidden)
       << "the lock was forgotten";
@@ -115,8 +119,8 @@ TEST_F(LockedLayers, once_a_lock_is_answered_nothing_is_painted_any_more) {
     answers.push_back(start(stroke(layer, 2 + i, {{200.0 + 4 * i, 180.0 + 2 * i}}, 10)));
   lock(layer);
   const TileMap then = tiles(layer);
-  const auto sequence = room()->sequence();
-  EXPECT_EQ(room()->durable_sequence(), sequence);
+  const auto sequence = room()->edits().sequence();
+  EXPECT_EQ(room()->edits().durable_sequence(), sequence);
   for (auto& answer : answers) {
     const auto told = answer.get();
     if (told)
@@ -125,7 +129,7 @@ TEST_F(LockedLayers, once_a_lock_is_answered_nothing_is_painted_any_more) {
       EXPECT_EQ(told.error().code, ErrorCode::forbidden) << told.error().detail;
   }
   EXPECT_TRUE(test::equal(tiles(layer), then));
-  EXPECT_EQ(room()->sequence(), sequence);
+  EXPECT_EQ(room()->edits().sequence(), sequence);
   expect_room_equals_journal(layer);
 }
 
@@ -140,7 +144,7 @@ TEST_F(LockedLayers, a_locked_computed_layer_is_computed_by_the_server_itself_on
   wish.formula->expression = "source * 2";
   wish.formula->inputs = {{"source", source.id, {}}};
   wish.locked = true;
-  const auto made = room()->create_layer(wish);
+  const auto made = room()->layers().create(wish);
   ASSERT_TRUE(made) << made.error().detail;
   EXPECT_TRUE(made->locked);
   room::ComputeEdit compute;

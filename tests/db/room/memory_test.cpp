@@ -4,6 +4,9 @@
 #include <thread>
 
 #include "core/memory_ledger.h"
+#include "room/edit.h"
+#include "room/layers.h"
+#include "room/rooms.h"
 #include "store/content/models.h"
 #include "support/room_fixture.h"
 
@@ -80,7 +83,7 @@ TEST_F(RoomMemory, that_is_used_up_refuses_edits_until_something_is_given_back) 
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::out_of_memory);
   expect_room_equals_journal(first);
-  ASSERT_TRUE(room()->delete_layer(first.id, {}));
+  ASSERT_TRUE(room()->layers().erase(first.id, {}));
   EXPECT_TRUE(send_until_taken(stroke(second, 1, {{320, 240}}, 20)));
 }
 

@@ -6,6 +6,12 @@
 #include <numbers>
 
 #include "expression/expression_parser.h"
+#include "room/edit.h"
+#include "room/edits.h"
+#include "room/layers.h"
+#include "room/place.h"
+#include "room/queries.h"
+#include "room/selection.h"
 #include "store/tables/records.h"
 #include "store/tables/tables.h"
 #include "support/room_fixture.h"
@@ -29,21 +35,24 @@ class RoomQueries : public RoomTest {
     selection.where = *query::parse_condition(text, "where");
     return selection;
   }
-  glm::dvec3 seen_at(double x, double y) { return room()->pick(view(), x, y, {})->position; }
+  glm::dvec3 seen_at(double x, double y) {
+    return room()->queries().pick(view(), x, y, {})->position;
+  }
 
   Layer marks_, depth_;
 };
 
 TEST_F(RoomQueries, every_question_can_be_asked_of_the_past) {
   ASSERT_TRUE(send(stroke(marks_, 3, {{300, 240}}, 40)));
-  const auto then = room()->sequence();
-  const auto before = room()->statistics("marks");
+  const auto then = room()->edits().sequence();
+  const auto before = room()->queries().statistics("marks");
   ASSERT_TRUE(send(stroke(marks_, 9, {{320, 240}, {360, 240}}, 60)));
-  EXPECT_TRUE(room()->statistics("marks")->keys.contains(9));
+  EXPECT_TRUE(room()->queries().statistics("marks")->keys.contains(9));
 
   room::Selection past;
   past.at = then;
-  const auto again = room()->statistics("marks", past, {.quantiles = true, .pieces = true});
+  const auto again =
+      room()->queries().statistics("marks", past, {.quantiles = true, .pieces = true});
   ASSERT_TRUE(again) << again.error().detail;
   EXPECT_EQ(again->texels, before->texels);
   EXPECT_EQ(again->area_m2, before->area_m2);
@@ -52,12 +61,12 @@ TEST_F(RoomQueries, every_question_can_be_asked_of_the_past) {
   EXPECT_EQ((*again->quantiles)[2], 3);
 
   const glm::dvec3 place = seen_at(320, 240);
-  EXPECT_EQ(room()->position(place, {"marks"})->values[0].value, 9);
-  EXPECT_EQ(room()->position(place, {"marks"}, then)->values[0].value, 3);
-  EXPECT_EQ((*room()->positions({place}, {"marks"}, then))[0].values[0].value, 3);
-  EXPECT_EQ(room()->pick(view(), 320, 240, {"marks"}, then)->values[0].value, 3);
-  EXPECT_FALSE(room()->pick(view(), 320, 240, {"marks"}, 0)->values[0].valid);
-  const auto never = room()->statistics("marks", {.at = room()->sequence() + 1});
+  EXPECT_EQ(room()->queries().position(place, {"marks"})->values[0].value, 9);
+  EXPECT_EQ(room()->queries().position(place, {"marks"}, then)->values[0].value, 3);
+  EXPECT_EQ((*room()->queries().positions({place}, {"marks"}, then))[0].values[0].value, 3);
+  EXPECT_EQ(room()->queries().pick(view(), 320, 240, {"marks"}, then)->values[0].value, 3);
+  EXPECT_FALSE(room()->queries().pick(view(), 320, 240, {"marks"}, 0)->values[0].valid);
+  const auto never = room()->queries().statistics("marks", {.at = room()->edits().sequence() + 1});
   ASSERT_FALSE(never);
   EXPECT_EQ(never.error().code, ErrorCode::invalid);
   EXPECT_EQ(never.error().field, "at");
@@ -67,9 +76,9 @@ TEST_F(RoomQueries, a_selection_adds_up_to_what_the_layers_hold_there) {
   ASSERT_TRUE(send(stroke(marks_, 3, {{300, 240}}, 50)));
   ASSERT_TRUE(send(stroke(marks_, 4, {{420, 240}}, 30)));
   ASSERT_TRUE(send(stroke(depth_, 0.5, {{310, 240}}, 20)));
-  const auto all = room()->statistics("marks");
+  const auto all = room()->queries().statistics("marks");
 
-  const auto threes = room()->select(where("marks = 3"), {"marks", "depth"});
+  const auto threes = room()->queries().select(where("marks = 3"), {"marks", "depth"});
   ASSERT_TRUE(threes) << threes.error().detail;
   EXPECT_EQ(threes->resolution, 2048);
   EXPECT_EQ(threes->texels, all->keys.at(3).texels);
@@ -80,15 +89,16 @@ TEST_F(RoomQueries, a_selection_adds_up_to_what_the_layers_hold_there) {
   EXPECT_EQ(threes->bounds_min, all->keys.at(3).bounds_min);
   EXPECT_EQ(threes->bounds_max, all->keys.at(3).bounds_max);
 
-  const auto deep = room()->statistics("marks", where("valid(depth)"));
-  EXPECT_EQ(deep->texels, room()->select(where("valid(depth) and valid(marks)"), {})->texels);
-  const auto nothing = room()->select(where("marks > 200"), {"marks"});
+  const auto deep = room()->queries().statistics("marks", where("valid(depth)"));
+  EXPECT_EQ(deep->texels,
+            room()->queries().select(where("valid(depth) and valid(marks)"), {})->texels);
+  const auto nothing = room()->queries().select(where("marks > 200"), {"marks"});
   EXPECT_EQ(nothing->texels, 0u);
   EXPECT_EQ(nothing->layers.at("marks").texels, 0u);
-  const auto everywhere = room()->select({}, {});
+  const auto everywhere = room()->queries().select({}, {});
   EXPECT_NEAR(everywhere->share, 1, 1e-6);
   EXPECT_NEAR(everywhere->area_m2, model_.area * 1e-6, 1e-3 * everywhere->area_m2);
-  const auto unknown = room()->select(where("salt > 1"), {});
+  const auto unknown = room()->queries().select(where("salt > 1"), {});
   ASSERT_FALSE(unknown);
   EXPECT_EQ(unknown.error().field, "where");
 }
@@ -99,7 +109,7 @@ TEST_F(RoomQueries, around_a_place_lies_the_area_of_a_disc) {
   for (const double radius : {4.0, 8.0}) {
     room::Selection selection;
     selection.within = room::Selection::Around{place, radius};
-    const auto area = room()->select(selection, {});
+    const auto area = room()->queries().select(selection, {});
     ASSERT_TRUE(area) << area.error().detail;
     const double disc = std::numbers::pi * radius * radius * 1e-6;
     EXPECT_NEAR(area->area_m2, disc, 0.06 * disc) << radius;
@@ -107,7 +117,7 @@ TEST_F(RoomQueries, around_a_place_lies_the_area_of_a_disc) {
   }
   room::Selection nowhere;
   nowhere.within = room::Selection::Around{room::PixelPlace{view(), 2, 2}, 5};
-  const auto refused = room()->select(nowhere, {});
+  const auto refused = room()->queries().select(nowhere, {});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().field, "within.at");
 }
@@ -121,13 +131,13 @@ TEST_F(RoomQueries, inside_an_outline_lies_what_a_polygon_paints) {
   ASSERT_TRUE(painted);
   room::Selection selection;
   selection.within = room::Outline{view(), path, false};
-  const auto area = room()->select(selection, {"marks"});
+  const auto area = room()->queries().select(selection, {"marks"});
   ASSERT_TRUE(area) << area.error().detail;
   EXPECT_EQ(area->texels, painted->texels_changed);
   EXPECT_NEAR(area->area_m2, painted->area_m2, 1e-9 * area->area_m2);
   EXPECT_EQ(area->layers.at("marks").texels, area->texels);
   selection.where = *query::parse_condition("marks = 7", "where");
-  EXPECT_EQ(room()->select(selection, {})->texels, 0u);
+  EXPECT_EQ(room()->queries().select(selection, {})->texels, 0u);
 }
 
 TEST_F(RoomQueries, records_decide_what_their_keys_cover) {
@@ -141,7 +151,7 @@ TEST_F(RoomQueries, records_decide_what_their_keys_cover) {
   columns[0].name = "Thickness";
   columns[0].kind = ColumnKind::numeric;
   columns[1].name = "State";
-  const auto pieces = room()->create_layer(wished, {}, columns);
+  const auto pieces = room()->layers().create(wished, {}, columns);
   ASSERT_TRUE(pieces) << pieces.error().detail;
   const Table table = *store_->tables().find(std::to_string(*pieces->table), Role::owner);
   const auto write = [&](std::int64_t key, double thickness, const char* state) {
@@ -154,13 +164,13 @@ TEST_F(RoomQueries, records_decide_what_their_keys_cover) {
   ASSERT_TRUE(send(stroke(*pieces, 1, {{300, 240}}, 50)));
   ASSERT_TRUE(send(stroke(*pieces, 2, {{420, 240}}, 30)));
   ASSERT_TRUE(send(stroke(depth_, 6, {{300, 240}, {420, 240}}, 20)));
-  const auto then = room()->sequence();
-  const auto keys = room()->key_areas("pieces");
+  const auto then = room()->edits().sequence();
+  const auto keys = room()->queries().key_areas("pieces");
   ASSERT_TRUE(keys);
   const auto area = [&](const std::string& text, std::optional<std::int64_t> at = {}) {
     auto selection = where(text);
     selection.at = at;
-    const auto found = room()->select(selection, {});
+    const auto found = room()->queries().select(selection, {});
     EXPECT_TRUE(found) << text << ": " << found.error().detail;
     return found ? found->area_m2 : -1;
   };
@@ -191,7 +201,7 @@ TEST_F(RoomQueries, records_decide_what_their_keys_cover) {
           {"depth > 1 and marks.thickness > 1",
            "'marks' holds numbers: only database layers have records with columns (at character 15)"},
           {"peaces.thickness > 1", "no layer 'peaces'"}}) {
-    const auto refused = room()->select(where(text), {});
+    const auto refused = room()->queries().select(where(text), {});
     ASSERT_FALSE(refused) << text;
     EXPECT_EQ(refused.error().code, ErrorCode::invalid);
     EXPECT_NE(refused.error().detail.find(says), std::string::npos) << refused.error().detail;
@@ -202,27 +212,27 @@ TEST_F(RoomQueries, a_cross_table_holds_each_layers_area) {
   ASSERT_TRUE(send(stroke(marks_, 3, {{300, 240}}, 50)));
   const Layer units = make_layer(ValueType::u16, 4096, "units");
   ASSERT_TRUE(send(stroke(units, 700, {{340, 240}}, 50)));
-  const auto table = room()->cross_table("units", "marks");
+  const auto table = room()->queries().cross_table("units", "marks");
   ASSERT_TRUE(table) << table.error().detail;
   ASSERT_EQ(table->rows, (std::vector<query::CrossTable::Key>{700, std::nullopt}));
   ASSERT_EQ(table->columns, (std::vector<query::CrossTable::Key>{3, std::nullopt}));
-  const double units_area = room()->statistics("units")->area_m2;
+  const double units_area = room()->queries().statistics("units")->area_m2;
   EXPECT_NEAR(table->area_m2[0][0] + table->area_m2[0][1], units_area, 1e-6 * units_area);
-  const double marks_area = room()->statistics("marks")->area_m2;
+  const double marks_area = room()->queries().statistics("marks")->area_m2;
   EXPECT_NEAR(table->area_m2[0][0] + table->area_m2[1][0], marks_area, 0.01 * marks_area)
       << "at twice the texels";
   EXPECT_GT(table->area_m2[0][0], 0);
   EXPECT_EQ(table->area_m2[1][1], 0);
-  EXPECT_EQ(room()->cross_table("units", "depth").error().field, "columns");
+  EXPECT_EQ(room()->queries().cross_table("units", "depth").error().field, "columns");
 }
 
 TEST_F(RoomQueries, statistics_after_a_stroke_are_those_of_a_fresh_count) {
   ASSERT_TRUE(send(stroke(marks_, 3, {{300, 240}}, 50)));
-  ASSERT_TRUE(room()->statistics("marks"));
+  ASSERT_TRUE(room()->queries().statistics("marks"));
   ASSERT_TRUE(send(stroke(marks_, 5, {{320, 250}}, 30)));
-  const auto kept = room()->statistics("marks");
+  const auto kept = room()->queries().statistics("marks");
   restart();
-  const auto fresh = room()->statistics("marks");
+  const auto fresh = room()->queries().statistics("marks");
   EXPECT_EQ(kept->texels, fresh->texels);
   EXPECT_EQ(kept->area_m2, fresh->area_m2);
   EXPECT_EQ(kept->keys.at(5).centroid, fresh->keys.at(5).centroid);

@@ -7,12 +7,20 @@
 #include <chrono>
 #include <thread>
 
-#include "room/tile_changes.h"
+#include "room/edit.h"
+#include "room/edits.h"
+#include "room/layers.h"
+#include "room/listener.h"
+#include "room/participants.h"
+#include "room/pipeline/tile_changes.h"
+#include "room/queries.h"
+#include "room/rooms.h"
 #include "store/content/layers.h"
 #include "store/content/models.h"
 #include "store/journal/journal_reads.h"
 #include "store/journal/journal_writer.h"
 #include "support/room_fixture.h"
+#include "support/whole_picture.h"
 
 namespace strata {
 namespace {
@@ -79,7 +87,7 @@ class RoomRecovery : public RoomTest {
     for (const Layer& layer : layers) {
       EXPECT_TRUE(send(stroke(layer, 5, {{320, 240}}, 20)));
     }
-    EXPECT_TRUE(room()->picture({}, camera({0.3, -1, 0.4})));
+    EXPECT_TRUE(test::whole_picture(room()->pictures(), {}, camera({0.3, -1, 0.4})));
     restart(renderer_->gpu_bytes_used() + (9u << 20));
   }
 
@@ -145,7 +153,7 @@ TEST_F(RoomRecovery, layers_that_do_not_fit_the_gpu_together_are_painted_in_turn
     }
   expect_room_equals_journal(a);
   expect_room_equals_journal(b);
-  const auto both = room()->picture({}, camera({0.3, -1, 0.4}));
+  const auto both = test::whole_picture(room()->pictures(), {}, camera({0.3, -1, 0.4}));
   ASSERT_FALSE(both) << "two full layers in one picture";
   EXPECT_EQ(both.error().code, ErrorCode::out_of_memory);
   restart();
@@ -156,11 +164,11 @@ TEST_F(RoomRecovery, a_fill_that_does_not_fit_the_gpu_is_refused_and_leaves_all_
   const Layer other = make_layer(ValueType::u32, 2048, "other"),
               layer = make_layer(ValueType::u32, 4096, "large");
   restart_with_little_gpu_memory({other, layer});
-  const auto before = room()->tiles(layer.slug, {});
+  const auto before = room()->queries().tiles(layer.slug, {});
   const Answer filled = send(request(layer, room::FillEdit{false, 3}));
   ASSERT_FALSE(filled);
   EXPECT_EQ(filled.error().code, ErrorCode::out_of_memory);
-  EXPECT_TRUE(test::equal(room()->tiles(layer.slug, {})->tiles, before->tiles));
+  EXPECT_TRUE(test::equal(room()->queries().tiles(layer.slug, {})->tiles, before->tiles));
   const auto next = send_until_taken(stroke(layer, 7, {{310, 250}}, 20));
   ASSERT_TRUE(next) << next.error().detail;
   expect_room_equals_journal(layer);
@@ -173,22 +181,23 @@ TEST_F(RoomRecovery, what_was_erased_comes_back_when_other_paint_has_taken_its_p
   const Layer a = make_layer(ValueType::u32, 2048, "a"), b = make_layer(ValueType::u32, 2048, "b");
   restart_with_little_gpu_memory({a});
   ASSERT_TRUE(send(request(a, room::FillEdit{false, 3})));
-  const auto saved = room()->tiles("a", {});
+  const auto saved = room()->queries().tiles("a", {});
   Ears ears;
-  auto member = room()->join({"anna", Role::owner}, {}, &ears, [](const stream::FrameMessages&) {});
+  auto member = room()->participants().join({"anna", Role::owner}, {}, &ears,
+                                            [](const stream::FrameMessages&) {});
 
   Connection blocker(dsn_);
   blocker.execute("begin; lock table edits in exclusive mode");  // reading goes on, commits wait
   auto erased = start(request(a, room::FillEdit{true, 0}));
   auto filled = start(request(b, room::FillEdit{false, 4}));
   ears.wait_for_applied(2);
-  EXPECT_TRUE(room()->tiles("a", {})->tiles.empty());
+  EXPECT_TRUE(room()->queries().tiles("a", {})->tiles.empty());
   EXPECT_FALSE(erased.get());
   EXPECT_FALSE(filled.get());
   blocker.execute("rollback");
 
-  EXPECT_TRUE(test::equal(room()->tiles("a", {})->tiles, saved->tiles));
-  EXPECT_TRUE(room()->tiles(b.slug, {})->tiles.empty());
+  EXPECT_TRUE(test::equal(room()->queries().tiles("a", {})->tiles, saved->tiles));
+  EXPECT_TRUE(room()->queries().tiles(b.slug, {})->tiles.empty());
   expect_picture_of_journal();
   ASSERT_TRUE(send_until_taken(stroke(a, 8, {{300, 240}}, 20)));
   expect_room_equals_journal(a);
@@ -239,23 +248,23 @@ TEST_F(RoomRecovery, layers_made_changed_and_deleted_while_the_gpu_comes_back_st
     made.resolution = 2048;
     made.palette = default_palette(made.type, false);
     Result<Layer> created = fail(ErrorCode::unavailable, "", "");
-    for (int i = 0; i < 6000 && !created; ++i) created = room()->create_layer(made);
+    for (int i = 0; i < 6000 && !created; ++i) created = room()->layers().create(made);
     ASSERT_TRUE(created) << created.error().detail;
     renderer_->lose_context_for_test();
-    Layer renamed = room()->layer("kept").value();
+    Layer renamed = room()->layers().find("kept").value();
     renamed.name = "Round " + std::to_string(round);
-    ASSERT_TRUE(room()->update_layer(renamed));
+    ASSERT_TRUE(room()->layers().update(renamed));
     if (round % 2) {
-      ASSERT_TRUE(room()->delete_layer(created->id));
+      ASSERT_TRUE(room()->layers().erase(created->id));
     }
-    EXPECT_EQ(room()->layer("kept")->name, renamed.name);
+    EXPECT_EQ(room()->layers().find("kept")->name, renamed.name);
   }
-  const Layer last = room()->layer("made-4").value();
+  const Layer last = room()->layers().find("made-4").value();
   const auto painted = send_until_taken(stroke(last, 9, {{320, 240}}, 20));
   ASSERT_TRUE(painted) << painted.error().title << ": " << painted.error().detail;
-  EXPECT_EQ(room()->layer("kept")->name, "Round 5");
+  EXPECT_EQ(room()->layers().find("kept")->name, "Round 5");
   std::vector<std::string> here, stored;
-  for (const auto& layer : room()->layers()) here.push_back(layer.slug + "/" + layer.name);
+  for (const auto& layer : room()->layers().all()) here.push_back(layer.slug + "/" + layer.name);
   const auto rows = store_->layers().of_model(model_.id, Role::owner);
   for (const auto& layer : *rows) stored.push_back(layer.slug + "/" + layer.name);
   EXPECT_EQ(here, stored);
@@ -287,7 +296,7 @@ TEST_F(RoomRecovery, an_edit_whose_commit_was_in_doubt_is_answered_only_when_the
   ASSERT_TRUE(resent) << resent.error().detail;
   EXPECT_TRUE(resent->repeated);
   EXPECT_EQ(resent->sequence, 2);
-  EXPECT_EQ(room()->sequence(), 2);
+  EXPECT_EQ(room()->edits().sequence(), 2);
   expect_room_equals_journal(layer);
   ASSERT_TRUE(send(stroke(layer, 7, {{320, 240}}, 20)));
   expect_room_equals_journal(layer);
@@ -312,13 +321,14 @@ TEST_F(RoomRecovery, an_edit_that_reaches_the_journal_behind_the_room_is_not_pai
 TEST_F(RoomRecovery, a_room_that_cannot_be_read_again_refuses_edits_until_it_can) {
   const Layer layer = make_layer(ValueType::u8);
   ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
-  const auto picture = room()->picture({}, camera());
+  const auto picture = test::whole_picture(room()->pictures(), {}, camera());
   const auto edit = stroke(layer, 6, {{340, 240}}, 20);
   commit_behind(edit, layer, 2, true);
   const auto refused = send(edit);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::unavailable);
-  EXPECT_EQ(room()->picture({}, camera())->pixels, picture->pixels);  // viewing goes on
+  EXPECT_EQ(test::whole_picture(room()->pictures(), {}, camera())->rgba,
+            picture->rgba);  // viewing goes on
 
   execute(
       "update tile_revisions set difference = (select difference from tile_revisions where sequence = 1 limit 1) where sequence = 2");
@@ -347,7 +357,8 @@ TEST_F(RoomRecovery, a_database_that_hangs_holds_up_neither_the_room_nor_the_end
   const Layer layer = make_layer(ValueType::u8);
   ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
   Ears ears;
-  auto member = room()->join({"anna", Role::owner}, {}, &ears, [](const stream::FrameMessages&) {});
+  auto member = room()->participants().join({"anna", Role::owner}, {}, &ears,
+                                            [](const stream::FrameMessages&) {});
   ears.wait_for_presence(1);
 
   std::vector<std::future<Answer>> answers;
@@ -370,7 +381,7 @@ TEST_F(RoomRecovery, a_database_that_hangs_holds_up_neither_the_room_nor_the_end
   }
   member.reset();
   restart();
-  EXPECT_EQ(room()->sequence(), 1);
+  EXPECT_EQ(room()->edits().sequence(), 1);
 }
 
 TEST_F(RoomRecovery, edits_that_waited_for_the_database_keep_their_order) {
@@ -402,10 +413,10 @@ TEST_F(RoomRecovery, undo_goes_back_through_more_revisions_than_are_read_at_once
     for (const Layer* each : {&layer, &without_ben})
       ASSERT_TRUE(send(stroke(*each, 1 + i, {{312.0 + i % 9, 240.0 + i % 4}}, 8)));
   ASSERT_TRUE(send(request(layer, room::UndoEdit{}, "ben")));
-  EXPECT_TRUE(
-      test::equal(room()->tiles("layer", {})->tiles, room()->tiles("without-ben", {})->tiles));
+  EXPECT_TRUE(test::equal(room()->queries().tiles("layer", {})->tiles,
+                          room()->queries().tiles("without-ben", {})->tiles));
   ASSERT_TRUE(send(request(layer, room::RedoEdit{}, "ben")));
-  EXPECT_TRUE(room()->statistics("layer")->keys.contains(200));
+  EXPECT_TRUE(room()->queries().statistics("layer")->keys.contains(200));
 }
 
 // --- closing
@@ -414,13 +425,14 @@ TEST_F(RoomRecovery, people_in_a_deleted_model_are_told_and_their_edits_are_refu
   const Layer layer = make_layer(ValueType::u8);
   const auto held = room();
   Ears ears;
-  auto member = held->join({"anna", Role::owner}, {}, &ears, [](const stream::FrameMessages&) {});
+  auto member = held->participants().join({"anna", Role::owner}, {}, &ears,
+                                          [](const stream::FrameMessages&) {});
   ASSERT_TRUE(store_->models().remove(model_.id));
   rooms_->forget(model_.id);
   EXPECT_EQ(ears.deleted(), 1);
   std::promise<Answer> answered;
-  held->edit(stroke(layer, 5, {{300, 240}}, 20), {},
-             [&](Answer answer) { answered.set_value(std::move(answer)); });
+  held->edits().submit(stroke(layer, 5, {{300, 240}}, 20), {},
+                       [&](Answer answer) { answered.set_value(std::move(answer)); });
   EXPECT_EQ(answered.get_future().get().error().code, ErrorCode::gone);
 }
 
@@ -429,8 +441,8 @@ TEST_F(RoomRecovery, layers_of_a_closed_room_are_not_waited_for) {
   const auto held = room();
   ASSERT_TRUE(store_->models().remove(model_.id));
   rooms_->forget(model_.id);
-  EXPECT_EQ(held->delete_layer(layer.id).error().code, ErrorCode::gone);
-  EXPECT_EQ(held->create_layer(layer).error().code, ErrorCode::gone);
+  EXPECT_EQ(held->layers().erase(layer.id).error().code, ErrorCode::gone);
+  EXPECT_EQ(held->layers().create(layer).error().code, ErrorCode::gone);
 }
 
 TEST_F(RoomRecovery, a_layer_that_waits_for_edits_is_answered_when_its_room_closes) {
@@ -441,7 +453,7 @@ TEST_F(RoomRecovery, a_layer_that_waits_for_edits_is_answered_when_its_room_clos
   {
     const test::Hang hang(test::shared_cluster());
     painted = start(stroke(layer, 5, {{300, 240}}, 20));
-    deleted = std::async(std::launch::async, [&] { return held->delete_layer(layer.id); });
+    deleted = std::async(std::launch::async, [&] { return held->layers().erase(layer.id); });
     rooms_->forget(model_.id);
     EXPECT_EQ(painted.get().error().code, ErrorCode::gone);
     EXPECT_EQ(deleted.get().error().code, ErrorCode::gone);
@@ -462,7 +474,7 @@ TEST_F(RoomRecovery,
     EXPECT_EQ(settled.wait_for(std::chrono::milliseconds(50)), std::future_status::timeout);
   }
   ASSERT_TRUE(settled.get());
-  EXPECT_EQ(room()->durable_sequence(), 1);
+  EXPECT_EQ(room()->edits().durable_sequence(), 1);
   EXPECT_TRUE(painted.get());
 }
 
@@ -485,10 +497,10 @@ TEST_F(RoomRecovery, rooms_that_close_before_they_are_settled_say_so) {
 
 TEST_F(RoomRecovery, no_layers_means_no_values) {
   make_layer(ValueType::u8);
-  const auto point = room()->position({0, 0, 0}, {});
+  const auto point = room()->queries().position({0, 0, 0}, {});
   ASSERT_TRUE(point);
   EXPECT_TRUE(point->values.empty());
-  EXPECT_EQ(room()->position({0, 0, 0}, {"layer"})->values.size(), 1u);
+  EXPECT_EQ(room()->queries().position({0, 0, 0}, {"layer"})->values.size(), 1u);
 }
 
 }  // namespace

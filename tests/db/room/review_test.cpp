@@ -10,9 +10,16 @@
 #include <set>
 #include <vector>
 
-#include "room/provisional.h"
+#include "room/edit.h"
+#include "room/edits.h"
+#include "room/layers.h"
+#include "room/pictures.h"
+#include "room/pipeline/provisional.h"
+#include "room/queries.h"
+#include "room/rooms.h"
 #include "store/journal/journal_reads.h"
 #include "support/room_fixture.h"
+#include "support/whole_picture.h"
 
 namespace strata {
 namespace {
@@ -31,9 +38,9 @@ class Reviews : public RoomTest {
     layer_ = waits(make_layer(ValueType::u8));
   }
   Layer waits(Layer layer, bool review = true) {
-    layer = *room()->layer(layer.slug);
+    layer = *room()->layers().find(layer.slug);
     layer.review = review;
-    const auto changed = room()->update_layer(layer);
+    const auto changed = room()->layers().update(layer);
     EXPECT_TRUE(changed && changed->review == review);
     return *changed;
   }
@@ -56,7 +63,7 @@ class Reviews : public RoomTest {
     return rows;
   }
   JournalRow row(std::int64_t sequence) { return history().at(sequence - 1); }
-  TileMap tiles() { return room()->tiles(layer_.slug, {})->tiles; }
+  TileMap tiles() { return room()->queries().tiles(layer_.slug, {})->tiles; }
   std::size_t texels_waiting() {
     std::size_t count = 0;
     const TileMap waiting = room::read_provisional(*store_, layer_).value();
@@ -64,7 +71,7 @@ class Reviews : public RoomTest {
     return count;
   }
   std::vector<std::uint8_t> picture() {
-    return room()->picture({}, camera({0.3, -1, 0.4}))->pixels;
+    return test::whole_picture(room()->pictures(), {}, camera({0.3, -1, 0.4}))->rgba;
   }
 };
 
@@ -237,7 +244,7 @@ TEST_F(Reviews, what_waits_keeps_waiting_when_the_layer_asks_for_no_review_any_m
   EXPECT_EQ(row(1).review, Review::pending);
   EXPECT_EQ(row(2).review, Review::none);
   restart();
-  EXPECT_FALSE(room()->layer(layer_.slug)->review);
+  EXPECT_FALSE(room()->layers().find(layer_.slug)->review);
   ASSERT_TRUE(send(review(Decision::accept)));
   EXPECT_EQ(texels_waiting(), 0u);
   EXPECT_EQ(send(review(Decision::accept)).error().code, ErrorCode::conflict);
@@ -263,11 +270,11 @@ TEST_F(Reviews, marks_are_taken_back_with_edits_that_cannot_be_saved_and_come_ba
 }
 
 TEST_F(Reviews, a_picture_of_the_newest_durable_state_is_hatched_as_that_of_now_is) {
-  const auto picture_at = [&](const room::Room::DurableState& state, bool hatched = true) {
+  const auto picture_at = [&](const room::DurableState& state, bool hatched = true) {
     room::PictureRequest asked;
     asked.at = state.sequence;
     if (hatched) asked.provisional = state.provisional;
-    return room()->picture(asked, camera({0.3, -1, 0.4}))->pixels;
+    return test::whole_picture(room()->pictures(), asked, camera({0.3, -1, 0.4}))->rgba;
   };
   std::unique_ptr<PGconn, decltype(&PQfinish)> other(PQconnectdb(dsn_.c_str()), &PQfinish);
   const auto execute = [&](const char* sql) {
@@ -284,32 +291,32 @@ TEST_F(Reviews, a_picture_of_the_newest_durable_state_is_hatched_as_that_of_now_
     for (std::size_t i = 0; i + 1 < edits.size(); ++i) answers.push_back(start(edits[i]));
     const auto answer = std::make_shared<std::promise<Result<room::EditAnswer>>>();
     answers.push_back(answer->get_future());
-    room()->edit(
+    room()->edits().submit(
         edits.back(), [seen](const auto&) { seen->set_value(); },
         [answer](auto result) { answer->set_value(result); });
     const bool is_seen =
         seen->get_future().wait_for(std::chrono::minutes(2)) == std::future_status::ready;
     EXPECT_TRUE(is_seen);
-    if (is_seen) look(room()->durable_state());
+    if (is_seen) look(room()->edits().durable_state());
     execute("commit");
     for (auto& saved : answers) EXPECT_TRUE(saved.get());
   };
 
   const auto bare = picture();
-  while_unsaved({dab(1, 300)}, [&](const room::Room::DurableState& before) {
+  while_unsaved({dab(1, 300)}, [&](const room::DurableState& before) {
     EXPECT_EQ(before.sequence, 0);
     EXPECT_THAT(before.provisional, IsEmpty());
     EXPECT_NE(picture(), bare);
     EXPECT_EQ(picture_at(before), bare);
   });
   const auto one = picture();
-  const auto saved = room()->durable_state();
+  const auto saved = room()->edits().durable_state();
   EXPECT_EQ(saved.sequence, 1);
   EXPECT_EQ(picture_at(saved), one);
   EXPECT_NE(picture_at(saved, false), one);
 
   while_unsaved({dab(2, 310, "ben"), dab(2, 360, "ben"), as_curator(dab(3, 300, "cleo"))},
-                [&](const room::Room::DurableState& still) {
+                [&](const room::DurableState& still) {
                   EXPECT_EQ(still.sequence, 1);
                   ASSERT_EQ(still.provisional.size(), 1u);
                   EXPECT_TRUE(test::equal(still.provisional.begin()->second,
@@ -317,17 +324,17 @@ TEST_F(Reviews, a_picture_of_the_newest_durable_state_is_hatched_as_that_of_now_
                   EXPECT_NE(picture(), one);
                   EXPECT_EQ(picture_at(still), one);
                 });
-  const auto all = room()->durable_state();
+  const auto all = room()->edits().durable_state();
   EXPECT_EQ(all.sequence, 4);
   EXPECT_EQ(picture_at(all), picture());
 
   const auto seen_by_viewers = [&] {
-    return (*rooms_->open(model_.slug, Role::viewer))->durable_state().provisional;
+    return (*rooms_->open(model_.slug, Role::viewer))->edits().durable_state().provisional;
   };
   EXPECT_TRUE(seen_by_viewers().contains(layer_.id));
-  Layer hidden = *room()->layer(layer_.slug);
+  Layer hidden = *room()->layers().find(layer_.slug);
   hidden.visibility = Visibility::curators;
-  ASSERT_TRUE(room()->update_layer(hidden));
+  ASSERT_TRUE(room()->layers().update(hidden));
   EXPECT_THAT(seen_by_viewers(), IsEmpty());
 }
 
@@ -415,7 +422,7 @@ TEST_F(Reviews, any_order_of_edits_undos_and_decisions_equals_the_oracle) {
     EXPECT_TRUE(test::equal(tiles(), content)) << "seed " << seed;
     EXPECT_TRUE(test::equal(room::read_provisional(*store_, layer_).value(), marks))
         << "seed " << seed;
-    EXPECT_TRUE(test::equal(room()->durable_state().provisional[layer_.id], marks))
+    EXPECT_TRUE(test::equal(room()->edits().durable_state().provisional[layer_.id], marks))
         << "seed " << seed;
     // the marks that the room kept up to date are those of the journal
     expect_picture_of_journal();

@@ -141,7 +141,8 @@ TEST(Layers, memory_of_removed_layers_serves_layers_of_other_widths) {
     request.view = view;
     request.camera = camera;
     request.width = request.height = 200;
-    request.layers = {{narrow, std::make_shared<Palette>(default_palette(ValueType::u8, true)), 1}};
+    request.style.layers = {
+        {narrow, std::make_shared<Palette>(default_palette(ValueType::u8, true)), 1}};
     const auto picture = renderer.draw(request);
     EXPECT_NE(picture.pixels[4 * (100 * 200 + 100)], picture.pixels[4 * (100 * 200 + 10)])
         << "the paint is seen";
@@ -188,7 +189,7 @@ class Leaving : public testing::Test {
     request.camera = camera_;
     request.width = request.height = 200;
     auto palette = std::make_shared<Palette>(default_palette(ValueType::u32, true));
-    for (const Mirrored& layer : layers) request.layers.push_back({layer.handle, palette, 1});
+    for (const Mirrored& layer : layers) request.style.layers.push_back({layer.handle, palette, 1});
     return await<render::SharedFrame>(
         [&](auto done) { renderer_->draw(request, std::move(done)); });
   }

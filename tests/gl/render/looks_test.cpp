@@ -35,7 +35,7 @@ class Looks : public testing::Test {
     request_.view = renderer_.add_view(model_);
     request_.camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, kSize, kSize, 0.5);
     request_.width = request_.height = kSize;
-    request_.light.mode = LightMode::unlit;
+    request_.style.light.mode = LightMode::unlit;
   }
   render::LookHandle add(std::shared_ptr<const render::LookImage> image) {
     auto look = await<render::LookHandle>(
@@ -64,11 +64,12 @@ class Looks : public testing::Test {
 };
 
 TEST_F(Looks, the_top_row_of_a_picture_is_the_top_of_the_surface) {
-  request_.looks = {{add(image_of(64, 64,
-                                  [](int x, int y) {
-                                    return std::array{x < 32 ? 255 : 0, y < 32 ? 200 : 0, 40, 255};
-                                  })),
-                     1}};
+  request_.style.looks = {
+      {add(image_of(64, 64,
+                    [](int x, int y) {
+                      return std::array{x < 32 ? 255 : 0, y < 32 ? 200 : 0, 40, 255};
+                    })),
+       1}};
   expect_near(pixel(60, 60), {255, 200, 40});
   expect_near(pixel(200, 60), {0, 200, 40});
   expect_near(pixel(60, 200), {255, 0, 40});
@@ -77,23 +78,23 @@ TEST_F(Looks, the_top_row_of_a_picture_is_the_top_of_the_surface) {
 TEST_F(Looks, they_blend_bottom_to_top_over_the_colours_of_the_vertices) {
   const Color base = pixel(100, 100);
   const auto red = add(plain({255, 0, 0, 255})), clear = add(plain({0, 0, 255, 128}));
-  request_.looks = {{red, 0.25f}};
+  request_.style.looks = {{red, 0.25f}};
   expect_near(pixel(100, 100), {base[0] + (255 - base[0]) / 4, base[1] * 3 / 4, base[2] * 3 / 4});
-  request_.looks = {{red, 1}, {clear, 1}};
+  request_.style.looks = {{red, 1}, {clear, 1}};
   expect_near(pixel(100, 100), {127, 0, 128});
-  request_.looks = {{clear, 1}, {red, 1}};
+  request_.style.looks = {{clear, 1}, {red, 1}};
   expect_near(pixel(100, 100), {255, 0, 0});
-  request_.looks = {{red, 1}, {red, 1}, {red, 1}, {clear, 0.5f}};
+  request_.style.looks = {{red, 1}, {red, 1}, {red, 1}, {clear, 0.5f}};
   expect_near(pixel(100, 100), {191, 0, 64});
-  request_.looks.clear();
+  request_.style.looks.clear();
   EXPECT_EQ(pixel(100, 100), base);
 }
 
 TEST_F(Looks, a_layer_lies_over_them) {
-  request_.looks = {{add(plain({255, 0, 0, 255})), 1}};
+  request_.style.looks = {{add(plain({255, 0, 0, 255})), 1}};
   const auto layer = renderer_.add_layer(model_, ValueType::u8, 256);
   renderer_.paint(layer, dab(request_.camera, 128, 128, 30, 1));
-  request_.layers = {
+  request_.style.layers = {
       {layer,
        std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, {0, 255, 0, 255}, {}}}, {}}),
        1}};
@@ -103,16 +104,16 @@ TEST_F(Looks, a_layer_lies_over_them) {
 
 TEST_F(Looks, what_a_view_cannot_show_is_refused) {
   const auto look = add(plain({1, 2, 3, 255}));
-  request_.looks.assign(5, {look, 1});
+  request_.style.looks.assign(5, {look, 1});
   EXPECT_EQ(refusal(request_).code, ErrorCode::invalid);
-  request_.looks = {{look, std::nanf("")}};
+  request_.style.looks = {{look, std::nanf("")}};
   EXPECT_EQ(refusal(request_).code, ErrorCode::invalid);
-  request_.looks = {{look + 1000, 1}};
+  request_.style.looks = {{look + 1000, 1}};
   EXPECT_EQ(refusal(request_).code, ErrorCode::not_found);
-  request_.looks = {{look, 1}};
-  request_.light.direction = {0, 0, 0};
+  request_.style.looks = {{look, 1}};
+  request_.style.light.direction = {0, 0, 0};
   EXPECT_EQ(refusal(request_).field, "light.direction");
-  request_.light.direction = {0, 0, 1};
+  request_.style.light.direction = {0, 0, 1};
   const auto other = renderer_.add(make_scene(flat_square(), 256));
   request_.view = renderer_.add_view(other);
   EXPECT_EQ(refusal(request_).code, ErrorCode::invalid) << "a look of another model";
@@ -139,7 +140,7 @@ TEST_F(Looks, their_memory_is_counted_and_given_back) {
 }
 
 TEST_F(Looks, a_picture_of_many_megabytes_arrives_whole) {
-  request_.looks = {
+  request_.style.looks = {
       {add(image_of(3000, 2000,
                     [](int x, int y) {
                       return std::array{x * 255 / 2999, (1999 - y) * 255 / 1999, 0, 255};
@@ -153,7 +154,7 @@ TEST_F(Looks, a_picture_of_many_megabytes_arrives_whole) {
 }
 
 TEST_F(Looks, fine_detail_seen_from_afar_keeps_its_light) {
-  request_.looks = {
+  request_.style.looks = {
       {add(image_of(
            1024, 1024,
            [](int x, int y) {
@@ -178,17 +179,17 @@ TEST_F(Looks, raking_light_shows_what_leans_towards_it) {
     return sum / (60 * 30);
   };
   constexpr int kLeft = 65, kMiddle = 128, kRight = 191;
-  request_.light = {LightMode::raking, {-1, 0, 0.2}};
+  request_.style.light = {LightMode::raking, {-1, 0, 0.2}};
   EXPECT_GT(bright(kLeft), bright(kMiddle) + 25);
   EXPECT_LT(bright(kRight), 40) << "the side away from the light is dark";
-  request_.light.direction = {5, 0, 1};
+  request_.style.light.direction = {5, 0, 1};
   EXPECT_GT(bright(kRight), bright(kMiddle) + 25);
   EXPECT_LT(bright(kLeft), 40);
-  request_.light.mode = LightMode::headlight;
+  request_.style.light.mode = LightMode::headlight;
   EXPECT_GT(bright(kMiddle), bright(kLeft) + 20);
   EXPECT_NEAR(bright(kLeft), bright(kRight), 20) << "as bright on both sides";
   const double lit = bright(kMiddle);
-  request_.light.mode = LightMode::unlit;
+  request_.style.light.mode = LightMode::unlit;
   EXPECT_EQ(bright(kLeft), bright(kRight));
   EXPECT_GE(bright(kMiddle), lit);
 }
@@ -211,12 +212,12 @@ TEST_F(Looks, museum_light_is_the_same_in_each_pixel_as_at_the_vertices_of_small
          {glm::dvec3{0, 0, 2}, {-1, 1, 1}, {1.5, -1, 1}, {-1, -0.5, -1}, {0.2, 0.3, -2}}) {
       request_.camera = orthographic_camera(eye, {0, 0, 0}, kSize, kSize, 0.5);
       const glm::dvec3 up = glm::dmat3(request_.camera.view) * glm::dvec3(0, 0, 1);
-      request_.light.mode = LightMode::unlit;
+      request_.style.light.mode = LightMode::unlit;
       Color wanted = pixel(kSize / 2, kSize / 2);
       // as bright from behind
       for (int& channel : wanted)
         channel = static_cast<int>(std::lround(channel * museum_light(eye.z > 0 ? up : -up)));
-      request_.light.mode = LightMode::museum;
+      request_.style.light.mode = LightMode::museum;
       SCOPED_TRACE(std::to_string(quads) + " quads, eye at " + std::to_string(eye.x) + " " +
                    std::to_string(eye.z));
       expect_near(pixel(kSize / 2, kSize / 2), wanted, 2);
@@ -226,10 +227,10 @@ TEST_F(Looks, museum_light_is_the_same_in_each_pixel_as_at_the_vertices_of_small
 
 TEST_F(Looks, a_view_is_drawn_anew_when_only_its_light_changes) {
   const auto unlit = renderer_.draw(request_).pixels;
-  request_.light.mode = LightMode::museum;
+  request_.style.light.mode = LightMode::museum;
   const auto museum = renderer_.draw(request_).pixels;
   EXPECT_NE(unlit, museum);
-  request_.light.mode = LightMode::unlit;
+  request_.style.light.mode = LightMode::unlit;
   EXPECT_EQ(renderer_.draw(request_).pixels, unlit);
 }
 

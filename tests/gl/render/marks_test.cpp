@@ -29,7 +29,8 @@ class Marks : public testing::Test {
     request.camera = camera;
     request.width = scale * camera.width, request.height = scale * camera.height;
     if (!marks.empty())
-      request.marks = std::make_shared<const std::vector<render::DrawnMark>>(std::move(marks));
+      request.style.marks =
+          std::make_shared<const std::vector<render::DrawnMark>>(std::move(marks));
     auto frame = renderer_.draw(request);
     renderer_->remove_view(request.view);
     return frame;
@@ -128,7 +129,7 @@ TEST_F(Marks, a_part_of_a_picture_that_is_drawn_anew_has_them_too) {
   request.view = renderer_.add_view(model_);
   request.camera = from_above();
   request.width = request.height = kSize;
-  request.marks = std::make_shared<const std::vector<render::DrawnMark>>(
+  request.style.marks = std::make_shared<const std::vector<render::DrawnMark>>(
       std::vector<render::DrawnMark>{{{at(0.1, 0.1), at(0.9, 0.9)}, kRed}});
   const auto whole = renderer_.draw(request);
   request.changed = std::vector<render::FrameRequest::Box>{{{-0.1f, -0.1f, 0}, {0.1f, 0.1f, 0}}};
@@ -142,7 +143,7 @@ TEST_F(Marks, a_part_of_a_picture_that_is_drawn_anew_has_them_too) {
                 pixel(whole, part.rects.at(0).x + x, part.rects.at(0).y + y));
     }
   // Other marks: all of the picture, though nothing of the surface changed.
-  request.marks = nullptr;
+  request.style.marks = nullptr;
   request.changed = std::vector<render::FrameRequest::Box>{};
   EXPECT_EQ(renderer_.draw(request).rects.at(0).width, kSize);
   renderer_->remove_view(request.view);
@@ -186,7 +187,8 @@ class MarksOnRelief : public Marks {
     request.camera = camera;
     request.width = scale * camera.width, request.height = scale * camera.height;
     if (!marks.empty())
-      request.marks = std::make_shared<const std::vector<render::DrawnMark>>(std::move(marks));
+      request.style.marks =
+          std::make_shared<const std::vector<render::DrawnMark>>(std::move(marks));
     return renderer_.draw(request);
   }
 
@@ -377,7 +379,8 @@ TEST_F(Marks, what_lies_behind_an_edge_is_hidden_and_what_lies_before_it_is_whol
     request.camera = camera;
     request.width = camera.width, request.height = camera.height;
     if (!marks.empty())
-      request.marks = std::make_shared<const std::vector<render::DrawnMark>>(std::move(marks));
+      request.style.marks =
+          std::make_shared<const std::vector<render::DrawnMark>>(std::move(marks));
     auto frame = renderer_.draw(request);
     renderer_->remove_view(request.view);
     return frame;

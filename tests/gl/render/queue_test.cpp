@@ -345,10 +345,10 @@ TEST_F(FrameTurns, pictures_that_differ_in_anything_are_not_shared) {
   others[1].moving = true;
   others[2].height = 4;
   others[3].camera.view[3][0] = 1;
-  others[4].layers = {{1, nullptr, 1}};
-  others[5].looks = {{1, 1}};
-  others[6].marks = std::make_shared<const std::vector<DrawnMark>>();
-  others[7].unit_mm = 1;
+  others[4].style.layers = {{1, nullptr, 1}};
+  others[5].style.looks = {{1, 1}};
+  others[6].style.marks = std::make_shared<const std::vector<DrawnMark>>();
+  others[7].style.unit_mm = 1;
   others[8].changed.reset();  // nobody is sent a whole picture who lacks a rectangle
   push(queue, base);
   ViewHandle view = 1;

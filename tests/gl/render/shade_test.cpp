@@ -43,12 +43,12 @@ class Shade : public testing::Test {
   double light() {
     auto white = std::make_shared<Palette>(
         Palette{PaletteMode::step, 0, 1, {{0, {255, 255, 255, 255}, {}}}, {}});
-    request_.layers = {{filled_layer(ValueType::u8, 1), white, 1}};
+    request_.style.layers = {{filled_layer(ValueType::u8, 1), white, 1}};
     return pixel(renderer_.draw(request_), 128, 128)[0] / 255;
   }
   void expect_color(const std::vector<render::LayerStyle>& layers,
                     const std::array<double, 3>& unlit, double lit) {
-    request_.layers = layers;
+    request_.style.layers = layers;
     const auto got = pixel(renderer_.draw(request_), 100, 90);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(got[i], unlit[i] * lit, 2.0) << "channel " << i;
   }
@@ -197,7 +197,7 @@ TEST_F(Shade, patterns_let_what_is_below_be_seen_between_their_lines_and_dots) {
       Palette::Point point{7, {0, 0, 255, 255}};
       point.pattern = c.pattern, point.angle = c.angle, point.spacing_mm = c.spacing_mm;
       auto inked = std::make_shared<Palette>(Palette{mode, 0, 10, {point}, {}});
-      request_.layers = {{lower, red, 1}, {upper, inked, 1, c.bare}};
+      request_.style.layers = {{lower, red, 1}, {upper, inked, 1, c.bare}};
       const auto frame = renderer_.draw(request_);
       double worst = 0;
       std::size_t covered = 0;
@@ -236,9 +236,9 @@ TEST_F(Shade, hatched_paint_is_seen_at_every_zoom_by_its_tint_and_its_border) {
         request.camera =
             orthographic_camera({-0.25, -0.25, 2}, {-0.25, -0.25, 0}, kSize, kSize, half_height);
         request.width = request.height = scale * kSize;
-        request.layers = {};
+        request.style.layers = {};
         const auto bare = renderer_.draw(request);
-        request.layers = {
+        request.style.layers = {
             {layer,
              std::make_shared<Palette>(Palette{PaletteMode::categorical, 0, 10, {point}, {}}), 1}};
         const auto frame = renderer_.draw(request);
@@ -277,9 +277,9 @@ TEST_F(Shade, an_outline_is_drawn_where_the_value_ends_and_not_inside) {
   outlined.pattern = Pattern::outline;
   const auto palette = std::make_shared<Palette>(
       Palette{PaletteMode::categorical, 0, 10, {outlined, {8, {0, 255, 0, 255}}}, {}});
-  request_.layers = {{layer, palette, 1}};
+  request_.style.layers = {{layer, palette, 1}};
   const auto frame = renderer_.draw(request_);
-  request_.layers = {};
+  request_.style.layers = {};
   const auto bare = renderer_.draw(request_);
   int outline = 0, inside = 0;
   for (int y = 10; y < 246; ++y) {
@@ -344,7 +344,7 @@ TEST_F(Shade, more_layers_than_one_draw_takes_are_all_shown) {
 
 TEST_F(Shade, a_large_picture_is_shaded_in_bands_without_a_seam) {
   auto [layer, palette, request] = add_sphere(2048, 1800);
-  for (int i = 0; i < 3; ++i) request.layers.push_back({layer, palette, 0.5f});
+  for (int i = 0; i < 3; ++i) request.style.layers.push_back({layer, palette, 0.5f});
   renderer_.paint(layer, dab(request.camera, 1024, 900, 500, 100));
   const auto picture = renderer_.draw(request);
   // The same in pieces that are one band each.
@@ -367,7 +367,7 @@ TEST_F(Shade, a_large_picture_is_shaded_in_bands_without_a_seam) {
 
 TEST_F(Shade, the_background_is_a_gradient_from_top_to_bottom) {
   request_.camera = orthographic_camera({0, 0, 2}, {5, 0, 0}, kSize, kSize, 0.5);
-  request_.background = {{250, 0, 0, 255}, {0, 0, 250, 255}};
+  request_.style.background = {{250, 0, 0, 255}, {0, 0, 250, 255}};
   const auto frame = renderer_.draw(request_);
   EXPECT_NEAR(pixel(frame, 0, 0)[0], 250, 2);
   EXPECT_NEAR(pixel(frame, 0, 255)[2], 250, 2);
@@ -384,7 +384,7 @@ TEST_F(Shade, the_top_row_of_the_picture_is_the_top_of_the_view) {
 
 TEST_F(Shade, a_reshaded_rectangle_equals_a_full_redraw) {
   auto [layer, palette, request] = add_sphere(640, 480);
-  request.layers = {{layer, palette, 0.8f}};
+  request.style.layers = {{layer, palette, 0.8f}};
   auto picture = renderer_.draw(request);
   ASSERT_EQ(picture.rects.at(0), (render::PixelRect{0, 0, 640, 480}));
   for (int i = 0; i < 5; ++i) {
@@ -408,13 +408,13 @@ TEST_F(Shade, a_reshaded_rectangle_equals_a_full_redraw) {
   auto nothing = request;
   nothing.changed.emplace();
   EXPECT_TRUE(renderer_.draw(nothing).rects.empty());
-  nothing.layers[0].opacity = 0.5f;
+  nothing.style.layers[0].opacity = 0.5f;
   EXPECT_EQ(renderer_.draw(nothing).rects.at(0).width, 640);
 }
 
 TEST_F(Shade, rectangles_far_apart_equal_a_full_redraw_and_nothing_between_is_shaded) {
   auto [layer, palette, request] = add_sphere(640, 480);
-  request.layers = {{layer, palette, 0.8f}};
+  request.style.layers = {{layer, palette, 0.8f}};
   auto picture = renderer_.draw(request);
   auto partial_request = request;
   partial_request.changed.emplace();
@@ -473,10 +473,10 @@ TEST_F(Shade, requests_that_cannot_be_drawn_are_refused_with_a_reason) {
   request.width = 0;
   refused(request, ErrorCode::invalid);
   request = request_;
-  request.layers = {
+  request.style.layers = {
       {view_ + 1000, std::make_shared<Palette>(default_palette(ValueType::u8, true)), 1}};
   refused(request, ErrorCode::not_found);
-  request.layers = {{filled_layer(ValueType::u8, 1), nullptr, 1}};
+  request.style.layers = {{filled_layer(ValueType::u8, 1), nullptr, 1}};
   refused(request, ErrorCode::invalid);
   EXPECT_EQ(renderer_.draw(request_).rects.at(0).width, kSize)
       << "a refused request leaves the view usable";

@@ -149,7 +149,7 @@ class StreamViewer : public ::testing::Test {
     request.camera = seen;
     request.width = seen.width;
     request.height = seen.height;
-    request.layers = styles();
+    request.style.layers = styles();
     auto pixels = renderer_.draw(request).pixels;
     renderer_->remove_view(request.view);
     return pixels;

@@ -5,7 +5,19 @@
 #include <deque>
 
 #include "net/auth/auth.h"
+#include "net/live/close_codes.h"
 #include "net/live/live_sockets.h"
+#include "room/edit.h"
+#include "room/edits.h"
+#include "room/layers.h"
+#include "room/listener.h"
+#include "room/looks.h"
+#include "room/participants.h"
+#include "room/pictures.h"
+#include "room/queries.h"
+#include "room/room.h"
+#include "room/selection.h"
+#include "room/view_settings.h"
 #include "support/shapes.h"
 
 namespace strata::net {
@@ -37,9 +49,9 @@ class FakeSocket final : public LiveSocket {
   int close_code = 0;
 };
 
-class FakeMember final : public room::Member {
+class FakeParticipant final : public room::Participant {
  public:
-  explicit FakeMember(Uuid session) : session_(session) {}
+  explicit FakeParticipant(Uuid session) : session_(session) {}
   Uuid session() const override { return session_; }
   void camera(std::uint32_t view_id, std::uint64_t seq, const Camera&, bool) override {
     cameras.emplace_back(view_id, seq);
@@ -63,90 +75,78 @@ class FakeMember final : public room::Member {
   Uuid session_;
 };
 
-// Holds every edit until the test answers it.
-class FakeRoom final : public room::Room {
+// Hold every edit until the test answers it, and know one layer and one look.
+class FakeLayers final : public room::Layers {
  public:
-  FakeRoom() {
+  FakeLayers() {
     layer_.id = 7;
     layer_.model_id = 1;
     layer_.name = layer_.slug = "cracks";
     layer_.palette = default_palette(ValueType::u8, false);
   }
-  Model model() const override {
-    Model model;
-    model.id = 1;
-    model.project_id = 1;
-    model.name = model.slug = "pot";
-    return model;
-  }
-  std::vector<Layer> layers() const override { return {layer_}; }
-  Result<Layer> layer(const std::string& ref) const override {
+  std::vector<Layer> all() const override { return {layer_}; }
+  Result<Layer> find(const std::string& ref) const override {
     if (ref == "cracks" || ref == "7") return layer_;
     return fail(ErrorCode::not_found, "No such layer", "There is no layer '" + ref + "'.");
   }
-  std::int64_t sequence() const override { return 0; }
-  std::int64_t durable_sequence() const override { return 0; }
-  DurableState durable_state() const override { return {}; }
-  void edit(room::EditRequest request, Applied applied, Saved saved) override {
-    edits.push_back({std::move(request), std::move(applied), std::move(saved)});
-  }
-  std::unique_ptr<room::Member> join(Author, room::Portrait portrait, room::Listener* listener,
-                                     stream::Viewer::Send send) override {
-    listeners.push_back(listener);
-    sends.push_back(std::move(send));
-    portraits.push_back(std::move(portrait));
-    auto joined = std::make_unique<FakeMember>(random_uuid());
-    member = joined.get();
-    return joined;
-  }
-  std::vector<room::Presence> presence(const Uuid& receiver) const override {
-    EXPECT_EQ(receiver, member->session());
-    return people;
-  }
-  Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>&,
-                             std::vector<Column>) override {
+  Result<Layer> create(Layer layer, const store::FirstAnswer<Layer>&,
+                       std::vector<Column>) override {
     return layer;
   }
-  Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>&) override {
+  Result<Layer> update(Layer layer, const store::FirstAnswer<Layer>&) override { return layer; }
+  Result<Layer> widen(const Layer& layer, ValueType, const store::FirstAnswer<Layer>&) override {
     return layer;
   }
-  Result<Layer> widen_layer(const Layer& layer, ValueType,
-                            const store::FirstAnswer<Layer>&) override {
-    return layer;
-  }
-  Result<void> delete_layer(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
-  Result<void> bin_layer(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
-  Result<store::BinRestored> restore_layer(const store::BinEntry& entry,
-                                           const store::FirstAnswer<store::BinRestored>&) override {
+  Result<void> erase(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
+  Result<void> put_in_trash(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
+  Result<store::BinRestored> restore(const store::BinEntry& entry,
+                                     const store::FirstAnswer<store::BinRestored>&) override {
     return store::BinRestored{entry, {}, {}};
   }
-  Result<Layer> layer_computed(std::int64_t, const std::string&, std::int64_t,
-                               const std::map<std::int64_t, std::int64_t>&) override {
+  Result<Layer> mark_computed(std::int64_t, const std::string&, std::int64_t,
+                              const std::map<std::int64_t, std::int64_t>&) override {
     return fail(ErrorCode::internal, "Not here", "");
   }
   void records_changed(std::int64_t) override {}
   Result<void> check_expression(const Expression&, const std::string&, Visibility) const override {
     return {};
   }
-  Result<Model> update_model(Model model, const store::FirstAnswer<Model>&) override {
-    return model;
+
+ private:
+  Layer layer_;
+};
+
+class FakeEdits final : public room::Edits {
+ public:
+  void submit(room::EditRequest request, room::Applied applied, room::Saved saved) override {
+    held.push_back({std::move(request), std::move(applied), std::move(saved)});
   }
-  Result<TileMap> dabs(const Layer&, const std::vector<PlacedValue>&, double, double) override {
-    return TileMap{};
-  }
-  Result<TileMap> project(const Layer&, const glm::dvec3&, const ValueAt&) override {
-    return TileMap{};
-  }
+  std::int64_t sequence() const override { return 0; }
+  std::int64_t durable_sequence() const override { return 0; }
+  room::DurableState durable_state() const override { return {}; }
+  Result<void> keep_sums(std::int64_t) override { return {}; }
+
+  struct Held {
+    room::EditRequest request;
+    room::Applied applied;
+    room::Saved saved;
+  };
+  std::vector<Held> held;
+};
+
+class FakeQueries final : public room::Queries {
+ public:
   Result<query::SurfacePoint> position(const glm::dvec3&, const std::vector<std::string>&,
-                                       At) override {
+                                       room::At) override {
     return query::SurfacePoint{};
   }
   Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>&,
-                                                     const std::vector<std::string>&, At) override {
+                                                     const std::vector<std::string>&,
+                                                     room::At) override {
     return std::vector<query::SurfacePoint>{};
   }
   Result<query::SurfacePoint> pick(const Camera&, double, double, const std::vector<std::string>&,
-                                   At) override {
+                                   room::At) override {
     return found;
   }
   Result<query::Statistics> statistics(const std::string&, const room::Selection&,
@@ -158,79 +158,99 @@ class FakeRoom final : public room::Room {
     return room::SelectedArea{};
   }
   Result<query::Profile> profile(const room::ProfileLine&, const std::vector<std::string>&,
-                                 At) override {
+                                 room::At) override {
     return query::Profile{};
   }
   Result<query::CrossTable> cross_table(const std::string&, const std::string&,
                                         const room::Selection&) override {
     return query::CrossTable{};
   }
-  Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string&) override {
-    return std::map<std::int64_t, query::KeyArea>();
-  }
-  Result<void> sum_layer(std::int64_t) override { return {}; }
-  Result<query::Quantities> quantities(const std::string&, At) override {
+  Result<query::Quantities> quantities(const std::string&, room::At) override {
     return query::Quantities{};
   }
-  Result<room::LayerAreas> layer_areas(const std::string&, At) override {
+  Result<room::LayerAreas> layer_areas(const std::string&, room::At) override {
     return room::LayerAreas{};
   }
   Result<query::SurfaceTexels> surface_texels(const std::string&, const room::Selection&) override {
     return query::SurfaceTexels{};
   }
-  Result<TileMirror::Snapshot> tiles(const std::string&, std::optional<std::int64_t>) override {
+  Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string&) override {
+    return std::map<std::int64_t, query::KeyArea>();
+  }
+  Result<TileMirror::Snapshot> tiles(const std::string&, room::At) override {
     return TileMirror::Snapshot{};
   }
-  std::shared_ptr<const mesh::Geometry> geometry() const override { return nullptr; }
-  std::shared_ptr<const mesh::SearchTree> search_tree() override { return nullptr; }
-  Result<std::shared_ptr<const mesh::SurfaceMap>> surface_map(int) override {
-    return std::shared_ptr<const mesh::SurfaceMap>();
-  }
-  Result<void> pictures(const room::PictureRequest&, std::span<const room::PicturePart>,
-                        const SeePicture&) override {
-    return {};
-  }
-  Result<std::vector<std::optional<std::uint32_t>>> seen_keys(const std::string&, const Camera&,
-                                                              int, int, At) override {
-    return {};
-  }
-  Result<std::vector<query::SeenLayer>> seen_layers(const std::vector<std::string>&,
-                                                    const std::vector<query::LayerCover>&,
-                                                    const Camera&, int, int, At) override {
-    return std::vector<query::SeenLayer>{};
-  }
-  std::vector<Look> looks() const override { return {look_}; }
-  Result<Look> look(const std::string& ref) const override {
+  query::SurfacePoint found;
+};
+
+class FakeLooks final : public room::Looks {
+ public:
+  std::vector<Look> all() const override { return {look_}; }
+  Result<Look> find(const std::string& ref) const override {
     if (ref == "uv-light" || ref == "9") return look_;
     return fail(ErrorCode::not_found, "No such look", "There is no look '" + ref + "'.");
   }
-  Result<Look> create_look(Look look, std::span<const std::uint8_t>,
-                           const store::FirstAnswer<Look>&) override {
+  Result<Look> create(Look look, std::span<const std::uint8_t>,
+                      const store::FirstAnswer<Look>&) override {
     return look;
   }
-  Result<Look> update_look(const Look& look, const store::FirstAnswer<Look>&) override {
-    return look;
-  }
-  Result<void> delete_look(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
-
-  struct Held {
-    room::EditRequest request;
-    Applied applied;
-    Saved saved;
-  };
-  std::vector<Held> edits;
-  std::vector<room::Listener*> listeners;
-  std::vector<stream::Viewer::Send> sends;
-  std::vector<room::Portrait> portraits;
-  query::SurfacePoint found;
-  FakeMember* member = nullptr;  // the newest
-  std::vector<room::Presence> people{
-      {random_uuid(), "anna", "", "#112233", room::Pointing{{1, 2, 3}, {}}}};
+  Result<Look> update(const Look& look, const store::FirstAnswer<Look>&) override { return look; }
+  Result<void> erase(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
 
  private:
-  Layer layer_;
   const Look look_{9, 1,   "UV light",           "uv-light", "",    "image/png", 16,
                    8, 100, std::string(64, 'a'), 1,          false, 0,           1};
+};
+
+class FakeParticipants final : public room::Participants {
+ public:
+  std::unique_ptr<room::Participant> join(Author, room::Portrait portrait, room::Listener* listener,
+                                          stream::SendFrames send) override {
+    listeners.push_back(listener);
+    sends.push_back(std::move(send));
+    portraits.push_back(std::move(portrait));
+    auto joined = std::make_unique<FakeParticipant>(random_uuid());
+    newest = joined.get();
+    return joined;
+  }
+  std::vector<room::Presence> presence(const Uuid& receiver) const override {
+    EXPECT_EQ(receiver, newest->session());
+    return people;
+  }
+  std::vector<room::Listener*> listeners;
+  std::vector<stream::SendFrames> sends;
+  std::vector<room::Portrait> portraits;
+  FakeParticipant* newest = nullptr;
+  std::vector<room::Presence> people{
+      {random_uuid(), "anna", "", "#112233", room::Pointing{{1, 2, 3}, {}}}};
+};
+
+// The parts that a live session uses.
+class FakeRoom final : public room::Room {
+ public:
+  FakeRoom() {
+    parts_.layers = &layers_;
+    parts_.edits = &edits_;
+    parts_.queries = &queries_;
+    parts_.looks = &looks_;
+    parts_.participants = &participants_;
+  }
+  Model model() const override {
+    Model model;
+    model.id = 1;
+    model.project_id = 1;
+    model.name = model.slug = "pot";
+    return model;
+  }
+  Result<Model> update_model(Model model, const store::FirstAnswer<Model>&) override {
+    return model;
+  }
+
+  FakeLayers layers_;
+  FakeEdits edits_;
+  FakeQueries queries_;
+  FakeLooks looks_;
+  FakeParticipants participants_;
 };
 
 json camera_json() {
@@ -305,8 +325,8 @@ TEST_F(Live, a_tool_of_the_site_is_looked_for_on_a_worker_before_the_stroke_begi
   ASSERT_TRUE(work);
   work();
   say(extend(stroke, 0, {{1, 1}}));
-  ASSERT_EQ(room->edits.size(), 1u);
-  EXPECT_EQ(std::get<room::StrokeEdit>(room->edits[0].request.edit).batch.texture, shape);
+  ASSERT_EQ(room->edits_.held.size(), 1u);
+  EXPECT_EQ(std::get<room::StrokeEdit>(room->edits_.held[0].request.edit).batch.texture, shape);
 
   auto unknown = begin(to_string(random_uuid()));
   unknown["shape"] = "star";
@@ -323,8 +343,8 @@ TEST_F(Live, a_tool_of_the_site_is_looked_for_on_a_worker_before_the_stroke_begi
   work = session->on_text(edit.dump());
   ASSERT_TRUE(work);
   work();
-  ASSERT_EQ(room->edits.size(), 2u);
-  EXPECT_EQ(room->edits[1].request.record["shape"], 12);
+  ASSERT_EQ(room->edits_.held.size(), 2u);
+  EXPECT_EQ(room->edits_.held[1].request.record["shape"], 12);
 }
 
 TEST_F(Live, what_concerns_the_site_is_told_to_those_who_were_welcomed) {
@@ -359,11 +379,11 @@ TEST_F(Live, every_message_it_sends_keeps_the_contract) {
   hello();
   say(begin(stroke));
   say(extend(stroke, 0, {{1, 1}}));
-  room->edits.at(0).applied({5, 10, 0.5, false});
-  room->edits.at(0).saved(room::EditAnswer{5, 10, 0.5, false});
+  room->edits_.held.at(0).applied({5, 10, 0.5, false});
+  room->edits_.held.at(0).saved(room::EditAnswer{5, 10, 0.5, false});
   say({{"op", "nonsense"}});
-  session->layer_changed(room::Listener::LayerChange::created, room->layers()[0]);
-  session->layer_changed(room::Listener::LayerChange::deleted, room->layers()[0]);
+  session->layer_changed(room::Listener::LayerChange::created, room->layers().all()[0]);
+  session->layer_changed(room::Listener::LayerChange::deleted, room->layers().all()[0]);
   while (!socket->later.empty()) {
     auto work = std::move(socket->later.front());
     socket->later.pop_front();
@@ -402,8 +422,8 @@ TEST_F(Live, the_room_hears_who_edits_and_what_they_may) {
     say({{"op", op}, {"id", to_string(random_uuid())}, {"layer", "cracks"}});
   const json fill = {{"op", "fill"}, {"value", 1}, {"mode", "where"}, {"where", "true"}};
   say({{"op", "edit"}, {"id", to_string(random_uuid())}, {"layer", "cracks"}, {"edit", fill}});
-  ASSERT_EQ(room->edits.size(), 4u);
-  for (const auto& edit : room->edits) {
+  ASSERT_EQ(room->edits_.held.size(), 4u);
+  for (const auto& edit : room->edits_.held) {
     EXPECT_EQ(edit.request.author.user, "anna");
     EXPECT_EQ(edit.request.author.role, Role::annotator);
   }
@@ -430,7 +450,7 @@ TEST_F(Live, a_kiosk_looks_and_hears_of_nobody_and_nobody_of_it) {
   for (const json& message : refused) EXPECT_FALSE(screen->on_text(message.dump()));
   ASSERT_EQ(screens_socket->of("problem").size(), refused.size());
   for (const json& problem : screens_socket->of("problem")) EXPECT_EQ(problem["status"], 403);
-  EXPECT_TRUE(room->edits.empty());
+  EXPECT_TRUE(room->edits_.held.empty());
 
   room::Listener::Edit edit;
   edit.id = random_uuid();
@@ -449,8 +469,8 @@ TEST_F(Live, a_kiosk_looks_and_hears_of_nobody_and_nobody_of_it) {
   EXPECT_TRUE(screens_socket->of("record.editors").empty());
   EXPECT_FALSE(socket->of("record.editors").empty());
 
-  room->people = {{random_uuid(), kiosk.user, "", "#112233"},
-                  {random_uuid(), "bea", "", "#112233"}};
+  room->participants_.people = {{random_uuid(), kiosk.user, "", "#112233"},
+                                {random_uuid(), "bea", "", "#112233"}};
   session->presence_changed();
   for (auto work = std::exchange(socket->later, {}); const auto& each : work) each();
   const json told = socket->of("presence").back()["users"];
@@ -517,17 +537,17 @@ TEST_F(Live, a_stroke_is_applied_then_saved_under_its_number) {
   say(begin(stroke));
   say(extend(stroke, 0, {{1, 1}, {2, 2}}));
   say(extend(stroke, 1, {{3, 3}}));
-  ASSERT_EQ(room->edits.size(), 2u);
-  const auto& second = std::get<room::StrokeEdit>(room->edits[1].request.edit);
+  ASSERT_EQ(room->edits_.held.size(), 2u);
+  const auto& second = std::get<room::StrokeEdit>(room->edits_.held[1].request.edit);
   EXPECT_EQ(second.n, 1);
   EXPECT_EQ(second.batch.path, (std::vector<glm::dvec2>{{2, 2}, {3, 3}}));
   EXPECT_TRUE(socket->of("applied").empty());
-  room->edits[0].applied({1, 4, 0.1, false});
+  room->edits_.held[0].applied({1, 4, 0.1, false});
   ASSERT_EQ(socket->of("applied").size(), 1u);
   EXPECT_EQ(socket->of("applied")[0]["stroke"], stroke);
   EXPECT_EQ(socket->of("applied")[0]["n"], 0);
   EXPECT_TRUE(socket->of("saved").empty());
-  room->edits[0].saved(room::EditAnswer{1, 4, 0.1, false});
+  room->edits_.held[0].saved(room::EditAnswer{1, 4, 0.1, false});
   ASSERT_EQ(socket->of("saved").size(), 1u);
   EXPECT_EQ(socket->of("saved")[0]["sequence"], 1);
   EXPECT_EQ(shared->metrics->edits.saved, 1u);
@@ -540,8 +560,8 @@ TEST_F(Live, after_a_reconnect_the_resent_batch_is_joined_as_before) {
   say(first_begin);
   say(batch0);
   say(batch1);
-  room->edits[0].applied({1, 1, 0, false});
-  room->edits[0].saved(room::EditAnswer{1, 1, 0, false});
+  room->edits_.held[0].applied({1, 1, 0, false});
+  room->edits_.held[0].saved(room::EditAnswer{1, 1, 0, false});
 
   connect();
   hello();
@@ -552,11 +572,11 @@ TEST_F(Live, after_a_reconnect_the_resent_batch_is_joined_as_before) {
   say(batch1);
   say(extend(stroke, 2, {{3, 3}}));
   EXPECT_TRUE(socket->of("problem").empty());
-  ASSERT_EQ(room->edits.size(), 4u);
-  EXPECT_EQ(room->edits[2].request.id, room->edits[1].request.id);
-  EXPECT_EQ(std::get<room::StrokeEdit>(room->edits[2].request.edit).batch.path,
+  ASSERT_EQ(room->edits_.held.size(), 4u);
+  EXPECT_EQ(room->edits_.held[2].request.id, room->edits_.held[1].request.id);
+  EXPECT_EQ(std::get<room::StrokeEdit>(room->edits_.held[2].request.edit).batch.path,
             (std::vector<glm::dvec2>{{1, 1}, {2, 2}}));
-  EXPECT_EQ(std::get<room::StrokeEdit>(room->edits[3].request.edit).batch.path,
+  EXPECT_EQ(std::get<room::StrokeEdit>(room->edits_.held[3].request.edit).batch.path,
             (std::vector<glm::dvec2>{{2, 2}, {3, 3}}));
 }
 
@@ -565,8 +585,8 @@ TEST_F(Live, a_save_that_ends_after_the_connection_counts_for_the_next) {
   say(begin(stroke));
   say(extend(stroke, 0, {{1, 1}}));
   connect();
-  room->edits[0].applied({1, 1, 0, false});
-  room->edits[0].saved(room::EditAnswer{1, 1, 0, false});
+  room->edits_.held[0].applied({1, 1, 0, false});
+  room->edits_.held[0].saved(room::EditAnswer{1, 1, 0, false});
   EXPECT_TRUE(socket->of("saved").empty());
   hello();
   EXPECT_EQ(socket->of("welcome")[0]["strokes"][0]["n"], 0);
@@ -577,8 +597,8 @@ TEST_F(Live, an_edit_that_is_taken_back_is_told_as_unsaved) {
   say(begin(stroke));
   const json batch = extend(stroke, 0, {{1, 1}});
   say(batch);
-  room->edits[0].applied({1, 1, 0, false});
-  room->edits[0].saved(fail(ErrorCode::unavailable, "Not saved", "The database is away."));
+  room->edits_.held[0].applied({1, 1, 0, false});
+  room->edits_.held[0].saved(fail(ErrorCode::unavailable, "Not saved", "The database is away."));
   ASSERT_EQ(socket->of("unsaved").size(), 1u);
   EXPECT_EQ(socket->of("unsaved")[0]["ids"], json::array({batch["id"]}));
   EXPECT_TRUE(socket->of("problem").empty());
@@ -591,8 +611,8 @@ TEST_F(Live, an_edit_that_is_refused_is_a_problem_with_its_id) {
        {"id", id},
        {"layer", 7},
        {"edit", {{"op", "fill"}, {"mode", "where"}, {"where", "true"}, {"value", 1}}}});
-  ASSERT_EQ(room->edits.size(), 1u);
-  room->edits[0].saved(fail(ErrorCode::too_many_requests, "Too many edits", "Wait."));
+  ASSERT_EQ(room->edits_.held.size(), 1u);
+  room->edits_.held[0].saved(fail(ErrorCode::too_many_requests, "Too many edits", "Wait."));
   ASSERT_EQ(socket->of("problem").size(), 1u);
   EXPECT_EQ(socket->of("problem")[0]["ref"], id);
   EXPECT_EQ(socket->of("problem")[0]["status"], 429);
@@ -605,7 +625,7 @@ TEST_F(Live, others_hear_that_the_layer_was_edited_and_the_author_does_not) {
   say(extend(stroke, 0, {{1, 1}}));
   room::Listener::Edit own;
   own.layer_id = 7;
-  own.id = room->edits[0].request.id;
+  own.id = room->edits_.held[0].request.id;
   own.user = "anna";
   own.sequence = 1;
   session->edit_applied(own);
@@ -645,7 +665,7 @@ TEST_F(Live, bad_messages_name_the_field_and_the_connection_lives_on) {
   EXPECT_EQ(problems[3]["status"], 400);
   EXPECT_EQ(problems[4]["status"], 415);
   EXPECT_EQ(problems[5]["field"], "view");
-  EXPECT_TRUE(room->edits.empty());
+  EXPECT_TRUE(room->edits_.held.empty());
   EXPECT_EQ(socket->close_code, 0);
 }
 
@@ -657,7 +677,7 @@ TEST_F(Live, a_viewer_may_look_but_not_paint) {
   const auto problems = socket->of("problem");
   ASSERT_EQ(problems.size(), 2u);
   EXPECT_EQ(problems[0]["status"], 403);
-  EXPECT_TRUE(room->edits.empty());
+  EXPECT_TRUE(room->edits_.held.empty());
 }
 
 TEST_F(Live, too_many_messages_are_refused_and_abuse_ends_the_connection) {
@@ -687,14 +707,15 @@ TEST_F(Live, presence_is_told_once_for_many_changes) {
 
 TEST_F(Live, presence_tells_of_each_what_the_room_knows_and_nothing_else) {
   hello();
-  ASSERT_EQ(room->portraits.size(), 1U);
-  EXPECT_EQ(room->portraits.front().full_name, "Anna Ost");
-  const Uuid leader = random_uuid(), follower = room->member->session();
+  ASSERT_EQ(room->participants_.portraits.size(), 1U);
+  EXPECT_EQ(room->participants_.portraits.front().full_name, "Anna Ost");
+  const Uuid leader = random_uuid(), follower = room->participants_.newest->session();
   Camera seen;
   seen.width = 640;
   seen.height = 480;
-  room->people = {{follower, "anna", "Anna Ost", "#112233", {}, false, leader, {}},
-                  {leader, "bea", "", "#445566", room::Pointing{{1, 2, 3}, 0.5}, true, {}, seen}};
+  room->participants_.people = {
+      {follower, "anna", "Anna Ost", "#112233", {}, false, leader, {}},
+      {leader, "bea", "", "#445566", room::Pointing{{1, 2, 3}, 0.5}, true, {}, seen}};
   socket->later.front()();
   const json users = socket->of("presence").at(0)["users"];
   EXPECT_EQ(users[0], (json{{"session", to_string(follower)},
@@ -713,7 +734,7 @@ TEST_F(Live, presence_tells_of_each_what_the_room_knows_and_nothing_else) {
 TEST_F(Live, presence_comes_the_less_often_the_more_people_are_here) {
   shared->limits.presence_every = std::chrono::hours(1);
   hello();
-  room->people.resize(40, room->people[0]);
+  room->participants_.people.resize(40, room->participants_.people[0]);
   socket->later.front()();
   session->presence_changed();
   ASSERT_EQ(socket->delays.size(), 2u);
@@ -726,7 +747,7 @@ TEST_F(Live, what_a_viewer_shows_of_themselves_is_refused_as_a_whole) {
   hello();
   const Uuid bea = random_uuid();
   say({{"op", "presence"}, {"leading", true}, {"follow", to_string(bea)}});
-  say({{"op", "presence"}, {"leading", true}, {"follow", to_string(FakeMember::kGone)}});
+  say({{"op", "presence"}, {"leading", true}, {"follow", to_string(FakeParticipant::kGone)}});
   say({{"op", "presence"}, {"radius", -1}});
   say({{"op", "presence"}, {"follow", nullptr}});
   ASSERT_EQ(socket->of("problem").size(), 2u);
@@ -734,13 +755,13 @@ TEST_F(Live, what_a_viewer_shows_of_themselves_is_refused_as_a_whole) {
   EXPECT_EQ(socket->of("problem")[0]["field"], "follow");
   EXPECT_EQ(socket->of("problem")[1]["field"], "radius");
   using Said = std::vector<std::pair<bool, std::optional<Uuid>>>;
-  EXPECT_EQ(room->member->together, (Said{{true, bea}, {false, std::nullopt}}));
-  EXPECT_EQ(room->member->pointers.size(), 2u);
+  EXPECT_EQ(room->participants_.newest->together, (Said{{true, bea}, {false, std::nullopt}}));
+  EXPECT_EQ(room->participants_.newest->pointers.size(), 2u);
 }
 
 TEST_F(Live, the_brush_in_hand_is_told_with_the_place_that_it_points_at) {
-  room->found.hit = true;
-  room->found.position = {4, 5, 6};
+  room->queries_.found.hit = true;
+  room->queries_.found.position = {4, 5, 6};
   hello();
   json camera = camera_json();
   camera["op"] = "camera";
@@ -748,10 +769,10 @@ TEST_F(Live, the_brush_in_hand_is_told_with_the_place_that_it_points_at) {
   say(camera);
   say({{"op", "presence"}, {"pointer", {10, 20}}, {"radius", 2.5}});
   shared->queries.reset();  // what was asked is answered
-  ASSERT_EQ(room->member->pointers.size(), 1u);
-  ASSERT_TRUE(room->member->pointers[0]);
-  EXPECT_EQ(room->member->pointers[0]->position, glm::dvec3(4, 5, 6));
-  EXPECT_EQ(room->member->pointers[0]->radius, 2.5);
+  ASSERT_EQ(room->participants_.newest->pointers.size(), 1u);
+  ASSERT_TRUE(room->participants_.newest->pointers[0]);
+  EXPECT_EQ(room->participants_.newest->pointers[0]->position, glm::dvec3(4, 5, 6));
+  EXPECT_EQ(room->participants_.newest->pointers[0]->radius, 2.5);
 }
 
 TEST_F(Live, a_client_that_draws_no_jpeg_is_told) {
@@ -763,14 +784,14 @@ TEST_F(Live, a_client_that_draws_no_jpeg_is_told) {
 TEST_F(Live, frames_are_counted_and_stop_with_the_socket) {
   hello();
   const auto message = std::make_shared<const std::vector<std::uint8_t>>(100);
-  room->sends.at(0)({message, message});  // two rectangles
+  room->participants_.sends.at(0)({message, message});  // two rectangles
   EXPECT_EQ(socket->frames.size(), 2u);
   EXPECT_EQ(shared->metrics->frames_sent, 1u);
   EXPECT_EQ(shared->metrics->frame_bytes_sent, 200u);
   session->on_closed();
   session.reset();
   socket.reset();
-  room->sends.at(0)({message});  // an encoder that was late
+  room->participants_.sends.at(0)({message});  // an encoder that was late
 }
 
 TEST_F(Live, after_a_restart_the_batch_before_is_looked_up_off_the_socket_thread) {
@@ -778,7 +799,7 @@ TEST_F(Live, after_a_restart_the_batch_before_is_looked_up_off_the_socket_thread
   say(begin(stroke));
   EXPECT_TRUE(session->on_text(extend(stroke, 4, {{1, 1}}).dump()))
       << "work for a worker, before the next message is read";
-  EXPECT_TRUE(room->edits.empty());
+  EXPECT_TRUE(room->edits_.held.empty());
 }
 
 }  // namespace

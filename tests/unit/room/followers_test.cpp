@@ -1,4 +1,4 @@
-#include "room/followers.h"
+#include "room/open/followers.h"
 
 #include <gtest/gtest.h>
 

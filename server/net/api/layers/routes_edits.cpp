@@ -5,10 +5,15 @@
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/page.h"
-#include "net/serialization/people_wire.h"
-#include "net/serialization/wire.h"
+#include "net/serialization/edit_serialization.h"
+#include "net/serialization/journal_serialization.h"
+#include "net/serialization/people_serialization.h"
 #include "net/transport/server_options.h"
+#include "room/edit.h"
+#include "room/edits.h"
+#include "room/layers.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/journal/journal_reads.h"
 #include "store/store.h"
 
@@ -66,7 +71,7 @@ struct Target {
 
 Result<Target> target_of(const RouteContext& context, const Request& request) {
   auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
-  auto layer = STRATA_TRY(room->layer(request.param("layer")));
+  auto layer = STRATA_TRY(room->layers().find(request.param("layer")));
   return Target{std::move(room), std::move(layer)};
 }
 
@@ -165,10 +170,10 @@ void add_edit_routes(Router& router, const RouteContext& context) {
          editing(context,
                  [](const Request& request, const Target& target) -> Result<room::EditRequest> {
                    auto asked = STRATA_TRY(body_of<protocol::Restore>(request));
-                   if (asked.sequence > target.room->sequence())
+                   if (asked.sequence > target.room->edits().sequence())
                      return fail(ErrorCode::invalid, "Not yet there",
                                  "The newest sequence of this model is " +
-                                     std::to_string(target.room->sequence()) + ".",
+                                     std::to_string(target.room->edits().sequence()) + ".",
                                  "sequence");
                    auto edit = bare_edit(request, target, "restore");
                    edit.record["sequence"] = asked.sequence;

@@ -3,10 +3,14 @@
 #include "core/compensated_sum.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/serialization/wire.h"
+#include "net/serialization/statistics_serialization.h"
+#include "net/serialization/view_settings_serialization.h"
 #include "net/transport/server_options.h"
-#include "room/record_colors.h"
+#include "room/caches/record_colors.h"
+#include "room/layers.h"
+#include "room/queries.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/store.h"
 #include "store/tables/records.h"
 
@@ -19,12 +23,12 @@ Result<Response> extent(const RouteContext& context, const Request& request) {
   auto asked = STRATA_TRY(body_of<protocol::Highlight>(request));
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
-  auto layer = STRATA_TRY((*room)->layer(request.param("layer")));
+  auto layer = STRATA_TRY((*room)->layers().find(request.param("layer")));
   auto highlight = STRATA_TRY(highlight_of(asked, layer, ""));
   auto keys =
       room::highlighted_keys(context.store, *layer.table, request.role(), highlight, "filter");
   if (!keys) return tl::unexpected(keys.error());
-  auto areas = STRATA_TRY((*room)->key_areas(layer.slug));
+  auto areas = STRATA_TRY((*room)->queries().key_areas(layer.slug));
   const auto marks =
       context.store.records().marks(*layer.table, request.role(), (*room)->model().id);
   if (!marks) return tl::unexpected(marks.error());

@@ -6,6 +6,7 @@
 #include "net/serialization/feature_json.h"
 #include "net/serialization/map_query.h"
 #include "net/transport/server_options.h"
+#include "room/edits.h"
 #include "room/room.h"
 
 namespace strata::net {
@@ -41,7 +42,7 @@ Result<Response> read_features(const RouteContext& context, const Request& reque
       format == FeatureFormat::geojson
           ? feature_json(std::move(set))
           : file_response(STRATA_TRY(app::geopackage(set, context.options.upload_dir)));
-  add_sequences(response, asked.sequence, asked.room->durable_sequence());
+  add_sequences(response, asked.sequence, asked.room->edits().durable_sequence());
   response.with("Vary", "Accept");
   return response;
 }

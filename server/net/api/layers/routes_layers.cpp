@@ -16,9 +16,11 @@
 #include "net/http/answer_book.h"
 #include "net/http/page.h"
 #include "net/live/comment_events.h"
-#include "net/serialization/table_wire.h"
+#include "net/serialization/table_serialization.h"
 #include "net/transport/server_options.h"
+#include "room/layers.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/content/layers.h"
 #include "store/content/models.h"
 #include "store/journal/journal_reads.h"
@@ -140,7 +142,7 @@ Result<Response> create_layer(const RouteContext& context, JobBook& book, const 
   auto asked = STRATA_TRY(body_of<protocol::LayerCreate>(request));
   auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
   const Model model = room->model();
-  auto layer = STRATA_TRY(new_layer(asked, model, room->layers()));
+  auto layer = STRATA_TRY(new_layer(asked, model, room->layers().all()));
   if (asked.table) {
     auto table = table_of_project(context.store, model.project_id, *asked.table, "table");
     if (!table) return tl::unexpected(table.error());
@@ -170,8 +172,8 @@ Result<Response> create_layer(const RouteContext& context, JobBook& book, const 
   if (layer.formula)
     return create_formula_layer(context, book, request, room, std::move(layer),
                                 asked.palette.has_value(), answer);
-  auto created = room->create_layer(std::move(layer), first_answer<Layer>(request, answer),
-                                    std::move(*columns));
+  auto created = room->layers().create(std::move(layer), first_answer<Layer>(request, answer),
+                                       std::move(*columns));
   if (!created) return tl::unexpected(created.error());
   return answer(*created);
 }
@@ -247,7 +249,7 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
     if (!(asked == alone))
       return fail(ErrorCode::invalid, "Type with other changes",
                   "Change the type of a layer in a call of its own.", "type");
-    auto widened = room->widen_layer(*layer, *asked.type, first_answer<Layer>(request, answer));
+    auto widened = room->layers().widen(*layer, *asked.type, first_answer<Layer>(request, answer));
     return widened ? Result<Response>(answer(*widened)) : tl::unexpected(widened.error());
   }
   if (asked.name) layer->name = *asked.name;
@@ -277,8 +279,8 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
       return fail(ErrorCode::conflict, "Edits wait for review",
                   "Accept or reject what waits on this layer before it is computed.", "expression");
   }
-  STRATA_TRY(app::check_shows_nothing(context.store, *layer, room->layers()));
-  auto changed = room->update_layer(std::move(*layer), first_answer<Layer>(request, answer));
+  STRATA_TRY(app::check_shows_nothing(context.store, *layer, room->layers().all()));
+  auto changed = room->layers().update(std::move(*layer), first_answer<Layer>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   tell_threads(context, *changed, before, request.user());
   return answer(*changed);
@@ -286,10 +288,10 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
 
 Result<Response> delete_layer(const RouteContext& context, const Request& request) {
   auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
-  auto layer = STRATA_TRY(room->layer(request.param("layer")));
+  auto layer = STRATA_TRY(room->layers().find(request.param("layer")));
   STRATA_TRY(check_if_match(request, layer.version));
-  auto gone =
-      room->bin_layer(layer.id, first_answer<>(request, [] { return empty_response(204); }));
+  auto gone = room->layers().put_in_trash(
+      layer.id, first_answer<>(request, [] { return empty_response(204); }));
   if (!gone) return tl::unexpected(gone.error());
   if (context.options.bin_days == 0) context.bin_keeper.look();
   return empty_response(204);

@@ -10,15 +10,20 @@
 #include "domain/layers/tile_mirror.h"
 #include "domain/layers/value_type.h"
 #include "domain/people/role.h"
+#include "domain/scene/model.h"
+#include "domain/scene/units.h"
 #include "domain/tables/table.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/map_json.h"
 #include "net/serialization/map_query.h"
-#include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
 #include "query/maps/readings.h"
+#include "room/edit.h"
+#include "room/layers.h"
 #include "room/room.h"
+#include "room/rooms.h"
+#include "room/surface.h"
 #include "store/content/models.h"
 #include "store/store.h"
 #include "store/tables/records.h"
@@ -44,7 +49,7 @@ Handler painting(const RouteContext& context, std::string op, Paint paint) {
   return [&context, op = std::move(op), paint](const Request& request, const Respond& respond) {
     auto room = context.rooms.open(request.param("model"), request.role());
     if (!room) return respond(room.error());
-    auto layer = (*room)->layer(request.param("layer"));
+    auto layer = (*room)->layers().find(request.param("layer"));
     if (!layer) return respond(layer.error());
     Result<Painted> painted = paint(request, Target{*room, *layer});
     if (!painted) return respond(painted.error());
@@ -54,7 +59,7 @@ Handler painting(const RouteContext& context, std::string op, Paint paint) {
     for (const auto& [name, value] : request.query) edit.record[name] = value;
     edit.edit = room::ImportEdit{std::move(painted->tiles), true};
     // With the names that the map brought.
-    const auto named = (*room)->layer(std::to_string(layer->id));
+    const auto named = (*room)->layers().find(std::to_string(layer->id));
     if (!named) return respond(named.error());
     if (auto made = app::records_from_legend(context, *named, room::painted_by(*named, edit),
                                              request.author());
@@ -72,7 +77,7 @@ Result<Painted> paint_readings(const Request& request, const Target& target) {
   const auto tolerance_mm =
       STRATA_TRY(number_of(request, "tolerance_mm", 0, kLargestLength_mm, radius_mm));
   const auto readings = STRATA_TRY(query::parse_readings(file->view()));
-  std::vector<room::Room::PlacedValue> values;
+  std::vector<room::PlacedValue> values;
   for (const query::Reading& reading : readings) {
     const auto bits =
         app::bits_of(target.layer, reading.value, "Line " + std::to_string(reading.line) + ": ");
@@ -80,8 +85,8 @@ Result<Painted> paint_readings(const Request& request, const Target& target) {
     values.push_back({reading.position, *bits, reading.line});
   }
   const Unit unit = target.room->model().unit;
-  auto tiles = target.room->dabs(target.layer, values, in_model_units(radius_mm, unit),
-                                 in_model_units(tolerance_mm, unit));
+  auto tiles = target.room->surface().dabs(target.layer, values, in_model_units(radius_mm, unit),
+                                           in_model_units(tolerance_mm, unit));
   if (!tiles) return tl::unexpected(tiles.error());
   return Painted{std::move(*tiles),
                  {{"bytes", request.body_bytes}, {"sha256", sha256_hex(file->view())}}};
@@ -105,9 +110,9 @@ Result<Painted> paint_map(const RouteContext& context, ByteBudget& budget, MakeV
       map_target.records.insert(static_cast<double>(record.key));
   }
   auto values = STRATA_TRY(make(options, files, map_target, budget));
-  auto tiles = target.room->project(target.layer, axis.direction, [&](const glm::dvec3& world) {
-    return values.bits_at(axis.on_map(world));
-  });
+  auto tiles = target.room->surface().project(
+      target.layer, axis.direction,
+      [&](const glm::dvec3& world) { return values.bits_at(axis.on_map(world)); });
   if (!tiles) return tl::unexpected(tiles.error());
   if (values.keys)
     if (auto extended =

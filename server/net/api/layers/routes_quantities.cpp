@@ -15,7 +15,10 @@
 #include "net/serialization/as_of.h"
 #include "net/serialization/sheet_response.h"
 #include "net/transport/server_options.h"
+#include "room/edits.h"
+#include "room/queries.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/content/layers.h"
 #include "store/store.h"
 #include "store/tables/records.h"
@@ -172,7 +175,7 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
   const auto separator = STRATA_TRY(csv_separator(request));
   const auto language = STRATA_TRY(asked_language(request));
   const auto asked = STRATA_TRY(LayerQuery::from(context, request));
-  auto all = asked.room->quantities(asked.layer.slug, asked.at);
+  auto all = asked.room->queries().quantities(asked.layer.slug, asked.at);
   if (!all) return tl::unexpected(all.error());
   Names names;
   OfMarks marks;
@@ -205,7 +208,7 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
                                                   to_sheet(*all, asked.layer, names, marks,
                                                            asked.layer.slug + "-quantities"),
                                                   format, separator));
-  add_sequences(response, asked.sequence, asked.room->durable_sequence());
+  add_sequences(response, asked.sequence, asked.room->edits().durable_sequence());
   response.with("Vary", "Accept");
   return response;
 }
@@ -225,7 +228,7 @@ Result<std::vector<OfLayer>> of_layers(const RouteContext& context, std::int64_t
   for (Layer& layer : layers) {
     if (layer.sequence == 0) continue;  // nothing was ever painted there
     auto room = STRATA_TRY(context.rooms.open(std::to_string(layer.model_id), seen_by));
-    auto all = room->quantities(layer.slug);
+    auto all = room->queries().quantities(layer.slug);
     if (!all && all.error().code == ErrorCode::not_found) continue;  // deleted meanwhile
     if (!all) return tl::unexpected(all.error());
     if (all->classes.empty()) continue;

@@ -1,11 +1,17 @@
+#include "domain/scene/model.h"
+#include "domain/scene/units.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
+#include "net/serialization/point_serialization.h"
 #include "net/serialization/point_text.h"
 #include "net/serialization/sheet_response.h"
-#include "net/serialization/wire.h"
 #include "net/transport/server_options.h"
+#include "room/edits.h"
+#include "room/layers.h"
+#include "room/queries.h"
 #include "room/room.h"
+#include "room/rooms.h"
 
 namespace strata::net {
 namespace {
@@ -19,7 +25,7 @@ std::vector<std::string> slugs_of(const std::vector<Layer>& layers) {
 // Those of a body, or all.
 Result<std::vector<Layer>> asked_layers(
     const room::Room& room, const std::optional<std::vector<protocol::LayerRef>>& asked) {
-  if (!asked) return room.layers();
+  if (!asked) return room.layers().all();
   std::vector<std::string> refs;
   for (const auto& ref : *asked) refs.push_back(protocol::to_ref(ref));
   return find_layers(room, refs, "layers");
@@ -31,7 +37,7 @@ Result<Response> position(const RouteContext& context, const Request& request) {
   if (format != "json" && format != "covjson" && format != "csv")
     return fail(ErrorCode::not_acceptable, "Unknown format", "`f` is json, covjson or csv.", "f");
   auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
-  std::vector<Layer> layers = room->layers();
+  std::vector<Layer> layers = room->layers().all();
   if (auto named = request.query.find("parameter-name"); named != request.query.end()) {
     auto found = find_layers(*room, split_list(named->second), "parameter-name");
     if (!found) return tl::unexpected(found.error());
@@ -39,8 +45,8 @@ Result<Response> position(const RouteContext& context, const Request& request) {
   }
   const auto asked = as_of(request);
   const auto at = STRATA_TRY(find_sequence(context, *room, asked));
-  const auto sequence = at.value_or(room->sequence());
-  auto point = room->position(coordinates, slugs_of(layers), at);
+  const auto sequence = at.value_or(room->edits().sequence());
+  auto point = room->queries().position(coordinates, slugs_of(layers), at);
   if (!point) return tl::unexpected(point.error());
   Response response;
   if (format == "csv")
@@ -54,7 +60,7 @@ Result<Response> position(const RouteContext& context, const Request& request) {
     response = json_response(point_coverage(*point, layers, room->model()));
     response.headers = {{"Content-Type", "application/prs.coverage+json"}};
   }
-  add_sequences(response, sequence, room->durable_sequence());
+  add_sequences(response, sequence, room->edits().durable_sequence());
   return response;
 }
 
@@ -65,8 +71,8 @@ Result<Response> positions(const RouteContext& context, const Request& request) 
   const auto layers = STRATA_TRY(asked_layers(*room, asked.layers));
   const std::vector<glm::dvec3> points(asked.points.begin(), asked.points.end());
   const auto at = STRATA_TRY(find_sequence(context, *room, asked.at));
-  const auto sequence = at.value_or(room->sequence());
-  auto answers = room->positions(points, slugs_of(layers), at);
+  const auto sequence = at.value_or(room->edits().sequence());
+  auto answers = room->queries().positions(points, slugs_of(layers), at);
   if (!answers) return tl::unexpected(answers.error());
   Response response;
   if (request.header("accept").find("text/csv") != std::string_view::npos) {
@@ -77,7 +83,7 @@ Result<Response> positions(const RouteContext& context, const Request& request) 
     const std::size_t total = list.size();
     response = json_response({{"positions", std::move(list)}, {"total", total}});
   }
-  add_sequences(response, sequence, room->durable_sequence());
+  add_sequences(response, sequence, room->edits().durable_sequence());
   response.with("Vary", "Accept");
   return response;
 }
@@ -94,13 +100,13 @@ Result<Response> profile(const RouteContext& context, const Request& request) {
   else
     line = room::SeenLine{*asked.camera, *asked.path};
   const auto at = STRATA_TRY(find_sequence(context, **room, asked.at));
-  const auto sequence = at.value_or((*room)->sequence());
-  const auto found = (*room)->profile(line, slugs_of(layers), at);
+  const auto sequence = at.value_or((*room)->edits().sequence());
+  const auto found = (*room)->queries().profile(line, slugs_of(layers), at);
   if (!found) return tl::unexpected(found.error());
   const bool as_csv = request.header("accept").find("text/csv") != std::string_view::npos;
   Response response = as_csv ? text_response(profile_csv(*found, unit, slugs_of(layers)), kCsvType)
                              : json_response(to_json(*found, unit));
-  add_sequences(response, sequence, (*room)->durable_sequence());
+  add_sequences(response, sequence, (*room)->edits().durable_sequence());
   response.with("Vary", "Accept");
   return response;
 }
@@ -109,11 +115,12 @@ Result<Response> pick(const RouteContext& context, const Request& request) {
   auto asked = STRATA_TRY(body_of<protocol::PickRequest>(request));
   auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
   const auto at = STRATA_TRY(find_sequence(context, *room, asked.at));
-  const auto sequence = at.value_or(room->sequence());
-  auto point = room->pick(asked.camera, asked.x, asked.y, slugs_of(room->layers()), at);
+  const auto sequence = at.value_or(room->edits().sequence());
+  auto point =
+      room->queries().pick(asked.camera, asked.x, asked.y, slugs_of(room->layers().all()), at);
   if (!point) return tl::unexpected(point.error());
   Response response = json_response(protocol::to_json(to_protocol(*point)));
-  add_sequences(response, sequence, room->durable_sequence());
+  add_sequences(response, sequence, room->edits().durable_sequence());
   return response;
 }
 

@@ -15,7 +15,11 @@
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/transport/server_options.h"
+#include "room/edit.h"
+#include "room/layers.h"
 #include "room/room.h"
+#include "room/rooms.h"
+#include "room/surface.h"
 #include "store/content/layers.h"
 #include "store/content/models.h"
 #include "store/store.h"
@@ -96,9 +100,9 @@ Layer copy_of(const Layer& from, int resolution, int order, const jobs::Transfer
 Result<nlohmann::json> transfer(const RouteContext& context, room::Room& room,
                                 const jobs::TransferRequest& request, const std::string& user,
                                 app::NewLayers& layers, Progress& progress) {
-  jobs::TransferTarget target{room.model(), room.geometry(), room.search_tree(),
-                              [&room](int resolution) { return room.surface_map(resolution); }};
-  int order = app::order_on_top(room.layers());
+  jobs::TransferTarget target{room.model(), room.surface().geometry(), room.surface().search_tree(),
+                              [&room](int resolution) { return room.surface().map(resolution); }};
+  int order = app::order_on_top(room.layers().all());
   nlohmann::json report{{"from", request.source.id}, {"layers", nlohmann::json::array()}};
   const auto deliver = [&](jobs::TransferredLayer transferred) -> Result<void> {
     Layer layer = copy_of(*transferred.from, transferred.resolution, order++, request);
@@ -179,7 +183,7 @@ Result<std::string> scan_of(const Model& model, const std::string& wanted) {
 void write_vertices(const RouteContext& context, const Request& request, const Respond& respond) {
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return respond(room.error());
-  auto layer = (*room)->layer(request.param("layer"));
+  auto layer = (*room)->layers().find(request.param("layer"));
   if (!layer) return respond(layer.error());
   const Model model = (*room)->model();
   auto source = scan_of(model, request.query_or("source", {}));
@@ -194,7 +198,7 @@ void write_vertices(const RouteContext& context, const Request& request, const R
   auto values = mesh::read_vertex_csv(*scan, *source, file->view(), progress);
   if (!values) return respond(values.error());
   scan->clear();
-  const auto geometry = (*room)->geometry();
+  const auto geometry = (*room)->surface().geometry();
   auto tiles = jobs::paint_vertex_values(
       geometry, mesh::values_at_positions(*geometry, *values, !is_float(layer->type)), layer->type,
       layer->resolution, progress);

@@ -3,14 +3,24 @@
 #include "core/compensated_sum.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
+#include "domain/scene/model.h"
+#include "domain/scene/units.h"
 #include "expression/expression_parser.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
+#include "net/serialization/edit_serialization.h"
 #include "net/serialization/sheet_response.h"
-#include "net/serialization/wire.h"
+#include "net/serialization/statistics_serialization.h"
 #include "net/transport/server_options.h"
+#include "room/edit.h"
+#include "room/edits.h"
+#include "room/layers.h"
+#include "room/place.h"
+#include "room/queries.h"
 #include "room/room.h"
+#include "room/rooms.h"
+#include "room/selection.h"
 #include "store/store.h"
 #include "store/tables/tables.h"
 
@@ -55,17 +65,17 @@ Result<Response> statistics(const RouteContext& context, const Request& request)
                   "include");
   }
   auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
-  auto layer = STRATA_TRY(room->layer(request.param("layer")));
+  auto layer = STRATA_TRY(room->layers().find(request.param("layer")));
   std::optional<std::string> where;
   if (const auto given = request.query.find("where"); given != request.query.end())
     where = given->second;
   const auto selection =
       STRATA_TRY(selection_of(context, *room, where, std::nullopt, as_of(request)));
-  const auto sequence = selection.at.value_or(room->sequence());
-  auto statistics = room->statistics(layer.slug, selection, wanted);
+  const auto sequence = selection.at.value_or(room->edits().sequence());
+  auto statistics = room->queries().statistics(layer.slug, selection, wanted);
   if (!statistics) return tl::unexpected(statistics.error());
   Response response = json_response(to_json(*statistics));
-  add_sequences(response, sequence, room->durable_sequence());
+  add_sequences(response, sequence, room->edits().durable_sequence());
   return response;
 }
 
@@ -80,7 +90,7 @@ Result<room::EditRequest> painting(const Request& request, const protocol::Selec
         ErrorCode::invalid, "Cannot be painted",
         "`into` paints where a condition holds now: give `where`, and neither `within` nor `at`.",
         "into");
-  const auto layer = room.layer(protocol::to_ref(asked.into->layer));
+  const auto layer = room.layers().find(protocol::to_ref(asked.into->layer));
   if (!layer) {
     Error problem = layer.error();
     problem.field = "into.layer";
@@ -121,8 +131,8 @@ void select(const RouteContext& context, const Request& request, const Respond& 
     if (!made) return respond(made.error());
     edit = std::move(*made);
   }
-  const auto sequence = selection->at.value_or((*room)->sequence());
-  const auto area = (*room)->select(*selection, slugs, wanted);
+  const auto sequence = selection->at.value_or((*room)->edits().sequence());
+  const auto area = (*room)->queries().select(*selection, slugs, wanted);
   if (!area) return respond(area.error());
   nlohmann::json body = to_json(*area);
   if (edit)
@@ -132,7 +142,7 @@ void select(const RouteContext& context, const Request& request, const Respond& 
                         return std::move(body);
                       });
   Response response = json_response(body);
-  add_sequences(response, sequence, (*room)->durable_sequence());
+  add_sequences(response, sequence, (*room)->edits().durable_sequence());
   respond(std::move(response));
 }
 
@@ -207,8 +217,9 @@ Result<Response> cross_table(const RouteContext& context, const Request& request
   const auto columns = STRATA_TRY(find_layers(*room, {protocol::to_ref(asked.columns)}, "columns"));
   const auto selection =
       STRATA_TRY(selection_of(context, *room, asked.where, asked.within, asked.at));
-  const auto sequence = selection.at.value_or(room->sequence());
-  const auto table = room->cross_table(rows.front().slug, columns.front().slug, selection);
+  const auto sequence = selection.at.value_or(room->edits().sequence());
+  const auto table =
+      room->queries().cross_table(rows.front().slug, columns.front().slug, selection);
   if (!table) return tl::unexpected(table.error());
   Response response =
       as_csv ? text_response(cross_table_csv(*table, rows.front().slug, columns.front().slug),
@@ -226,7 +237,7 @@ Result<Response> cross_table(const RouteContext& context, const Request& request
     if (!sheet) return sheet;
     response = std::move(*sheet);
   }
-  add_sequences(response, sequence, room->durable_sequence());
+  add_sequences(response, sequence, room->edits().durable_sequence());
   response.with("Vary", "Accept");
   return response;
 }

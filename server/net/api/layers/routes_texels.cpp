@@ -16,7 +16,13 @@
 #include "net/serialization/sheet_response.h"
 #include "net/transport/server_options.h"
 #include "query/rasters/raster.h"
+#include "room/edit.h"
+#include "room/edits.h"
+#include "room/layers.h"
+#include "room/queries.h"
 #include "room/room.h"
+#include "room/rooms.h"
+#include "room/selection.h"
 #include "store/store.h"
 #include "store/tables/records.h"
 #include "store/tables/tables.h"
@@ -58,14 +64,15 @@ Result<Response> read_texels(const RouteContext& context, ByteBudget& budget,
   auto format = STRATA_TRY(format_of(request));
   const auto asked = STRATA_TRY(LayerQuery::from(context, request));
   auto held = STRATA_TRY(budget.take(raster_bytes(asked.layer)));
-  auto snapshot = asked.room->tiles(asked.layer.slug, asked.at);
+  auto snapshot = asked.room->queries().tiles(asked.layer.slug, asked.at);
   if (!snapshot) return tl::unexpected(snapshot.error());
   auto bytes = format->encode(asked.layer, snapshot->tiles);
   if (!bytes) return tl::unexpected(bytes.error());
   Response response = bytes_response(std::move(*bytes), format->media_type);
   response.held = std::move(held);
   name_download(response, asked.layer.slug + "." + format->extension);
-  add_sequences(response, asked.at.value_or(snapshot->sequence), asked.room->durable_sequence());
+  add_sequences(response, asked.at.value_or(snapshot->sequence),
+                asked.room->edits().durable_sequence());
   return response;
 }
 
@@ -93,7 +100,7 @@ void write_texels(const RouteContext& context, ByteBudget& budget, const Request
   if (!format) return respond(format.error());
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return respond(room.error());
-  auto layer = (*room)->layer(request.param("layer"));
+  auto layer = (*room)->layers().find(request.param("layer"));
   if (!layer) return respond(layer.error());
   if (auto fits = check_size(*layer, request.body_bytes); !fits) return respond(fits.error());
   auto held = budget.take(raster_bytes(*layer));
@@ -172,7 +179,7 @@ Result<Response> read_texel_lines(const RouteContext& context, const Request& re
   }
   const auto asked = STRATA_TRY(LayerQuery::from(context, request));
   selection.at = asked.at;
-  auto found = asked.room->surface_texels(asked.layer.slug, selection);
+  auto found = asked.room->queries().surface_texels(asked.layer.slug, selection);
   if (!found) return tl::unexpected(found.error());
   const auto texels = std::make_shared<const query::SurfaceTexels>(std::move(*found));
   auto csv = std::make_shared<app::TexelCsv>(asked.room->model().unit, separator);
@@ -187,7 +194,7 @@ Result<Response> read_texel_lines(const RouteContext& context, const Request& re
   response.with("Content-Type", kCsvType);
   name_download(response, asked.layer.slug + ".csv");
   add_sequences(response, asked.at.value_or(texels->view.snapshot.sequence),
-                asked.room->durable_sequence());
+                asked.room->edits().durable_sequence());
   response.stream = Response::Stream{
       {}, [texels, csv, cells](const Response::Sink& sink) {
         std::string text = csv->head();

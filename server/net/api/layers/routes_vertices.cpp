@@ -4,7 +4,14 @@
 #include "net/serialization/as_of.h"
 #include "net/serialization/sheet_response.h"
 #include "query/sampling/vertex_ply.h"
+#include "room/at.h"
+#include "room/edits.h"
+#include "room/layers.h"
+#include "room/queries.h"
 #include "room/room.h"
+#include "room/rooms.h"
+#include "room/surface.h"
+#include "room/view_settings.h"
 
 namespace strata::net {
 namespace {
@@ -17,8 +24,8 @@ struct VertexFile {
 
 // The layers that the query names, as it names them; all by their order where it names none.
 Result<std::vector<query::LayerView>> layer_views(const Request& request, room::Room& room,
-                                                  room::Room::At at) {
-  std::vector<Layer> layers = room.layers();
+                                                  room::At at) {
+  std::vector<Layer> layers = room.layers().all();
   if (const auto named = request.query.find("layers"); named != request.query.end()) {
     auto found = find_layers(room, split_list(named->second), "layers");
     if (!found) return tl::unexpected(found.error());
@@ -29,7 +36,7 @@ Result<std::vector<query::LayerView>> layer_views(const Request& request, room::
     for (const query::LayerView& other : views)
       if (other.layer.id == layer.id)
         return fail(ErrorCode::invalid, "Layer named twice", "Name each layer once.", "layers");
-    auto tiles = STRATA_TRY(room.tiles(layer.slug, at));
+    auto tiles = STRATA_TRY(room.queries().tiles(layer.slug, at));
     views.push_back({layer, std::move(tiles)});
   }
   return views;
@@ -62,7 +69,7 @@ Result<Response> read_vertices(const RouteContext& context, const Request& reque
   STRATA_TRY(check_source_download(request, room->model()));
   const auto by_layers = STRATA_TRY(wants_layer_colors(request));
   const auto at = STRATA_TRY(find_sequence(context, *room, as_of(request)));
-  const auto sequence = at.value_or(room->sequence());
+  const auto sequence = at.value_or(room->edits().sequence());
   auto views = STRATA_TRY(layer_views(request, *room, at));
   MemoryLedger::Share memory;
   std::optional<query::VertexColors> colors;
@@ -73,13 +80,13 @@ Result<Response> read_vertices(const RouteContext& context, const Request& reque
     memory = std::move(composed->memory);
     colors = std::move(composed->colors);
   }
-  query::VertexPly ply(room->geometry(), std::move(views), std::move(colors));
+  query::VertexPly ply(room->surface().geometry(), std::move(views), std::move(colors));
   const auto file =
       std::make_shared<const VertexFile>(VertexFile{std::move(memory), std::move(ply)});
   Response response;
   response.with("Content-Type", "model/ply");
   name_download(response, room->model().slug + ".ply");
-  add_sequences(response, sequence, room->durable_sequence());
+  add_sequences(response, sequence, room->edits().durable_sequence());
   response.stream = Response::Stream{
       file->ply.bytes(), [file](const Response::Sink& sink) { return file->ply.write(sink); }};
   return response;

@@ -5,8 +5,12 @@
 #include "domain/tables/table.h"
 #include "net/serialization/as_of.h"
 #include "net/serialization/at_field.h"
-#include "net/serialization/view_wire.h"
+#include "net/serialization/view_serialization.h"
+#include "room/edits.h"
+#include "room/layers.h"
 #include "room/room.h"
+#include "room/rooms.h"
+#include "room/view_settings.h"
 #include "store/content/named_parts.h"
 #include "store/store.h"
 #include "store/tables/tables.h"
@@ -86,7 +90,7 @@ Result<void> read_direction(const protocol::FigureRequest& asked,
 
 Result<void> read_labels(const RouteContext& context, const protocol::FigureLabels& asked,
                          FigureRequest& figure) {
-  const auto layer = figure.room->layer(protocol::to_ref(asked.layer));
+  const auto layer = figure.room->layers().find(protocol::to_ref(asked.layer));
   if (!layer) {
     return at_field(layer.error(), "labels.layer");
   }
@@ -120,7 +124,7 @@ Result<FigureRequest> read_figure_request(const RouteContext& context, const Req
   const auto at = STRATA_TRY(find_sequence(context, *figure.room, asked.at));
   // Which layers it shows is settled before what of them waits: one that others see only later is
   // not on it, unmarked.
-  for (Layer& layer : figure.room->layers())
+  for (Layer& layer : figure.room->layers().all())
     if (figure.shown.shown.of(layer.id).visible.value_or(layer.visible))
       figure.layers.push_back(layer);
   room::sort_as_shown(figure.layers, figure.shown.shown);
@@ -129,7 +133,7 @@ Result<FigureRequest> read_figure_request(const RouteContext& context, const Req
   if (at) {
     figure.shown.at = at;
   } else {
-    room::Room::DurableState newest = figure.room->durable_state();
+    room::DurableState newest = figure.room->edits().durable_state();
     figure.shown.at = newest.sequence;
     figure.shown.provisional = std::move(newest.provisional);
   }

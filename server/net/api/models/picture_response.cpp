@@ -1,6 +1,7 @@
 #include "net/api/models/picture_response.h"
 
 #include "media/picture.h"
+#include "room/pictures.h"
 
 namespace strata::net {
 
@@ -8,7 +9,7 @@ Result<Response> picture_response(room::Room& room, const room::PictureRequest& 
                                   const Camera& camera, bool is_png) {
   constexpr int kJpegQuality = 90;  // one picture, not a frame of many
   const PictureFormat format = is_png ? PictureFormat::png : PictureFormat::jpeg;
-  auto file = STRATA_TRY(room.picture_file(shown, camera, format, {kJpegQuality, true}));
+  auto file = STRATA_TRY(room.pictures().draw_file(shown, camera, format, {kJpegQuality, true}));
   return bytes_response(std::move(file), std::string(media_type(format)));
 }
 

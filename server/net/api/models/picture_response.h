@@ -1,6 +1,7 @@
 #pragma once
 
 #include "net/http/http_types.h"
+#include "room/pictures.h"
 #include "room/room.h"
 
 namespace strata::net {

@@ -17,9 +17,10 @@
 #include "net/http/page.h"
 #include "net/live/comment_events.h"
 #include "net/live/live_sockets.h"
-#include "net/serialization/people_wire.h"
-#include "net/serialization/wire.h"
+#include "net/serialization/people_serialization.h"
+#include "room/queries.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/content/comments.h"
 #include "store/content/models.h"
 #include "store/store.h"
@@ -135,7 +136,7 @@ Result<Response> list_replies(const RouteContext& context, const Request& reques
 }
 
 Result<Comment::Place> place_on(room::Room& room, const glm::dvec3& world) {
-  const auto nearest = STRATA_TRY(room.position(world, {}));
+  const auto nearest = STRATA_TRY(room.queries().position(world, {}));
   const Model model = room.model();
   const double farthest = kFarthest * glm::length(model.bounds_max - model.bounds_min);
   if (!nearest.hit || nearest.distance > farthest)

@@ -5,6 +5,7 @@
 #include "jobs/job_queue.h"
 #include "net/api/models/figure_request.h"
 #include "net/transport/server_options.h"
+#include "room/edits.h"
 #include "room/room.h"
 
 namespace strata::net {
@@ -47,7 +48,7 @@ Result<Response> answer(const RouteContext& context, const std::shared_ptr<ByteB
   auto file = STRATA_TRY(
       app::make_figure(context.store, *budget, *wish, context.options.upload_dir, unwatched));
   Response response = file_response(std::move(file));
-  add_sequences(response, *wish->shown.at, wish->room->durable_sequence());
+  add_sequences(response, *wish->shown.at, wish->room->edits().durable_sequence());
   return response;
 }
 

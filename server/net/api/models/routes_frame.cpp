@@ -2,9 +2,13 @@
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
-#include "net/serialization/wire.h"
+#include "net/serialization/view_settings_serialization.h"
 #include "net/transport/server_options.h"
+#include "room/edits.h"
+#include "room/layers.h"
+#include "room/pictures.h"
 #include "room/room.h"
+#include "room/rooms.h"
 
 namespace strata::net {
 namespace {
@@ -17,7 +21,7 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
   if (asked.layers) {
     wanted.layers.emplace();
     for (std::size_t i = 0; i < asked.layers->size(); ++i) {
-      auto layer = (*room)->layer(protocol::to_ref((*asked.layers)[i]));
+      auto layer = (*room)->layers().find(protocol::to_ref((*asked.layers)[i]));
       if (!layer) {
         Error problem = layer.error();
         problem.field = "layers[" + std::to_string(i) + "]";
@@ -30,7 +34,7 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
     for (std::size_t i = 0; i < asked.highlights->size(); ++i) {
       const auto& wished = (*asked.highlights)[i];
       const std::string field = "highlights[" + std::to_string(i) + "]";
-      auto layer = (*room)->layer(protocol::to_ref(wished.layer));
+      auto layer = (*room)->layers().find(protocol::to_ref(wished.layer));
       if (!layer) {
         Error problem = layer.error();
         problem.field = field + ".layer";
@@ -41,7 +45,7 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
           {layer->id, std::nullopt, std::nullopt, std::nullopt, std::move(highlight)});
     }
   }
-  const auto sequence = (*room)->sequence();
+  const auto sequence = (*room)->edits().sequence();
   const auto at = STRATA_TRY(find_sequence(context, **room, asked.at));
   wanted.at = at;
   if (asked.looks) {
@@ -54,7 +58,7 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
   wanted.shown.background = background;
   auto response = STRATA_TRY(picture_response(**room, wanted, asked.camera,
                                               asked.format == protocol::FrameRequestFormat::png));
-  add_sequences(response, wanted.at.value_or(sequence), (*room)->durable_sequence());
+  add_sequences(response, wanted.at.value_or(sequence), (*room)->edits().durable_sequence());
   return response;
 }
 

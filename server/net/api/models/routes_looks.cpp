@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/mapped_file.h"
+#include "core/memory_ledger.h"
 #include "domain/people/role.h"
 #include "domain/scene/look.h"
 #include "media/picture.h"
@@ -12,7 +13,9 @@
 #include "net/http/answer_book.h"
 #include "net/http/page.h"
 #include "net/transport/server_options.h"
+#include "room/looks.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/content/looks.h"
 #include "store/content/models.h"
 #include "store/store.h"
@@ -81,14 +84,15 @@ Result<Response> create_look(const RouteContext& context, const Request& request
   }
   decoded.rgba = {};
   auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
-  const auto looks = room->looks();
+  const auto looks = room->looks().all();
   look.order = looks.empty() ? 0 : looks.back().order + 1;
   const auto answer = [model = room->model().slug](const Look& made) {
     return json_response(to_json(made), 201)
         .with("Location", "/api/v1/models/" + model + "/looks/" + made.slug)
         .with("ETag", etag_of(made.version));
   };
-  auto created = room->create_look(std::move(look), picture, first_answer<Look>(request, answer));
+  auto created =
+      room->looks().create(std::move(look), picture, first_answer<Look>(request, answer));
   if (!created) return tl::unexpected(created.error());
   return answer(*created);
 }
@@ -106,7 +110,7 @@ Result<Response> change_look(const RouteContext& context, const Request& request
   const auto answer = [](const Look& now) {
     return json_response(to_json(now)).with("ETag", etag_of(now.version));
   };
-  auto changed = room->update_look(look, first_answer<Look>(request, answer));
+  auto changed = room->looks().update(look, first_answer<Look>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   return answer(*changed);
 }
@@ -116,7 +120,7 @@ Result<Response> delete_look(const RouteContext& context, const Request& request
   auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
   STRATA_TRY(check_if_match(request, look.version));
   auto gone =
-      room->delete_look(look.id, first_answer<>(request, [] { return empty_response(204); }));
+      room->looks().erase(look.id, first_answer<>(request, [] { return empty_response(204); }));
   if (!gone) return tl::unexpected(gone.error());
   return empty_response(204);
 }

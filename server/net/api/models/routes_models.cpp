@@ -8,6 +8,7 @@
 #include "net/http/page.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/content/models.h"
 #include "store/content/projects.h"
 #include "store/store.h"

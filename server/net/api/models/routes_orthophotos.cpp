@@ -14,7 +14,10 @@
 #include "net/http/job_book.h"
 #include "net/serialization/map_query.h"
 #include "net/transport/server_options.h"
+#include "room/looks.h"
 #include "room/room.h"
+#include "room/rooms.h"
+#include "room/surface.h"
 #include "store/content/first_answer.h"
 #include "store/content/models.h"
 #include "store/store.h"
@@ -60,9 +63,10 @@ Result<Look> bake(room::Room& room, const Wish& wish, const app::MapPicture& map
   Layer colors;  // of the surface: never stored, its numbers are RGBA
   colors.type = ValueType::u32;
   colors.resolution = wish.resolution;
-  const auto tiles = room.project(colors, wish.axis.direction, [&](const glm::dvec3& world) {
-    return progress.cancelled() ? std::nullopt : sampler.color_at(wish.axis.on_map(world));
-  });
+  const auto tiles =
+      room.surface().project(colors, wish.axis.direction, [&](const glm::dvec3& world) {
+        return progress.cancelled() ? std::nullopt : sampler.color_at(wish.axis.on_map(world));
+      });
   if (progress.cancelled()) return cancelled_problem();
   if (!tiles) return tl::unexpected(tiles.error());
   if (tiles->empty())
@@ -71,7 +75,7 @@ Result<Look> bake(room::Room& room, const Wish& wish, const app::MapPicture& map
         "Nothing of the model lies under the picture. Check its place, the direction and the unit.",
         "world");
   progress.report(0.4, "Painting the look");
-  const auto map_of_surface = STRATA_TRY(room.surface_map(wish.resolution));
+  const auto map_of_surface = STRATA_TRY(room.surface().map(wish.resolution));
   const Picture picture = jobs::orthophoto_look(*tiles, *map_of_surface);
   if (progress.cancelled()) return cancelled_problem();
   progress.report(0.6, "Packing the look");
@@ -83,9 +87,9 @@ Result<Look> bake(room::Room& room, const Wish& wish, const app::MapPicture& map
   look.media_type = media_type(PictureFormat::png);
   look.width = picture.width;
   look.height = picture.height;
-  const auto looks = room.looks();
+  const auto looks = room.looks().all();
   look.order = looks.empty() ? 0 : looks.back().order + 1;
-  return room.create_look(std::move(look), png, answer);
+  return room.looks().create(std::move(look), png, answer);
 }
 
 Result<Response> start_orthophoto(const RouteContext& context, JobBook& book, ByteBudget& budget,

@@ -1,9 +1,10 @@
 // How a person shows the layers of a model, kept for them alone.
 #include "domain/people/role.h"
 #include "net/api/models/personal_view.h"
-#include "net/serialization/view_wire.h"
+#include "net/serialization/view_serialization.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/content/models.h"
 #include "store/people/personal_views.h"
 #include "store/store.h"

@@ -1,4 +1,5 @@
 // Tours of a model. Everybody reads them, curators make and change them.
+#include "core/text/timestamp.h"
 #include "domain/people/role.h"
 #include "domain/scene/model.h"
 #include "net/api/annotated_routes.h"
@@ -6,8 +7,7 @@
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
 #include "net/http/page.h"
-#include "net/serialization/tour_wire.h"
-#include "net/serialization/wire.h"
+#include "net/serialization/tour_serialization.h"
 #include "store/content/models.h"
 #include "store/content/named_parts.h"
 #include "store/people/kiosks.h"

@@ -11,9 +11,13 @@
 #include "net/http/answer_book.h"
 #include "net/http/page.h"
 #include "net/live/live_sockets.h"
-#include "net/serialization/view_wire.h"
+#include "net/serialization/view_serialization.h"
 #include "protocol/json_values.h"
+#include "room/edits.h"
+#include "room/pictures.h"
 #include "room/room.h"
+#include "room/rooms.h"
+#include "room/view_settings.h"
 #include "store/content/named_parts.h"
 #include "store/store.h"
 
@@ -117,10 +121,10 @@ Result<Response> view_picture(const RouteContext& context, const Request& reques
     camera.height = std::max(1, static_cast<int>(std::lround(camera.height * scale)));
   }
   wanted.shown = std::move(*shown);
-  const auto sequence = found.room->sequence();
+  const auto sequence = found.room->edits().sequence();
   auto response = picture_response(*found.room, wanted, camera, format == "png");
   if (!response) return response;
-  add_sequences(*response, sequence, found.room->durable_sequence());
+  add_sequences(*response, sequence, found.room->edits().durable_sequence());
   return response;
 }
 

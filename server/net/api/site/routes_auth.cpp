@@ -1,6 +1,7 @@
 // Signing in and out, and what people change of themselves.
 #include <memory>
 
+#include "core/text/timestamp.h"
 #include "core/text/utf8.h"
 #include "domain/people/role.h"
 #include "net/api/route_help.h"
@@ -10,9 +11,9 @@
 #include "net/auth/sign_in_gate.h"
 #include "net/http/origin.h"
 #include "net/http/page.h"
+#include "net/live/close_codes.h"
 #include "net/live/live_sockets.h"
-#include "net/serialization/people_wire.h"
-#include "net/serialization/wire.h"
+#include "net/serialization/people_serialization.h"
 #include "net/transport/server_options.h"
 #include "store/content/projects.h"
 #include "store/people/accounts.h"

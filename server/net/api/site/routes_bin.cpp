@@ -3,15 +3,17 @@
 
 #include "app/bin_keeper.h"
 #include "app/change_notifier.h"
+#include "core/text/timestamp.h"
 #include "domain/people/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
 #include "net/http/page.h"
-#include "net/serialization/people_wire.h"
-#include "net/serialization/wire.h"
+#include "net/serialization/people_serialization.h"
 #include "net/transport/server_options.h"
+#include "room/layers.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/content/projects.h"
 #include "store/store.h"
 #include "store/tables/table_changes.h"
@@ -147,7 +149,7 @@ Result<Response> restore(const RouteContext& context, const Request& request) {
   }
   // Through the room: those who look at the model are told.
   const auto room = STRATA_TRY(context.rooms.open(std::to_string(entry.model_id), request.role()));
-  const auto restored = room->restore_layer(entry, answer);
+  const auto restored = room->layers().restore(entry, answer);
   return restored ? Result<Response>(to_response(*restored)) : tl::unexpected(restored.error());
 }
 

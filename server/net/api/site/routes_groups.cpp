@@ -4,7 +4,7 @@
 #include "net/api/routes.h"
 #include "net/auth/project_gate.h"
 #include "net/http/page.h"
-#include "net/serialization/wire.h"
+#include "net/serialization/group_serialization.h"
 #include "net/transport/server_options.h"
 #include "store/content/projects.h"
 #include "store/people/groups.h"
@@ -96,13 +96,6 @@ Result<Response> take_role(const RouteContext& context, const Request& request) 
 }
 
 }  // namespace
-
-nlohmann::json to_json(const store::ProjectGroup& group) {
-  return {{"id", group.group.id},
-          {"name", group.group.name},
-          {"people", group.group.people},
-          {"role", std::string(name(group.role))}};
-}
 
 void add_group_routes(Router& router, const RouteContext& context) {
   const auto add = [&](Method method, std::string pattern,

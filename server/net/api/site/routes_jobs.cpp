@@ -2,7 +2,7 @@
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/page.h"
-#include "net/serialization/wire.h"
+#include "net/serialization/job_serialization.h"
 
 namespace strata::net {
 namespace {

@@ -1,6 +1,7 @@
 // Links for kiosks: what curators do with them, and what a kiosk asks.
 #include <memory>
 
+#include "core/text/timestamp.h"
 #include "domain/people/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
@@ -9,9 +10,9 @@
 #include "net/auth/sign_in_gate.h"
 #include "net/http/origin.h"
 #include "net/http/page.h"
+#include "net/live/close_codes.h"
 #include "net/live/live_sockets.h"
-#include "net/serialization/tour_wire.h"
-#include "net/serialization/wire.h"
+#include "net/serialization/tour_serialization.h"
 #include "net/transport/server_options.h"
 #include "store/content/models.h"
 #include "store/people/kiosks.h"

@@ -11,6 +11,7 @@
 #include "net/transport/server_options.h"
 #include "render/renderer.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/store.h"
 
 namespace strata::net {

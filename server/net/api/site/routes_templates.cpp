@@ -18,7 +18,9 @@
 #include "net/live/live_sockets.h"
 #include "net/live/table_events.h"
 #include "net/transport/server_options.h"
+#include "room/layers.h"
 #include "room/room.h"
+#include "room/rooms.h"
 #include "store/content/first_answer.h"
 #include "store/content/projects.h"
 #include "store/store.h"
@@ -58,7 +60,7 @@ struct WishedLayer {
 Result<std::vector<WishedLayer>> wished_layers(const protocol::Template& of, const room::Room& room,
                                                const std::optional<std::string>& language) {
   const Model model = room.model();
-  const auto others = room.layers();
+  const auto others = room.layers().all();
   int order = app::order_on_top(others);
   std::vector<WishedLayer> wished;
   for (const protocol::TemplateLayer& told : of.layers) {
@@ -121,7 +123,7 @@ Result<std::vector<Layer>> make_layers(const RouteContext& context, const Reques
     for (Layer& layer : made) {
       if (layer.id == last.id)
         layer = last;
-      else if (auto shown = room->layer(std::to_string(layer.id)))
+      else if (auto shown = room->layers().find(std::to_string(layer.id)))
         layer = std::move(*shown);
     }
     return answer_with(tables, made);
@@ -129,7 +131,7 @@ Result<std::vector<Layer>> make_layers(const RouteContext& context, const Reques
   if (auto shown = layers.show(first_answer<Layer>(request, now)); !shown)
     return refuse(shown.error());
   for (Layer& layer : made)
-    if (auto shown = room->layer(std::to_string(layer.id))) layer = std::move(*shown);
+    if (auto shown = room->layers().find(std::to_string(layer.id))) layer = std::move(*shown);
   return made;
 }
 

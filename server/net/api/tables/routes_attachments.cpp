@@ -18,7 +18,7 @@
 #include "net/live/live_sockets.h"
 #include "net/live/table_events.h"
 #include "net/serialization/record_place.h"
-#include "net/serialization/table_wire.h"
+#include "net/serialization/table_serialization.h"
 #include "net/transport/server_options.h"
 #include "store/store.h"
 #include "store/tables/attachments.h"

@@ -1,0 +1,96 @@
+#include "net/live/live_sockets.h"
+
+#include <utility>
+
+#include "net/live/live_session.h"
+
+namespace strata::net {
+
+void LiveSockets::add(std::weak_ptr<LiveSocket> socket, std::weak_ptr<LiveSession> session,
+                      std::string secret) {
+  std::lock_guard lock(mutex_);
+  std::erase_if(entries_, [](const Entry& known) { return known.socket.expired(); });
+  entries_.push_back({std::move(socket), std::move(session), std::move(secret)});
+}
+
+void LiveSockets::tell_all(const protocol::ServerMessage& message) {
+  tell_if([](const LiveSession&) { return true; }, message);
+}
+
+void LiveSockets::tell_model(std::int64_t model_id, const protocol::ServerMessage& message) {
+  tell_if([&](const LiveSession& session) { return session.model_id() == model_id; }, message);
+}
+
+void LiveSockets::tell_model(std::int64_t model_id, Visibility visibility,
+                             const protocol::ServerMessage& message) {
+  tell_if(
+      [&](const LiveSession& session) {
+        return session.model_id() == model_id && sees(session.role(), visibility);
+      },
+      message);
+}
+
+void LiveSockets::tell_sight(std::int64_t model_id, Visibility sight,
+                             const protocol::ServerMessage& message) {
+  tell_if(
+      [&](const LiveSession& session) {
+        return session.model_id() == model_id && sight_of(session.role()) == sight;
+      },
+      message);
+}
+
+void LiveSockets::tell_project(std::int64_t project_id, const protocol::ServerMessage& message) {
+  tell_if([&](const LiveSession& session) { return session.project_id() == project_id; }, message);
+}
+
+void LiveSockets::tell_project(std::int64_t project_id, Visibility sight,
+                               const protocol::ServerMessage& message) {
+  tell_if(
+      [&](const LiveSession& session) {
+        return session.project_id() == project_id && sight_of(session.role()) == sight;
+      },
+      message);
+}
+
+void LiveSockets::close_all(int code, const std::string& reason) {
+  close_if([](const Entry&) { return true; }, code, reason);
+}
+
+void LiveSockets::close_those_of(const std::string& secret, int code, const std::string& reason) {
+  close_if([&](const Entry& entry) { return entry.secret == secret; }, code, reason);
+}
+
+void LiveSockets::close_user(const std::string& user, int code, const std::string& reason) {
+  close_if(
+      [&](const Entry& entry) {
+        const auto session = entry.session.lock();
+        return session && session->user() == user;
+      },
+      code, reason);
+}
+
+void LiveSockets::tell_if(const std::function<bool(const LiveSession&)>& chosen,
+                          const protocol::ServerMessage& message) {
+  std::vector<std::shared_ptr<LiveSession>> sessions;
+  {
+    std::lock_guard lock(mutex_);
+    for (const Entry& entry : entries_)
+      if (auto session = entry.session.lock()) sessions.push_back(std::move(session));
+  }
+  for (const auto& session : sessions)
+    if (chosen(*session)) session->tell(message);
+}
+
+void LiveSockets::close_if(const std::function<bool(const Entry&)>& chosen, int code,
+                           const std::string& reason) {
+  std::vector<std::shared_ptr<LiveSocket>> sockets;
+  {
+    std::lock_guard lock(mutex_);
+    for (const Entry& entry : entries_)
+      if (chosen(entry))
+        if (auto socket = entry.socket.lock()) sockets.push_back(std::move(socket));
+  }
+  for (const auto& socket : sockets) socket->close(code, reason);
+}
+
+}  // namespace strata::net

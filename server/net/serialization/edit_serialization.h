@@ -1,0 +1,43 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+
+#include "app/strokes/stroke_book.h"
+#include "app/strokes/tool_shelf.h"
+#include "core/error.h"
+#include "core/uuid.h"
+#include "protocol/parse.h"
+#include "room/edit.h"
+#include "room/place.h"
+
+namespace strata {
+struct Layer;
+struct Model;
+}  // namespace strata
+
+// Edits between the protocol's values and the domain's. Values outside a layer's type are refused,
+// not clamped.
+namespace strata::net {
+
+// Whether the brush is a tool of the site, so that `find_tool` will be called.
+bool names_tool(const protocol::Edit& edit);
+bool names_tool(const protocol::StrokeBegin& begin);
+
+// `edit` for the layer; its `record` is the edit as asked, with a tool's id in place of its slug. A
+// tool that is not there is refused (invalid, `shape`); without `find_tool`, any.
+Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& layer,
+                                       const Model& model, const Uuid& id, Author author,
+                                       const app::FindTool& find_tool = {});
+Result<app::StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& layer,
+                                    const Model& model, const app::FindTool& find_tool = {});
+room::EditRequest batch_request(app::StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id,
+                                int n, Author author);
+
+// Where the path of a stroke's batch ended, from its journal record; nothing when the record is of
+// another kind.
+std::optional<app::StrokeBook::End> end_of_path(const nlohmann::json& record);
+
+room::Place place_of(const protocol::SurfacePlace& place);
+
+}  // namespace strata::net

@@ -1,0 +1,254 @@
+#include "net/serialization/tour_serialization.h"
+
+#include <algorithm>
+#include <set>
+
+#include "core/text/timestamp.h"
+#include "domain/layers/layer.h"
+#include "domain/tables/table.h"
+#include "net/serialization/at_field.h"
+#include "net/serialization/table_serialization.h"
+#include "store/content/layers.h"
+#include "store/store.h"
+#include "store/tables/records.h"
+#include "store/tables/tables.h"
+
+namespace strata::net {
+namespace {
+
+std::string at(const std::string& list, std::size_t place) {
+  return list + "[" + std::to_string(place) + "]";
+}
+
+Result<void> once(std::set<std::int64_t>& known, std::int64_t id, const char* what,
+                  const std::string& field) {
+  if (known.insert(id).second) return {};
+  return fail(ErrorCode::invalid, "Named twice",
+              "This " + std::string(what) + " is named before already.", field);
+}
+
+Result<nlohmann::json> kept_columns(const Table& table,
+                                    const std::vector<protocol::TourColumn>& columns,
+                                    const std::string& field) {
+  nlohmann::json kept = nlohmann::json::array();
+  std::set<std::int64_t> known;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::string here = at(field, i) + ".column";
+    const Column* column = find_column(table.columns, columns[i].column);
+    if (!column)
+      return fail(ErrorCode::invalid, "No such column",
+                  table.name + " has no column `" + columns[i].column + "`.", here);
+    STRATA_TRY(once(known, column->id, "column", here));
+    kept.push_back({{"column", column->id}});
+    if (columns[i].labels) kept.back()["labels"] = *columns[i].labels;
+  }
+  return kept;
+}
+
+Result<nlohmann::json> kept_records(const RouteContext& context, const Model& model, Role role,
+                                    const std::vector<protocol::TourRecords>& all,
+                                    const std::string& field) {
+  nlohmann::json kept = nlohmann::json::array();
+  std::set<std::int64_t> known;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const protocol::TourRecords& asked = all[i];
+    const std::string here = at(field, i);
+    auto table = context.store.tables().find(asked.table, role);
+    if (!table && table.error().code != ErrorCode::not_found) return tl::unexpected(table.error());
+    if (!table || table->project_id != model.project_id)
+      return fail(ErrorCode::invalid, "No such table",
+                  "The model's project has no table `" + asked.table + "`.", here + ".table");
+    STRATA_TRY(once(known, table->id, "table", here + ".table"));
+    const auto missing = context.store.records().missing(table->id, asked.keys);
+    if (!missing) return tl::unexpected(missing.error());
+    for (std::size_t k = 0; k < asked.keys.size(); ++k)
+      if (std::ranges::find(*missing, asked.keys[k]) != missing->end())
+        return fail(ErrorCode::invalid, "No such record",
+                    table->name + " has no record " + std::to_string(asked.keys[k]) + ".",
+                    at(here + ".keys", k));
+    auto columns = STRATA_TRY(kept_columns(*table, asked.columns, here + ".columns"));
+    kept.push_back({{"table", table->id}, {"keys", asked.keys}, {"columns", std::move(columns)}});
+  }
+  return kept;
+}
+
+Result<nlohmann::json> kept_layers(const RouteContext& context, const Model& model, Role role,
+                                   const std::vector<std::string>& refs, const std::string& field) {
+  nlohmann::json kept = nlohmann::json::array();
+  std::set<std::int64_t> known;
+  for (std::size_t i = 0; i < refs.size(); ++i) {
+    const auto layer = context.store.layers().find(model.id, refs[i], role);
+    if (!layer) return at_field(layer.error(), at(field, i));
+    STRATA_TRY(once(known, layer->id, "layer", at(field, i)));
+    kept.push_back(layer->id);
+  }
+  return kept;
+}
+
+// That `words` (by language) are in languages of the tour.
+Result<void> check_words(const nlohmann::json& words, const nlohmann::json& languages,
+                         const std::string& field) {
+  for (const auto& [language, text] : words.items())
+    if (std::ranges::find(languages, nlohmann::json(language)) == languages.end())
+      return fail(ErrorCode::invalid, "Not a language of the tour",
+                  "The tour has no `" + language +
+                      "` among its languages: add it there, or leave these words out.",
+                  field + "." + language);
+  return {};
+}
+
+Result<void> check_stop(const nlohmann::json& stop, const nlohmann::json& languages,
+                        const std::string& field) {
+  const auto first = languages.front().get<std::string>();
+  if (!stop.at("title").contains(first))
+    return fail(ErrorCode::invalid, "No title",
+                "Each stop has a title in the tour's first language, `" + first + "`.",
+                field + ".title");
+  for (const char* member : {"title", "text"})
+    STRATA_TRY(check_words(stop.at(member), languages, field + "." + member));
+  for (std::size_t i = 0; i < stop.at("records").size(); ++i) {
+    const auto& columns = stop.at("records")[i].at("columns");
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      if (auto good = check_words(columns[k].value("labels", nlohmann::json::object()), languages,
+                                  at(at(field + ".records", i) + ".columns", k) + ".labels");
+          !good)
+        return good;
+  }
+  return {};
+}
+
+// Reads what tours name, each thing once.
+class Seen {
+ public:
+  static Result<Seen> of(const RouteContext& context, std::int64_t model_id, Role role) {
+    auto views = STRATA_TRY(context.store.views().slugs(model_id));
+    auto layers = STRATA_TRY(context.store.layers().of_model(model_id, role));
+    Seen seen(context, role);
+    seen.views_ = std::move(views);
+    for (const Layer& layer : layers) seen.layers_[layer.id] = layer.slug;
+    return seen;
+  }
+
+  Result<nlohmann::json> stop(const nlohmann::json& kept) {
+    nlohmann::json told = kept;
+    told["layers"] = nlohmann::json::array();
+    told["records"] = nlohmann::json::array();
+    if (const auto view = views_.find(kept.at("view").get<std::int64_t>()); view != views_.end())
+      told["view"] = view->second;
+    else
+      told.erase("view");
+    for (const nlohmann::json& id : kept.at("layers"))
+      if (const auto layer = layers_.find(id.get<std::int64_t>()); layer != layers_.end())
+        told["layers"].push_back(layer->second);
+    for (const nlohmann::json& each : kept.at("records")) {
+      auto table = STRATA_TRY(find_table(each.at("table").get<std::int64_t>()));
+      if (table) told["records"].push_back(records(each, *table));
+    }
+    return told;
+  }
+
+ private:
+  Seen(const RouteContext& context, Role role) : context_(&context), role_(role) {}
+
+  static nlohmann::json records(const nlohmann::json& kept, const Table& table) {
+    nlohmann::json told{
+        {"table", table.slug}, {"keys", kept.at("keys")}, {"columns", nlohmann::json::array()}};
+    for (const nlohmann::json& each : kept.at("columns")) {
+      const auto id = each.at("column").get<std::int64_t>();
+      const auto column = std::ranges::find(table.columns, id, &Column::id);
+      if (column == table.columns.end()) continue;
+      told["columns"].push_back(each);
+      told["columns"].back()["column"] = column->slug;
+    }
+    return told;
+  }
+
+  // Nothing: it is gone.
+  Result<std::optional<Table>> find_table(std::int64_t id) {
+    const auto known = tables_.find(id);
+    if (known != tables_.end()) return known->second;
+    auto table = context_->store.tables().find(std::to_string(id), role_);
+    if (!table && table.error().code != ErrorCode::not_found) return tl::unexpected(table.error());
+    return tables_[id] = table ? std::optional(std::move(*table)) : std::nullopt;
+  }
+
+  const RouteContext* context_;
+  Role role_;
+  std::map<std::int64_t, std::string> views_, layers_;  // slugs, by id
+  std::map<std::int64_t, std::optional<Table>> tables_;
+};
+
+}  // namespace
+
+Result<nlohmann::json> kept_stops(const RouteContext& context, const Model& model, Role role,
+                                  const std::vector<protocol::TourStopCreate>& stops) {
+  nlohmann::json all = nlohmann::json::array();
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    const protocol::TourStopCreate& stop = stops[i];
+    const std::string here = at("stops", i);
+    const auto view = context.store.views().find(model.id, stop.view);
+    if (!view) return at_field(view.error(), here + ".view");
+    auto layers = STRATA_TRY(kept_layers(
+        context, model, role, stop.layers.value_or(std::vector<std::string>{}), here + ".layers"));
+    auto records = STRATA_TRY(kept_records(
+        context, model, role, stop.records.value_or(std::vector<protocol::TourRecords>{}),
+        here + ".records"));
+    all.push_back(
+        {{"view", view->id},
+         {"title", stop.title},
+         {"text", stop.text.value_or(protocol::TourText{})},
+         {"attract_s", stop.attract_s},
+         {"transition", protocol::name(stop.transition.value_or(protocol::TourTransition::move))},
+         {"transition_s", stop.transition_s},
+         {"layers", std::move(layers)},
+         {"records", std::move(records)}});
+  }
+  return all;
+}
+
+Result<void> check_languages(const nlohmann::json& content, bool stops_are_new) {
+  const nlohmann::json& languages = content.at("languages");
+  for (std::size_t i = 0; i < languages.size(); ++i)
+    if (std::find(languages.begin(), languages.begin() + static_cast<std::ptrdiff_t>(i),
+                  languages[i]) != languages.begin() + static_cast<std::ptrdiff_t>(i))
+      return fail(ErrorCode::invalid, "Named twice", "This language is named before already.",
+                  at("languages", i));
+  const nlohmann::json& stops = content.at("stops");
+  for (std::size_t i = 0; i < stops.size(); ++i)
+    if (auto good = check_stop(stops[i], languages, at("stops", i)); !good) {
+      if (stops_are_new) return good;
+      return fail(
+          ErrorCode::invalid, "Stops in other languages",
+          "Stop " + std::to_string(i + 1) + " does not fit these languages: " + good.error().detail,
+          "languages");
+    }
+  return {};
+}
+
+nlohmann::json tour_entry(const store::NamedPart& tour, const std::string& user) {
+  return {{"id", tour.id},
+          {"slug", tour.slug},
+          {"name", tour.name},
+          {"text", tour.text},
+          {"languages", tour.content.at("languages")},
+          {"stop_count", tour.content.at("stops").size()},
+          {"user", user},
+          {"time", utc_text(tour.time)},
+          {"version", tour.version}};
+}
+
+Result<nlohmann::json> to_json(const RouteContext& context, const store::NamedPart& tour, Role role,
+                               const std::string& user) {
+  auto seen = STRATA_TRY(Seen::of(context, tour.model_id, role));
+  nlohmann::json json = tour_entry(tour, user);
+  json.erase("stop_count");
+  json["idle_s"] = tour.content.at("idle_s");
+  json["stops"] = nlohmann::json::array();
+  for (const nlohmann::json& kept : tour.content.at("stops")) {
+    auto stop = STRATA_TRY(seen.stop(kept));
+    json["stops"].push_back(std::move(stop));
+  }
+  return json;
+}
+
+}  // namespace strata::net

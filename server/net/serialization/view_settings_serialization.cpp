@@ -1,0 +1,99 @@
+#include "net/serialization/view_settings_serialization.h"
+
+#include <algorithm>
+
+#include "domain/layers/layer.h"
+#include "expression/expression_parser.h"
+#include "protocol/parse.h"
+#include "room/layers.h"
+#include "room/looks.h"
+#include "room/room.h"
+
+namespace strata::net {
+
+Result<room::Highlight> highlight_of(const protocol::Highlight& asked, const Layer& layer,
+                                     const std::string& field) {
+  if (!layer.table)
+    return fail(
+        ErrorCode::invalid, "Layer has no records",
+        "'" + layer.name + "' holds numbers: only records of database layers can be highlighted.",
+        field);
+  room::Highlight highlight;
+  highlight.isolate = asked.isolate;
+  if (asked.filter) {
+    auto filter = STRATA_TRY(query::parse_condition(
+        *asked.filter, field.empty() ? "filter" : field + ".filter", query::Names::columns));
+    highlight.records = std::move(filter);
+  } else {
+    std::vector<std::uint32_t> keys(asked.keys->begin(), asked.keys->end());
+    std::ranges::sort(keys);
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    highlight.records = std::move(keys);
+  }
+  return highlight;
+}
+
+Result<std::vector<room::LookView>> look_views(const room::Room& room,
+                                               const std::vector<protocol::LookShown>& asked) {
+  std::vector<room::LookView> views;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    const std::string field = "looks[" + std::to_string(i) + "].look";
+    auto look = room.looks().find(protocol::to_ref(asked[i].look));
+    if (!look) {
+      Error problem = look.error();
+      problem.field = field;
+      return tl::unexpected(std::move(problem));
+    }
+    for (const room::LookView& other : views)
+      if (other.look_id == look->id)
+        return fail(ErrorCode::invalid, "Look given twice", "A view shows each look once.", field);
+    views.push_back({look->id, asked[i].opacity});
+  }
+  return views;
+}
+
+Result<Background> background_of(const std::optional<protocol::Background>& asked) {
+  if (!asked) return Background{};
+  const auto top = parse_color(asked->top, "background.top"),
+             bottom = parse_color(asked->bottom, "background.bottom");
+  if (!top) return tl::unexpected(top.error());
+  if (!bottom) return tl::unexpected(bottom.error());
+  return Background{*top, *bottom};
+}
+
+Result<room::ViewSettings> view_settings(
+    const room::Room& room, const std::vector<protocol::LayerOverride>& layers,
+    const std::optional<std::vector<protocol::LookShown>>& looks,
+    const std::optional<Light>& light) {
+  room::ViewSettings settings;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const protocol::LayerOverride& asked = layers[i];
+    const std::string field = "layers[" + std::to_string(i) + "]";
+    const auto layer = room.layers().find(protocol::to_ref(asked.layer));
+    if (!layer) {
+      Error problem = layer.error();
+      problem.field = field + ".layer";
+      return tl::unexpected(std::move(problem));
+    }
+    room::LayerView view{layer->id, asked.visible, asked.opacity, std::nullopt, std::nullopt};
+    if (asked.palette) {
+      auto palette = STRATA_TRY(palette_from_json(*asked.palette, field + ".palette"));
+      view.palette = std::move(palette);
+    }
+    if (asked.highlight) {
+      auto highlight = STRATA_TRY(highlight_of(*asked.highlight, *layer, field + ".highlight"));
+      view.highlight = std::move(highlight);
+    }
+    if (asked.order) view.order = static_cast<int>(*asked.order);
+    settings.layers.push_back(std::move(view));
+  }
+  if (looks) {
+    auto shown = STRATA_TRY(look_views(room, *looks));
+    settings.looks = std::move(shown);
+  }
+  if (light) settings.light = *light;
+  STRATA_TRY(validate(settings.light));
+  return settings;
+}
+
+}  // namespace strata::net

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <boost/asio/thread_pool.hpp>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/memory_ledger.h"
+#include "domain/scene/look.h"
+#include "media/picture.h"
+#include "render/renderer.h"
+#include "room/view_settings.h"
+#include "store/store.h"
+
+namespace strata::room {
+
+// The looks that are visible by default, bottom to top, of all by order: the topmost where a view
+// takes no more.
+std::vector<LookView> looks_shown(const std::vector<Look>& by_order);
+
+// The looks of an open model. A look's texture is made when a view first shows it, on a worker, and
+// kept while the room is open; its encoded bytes are kept with it, so that it comes back after a
+// lost context without the database. Up to 16384² is shown, which OpenGL 4.5 guarantees, or less
+// where the GPU's memory has no room for it. Its pixels are reserved in `memory` until they are on
+// the GPU; where there is no room a JPEG is decoded smaller. Thread-safe.
+class LookShelf : public std::enable_shared_from_this<LookShelf> {
+ public:
+  // `ready` is called, on any thread, whenever a texture that was asked for is there.
+  LookShelf(store::Store& store, render::Renderer& renderer, boost::asio::thread_pool& workers,
+            MemoryLedger& memory, std::function<void()> ready);
+
+  void put(const Look& look);
+  void drop(std::int64_t id);
+  std::vector<Look> all() const;                           // by order
+  std::optional<Look> find(const std::string& ref) const;  // id or slug
+  // Forgets the textures, which went with the old handle; they are made again when they are asked
+  // for.
+  void set_model(render::ModelHandle model);
+  void stop();  // nothing more is loaded, and `ready` not called
+
+  // What a view is to show of `wanted` (nothing: what is visible by default, the topmost where
+  // there are too many). Textures that are not there yet are left out, and on their way.
+  std::vector<render::LookStyle> styles(const std::optional<std::vector<LookView>>& wanted);
+  // The same, once all are there. Blocks.
+  Result<std::vector<render::LookStyle>> wait(const std::optional<std::vector<LookView>>& wanted);
+
+ private:
+  using Bytes = std::shared_ptr<const std::vector<std::uint8_t>>;
+  using Loaded = std::function<void(const Result<render::LookHandle>&)>;
+  struct Slot {
+    Look look;
+    Bytes encoded;
+    render::LookHandle handle = 0;
+    bool loading = false;
+    MemoryLedger::Share memory;   // of its pixels while it loads
+    std::optional<Error> damage;  // the picture cannot be shown, ever
+    std::vector<Loaded> waiting;
+  };
+  // under the mutex
+  std::vector<Look> by_order() const;
+  // under the mutex
+  std::vector<LookView> shown(const std::optional<std::vector<LookView>>& wanted) const;
+  void request(std::int64_t id, Loaded loaded);
+  void load(std::int64_t id, int largest_side);
+  Result<Bytes> encoded_bytes(std::int64_t id);
+  // what its sides are to be divided by
+  Result<int> reserve_pixels(std::int64_t id, const PictureInfo& info);
+  Result<std::shared_ptr<const render::LookImage>> read(std::int64_t id, int largest_side);
+  void add(std::int64_t id, int largest_side,
+           const Result<std::shared_ptr<const render::LookImage>>& image);
+  void on_added(std::int64_t id, render::ModelHandle model, int largest_side,
+                const Result<render::LookHandle>& handle);
+  void finish(std::int64_t id, const Result<render::LookHandle>& handle);
+
+  store::Store& store_;
+  render::Renderer& renderer_;
+  boost::asio::thread_pool& workers_;
+  MemoryLedger& memory_;
+  const std::function<void()> ready_;
+  mutable std::mutex mutex_;
+  std::map<std::int64_t, Slot> slots_;
+  render::ModelHandle model_ = 0;
+  bool stopped_ = false;
+};
+
+}  // namespace strata::room

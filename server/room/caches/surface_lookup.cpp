@@ -1,0 +1,47 @@
+#include "room/caches/surface_lookup.h"
+
+#include "domain/people/question.h"
+
+namespace strata::room {
+
+std::shared_ptr<const mesh::SearchTree> SurfaceLookup::tree() {
+  const Question::Aside aside;  // whoever asks next wants it, too
+  std::call_once(tree_once_, [&] { tree_ = std::make_shared<const mesh::SearchTree>(geometry_); });
+  return tree_;
+}
+
+Result<std::shared_ptr<const mesh::TexelGraph>> SurfaceLookup::graph(const mesh::SurfaceMap& map) {
+  auto graph = STRATA_TRY(find_or_build(map));
+  // Without the lock: to make room, graphs may be dropped.
+  auto share = memory_.reserve(graph->bytes(), "the neighbours of a surface map's texels");
+  std::lock_guard lock(graphs_mutex_);
+  const auto found = graphs_.find(map.resolution);
+  if (found == graphs_.end() || found->second.share.bytes() > 0) return graph;
+  if (!share) {
+    graphs_.erase(found);
+    return tl::unexpected(share.error());
+  }
+  found->second.share = std::move(*share);
+  return graph;
+}
+
+Result<std::shared_ptr<const mesh::TexelGraph>> SurfaceLookup::find_or_build(
+    const mesh::SurfaceMap& map) {
+  const Question::Aside aside;
+  std::lock_guard lock(graphs_mutex_);  // held while it is built: who else asks wants the same
+  if (const auto found = graphs_.find(map.resolution); found != graphs_.end())
+    return found->second.graph;
+  auto built = STRATA_TRY(mesh::build_texel_graph(*geometry_, map, progress_));
+  auto graph = std::make_shared<const mesh::TexelGraph>(std::move(built));
+  graphs_[map.resolution].graph = graph;
+  return graph;
+}
+
+bool SurfaceLookup::drop_graphs() {
+  const std::unique_lock lock(graphs_mutex_, std::try_to_lock);
+  if (!lock || graphs_.empty()) return false;
+  graphs_.clear();
+  return true;
+}
+
+}  // namespace strata::room

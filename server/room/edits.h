@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+
+#include "core/error.h"
+#include "domain/layers/tile_mirror.h"
+
+namespace strata::room {
+
+struct EditAnswer;
+struct EditRequest;
+
+// `applied` when an edit is visible, `saved` when it is durable or has failed.
+using Applied = std::function<void(const EditAnswer&)>;
+using Saved = std::function<void(Result<EditAnswer>)>;
+
+// The newest state that a picture can show `at`, and by layer what of it waits for review, where
+// anything does (room/pipeline/provisional.h).
+struct DurableState {
+  std::int64_t sequence = 0;
+  std::map<std::int64_t, TileMap> provisional;
+};
+
+// The edits of an open model, in one order. Thread-safe; callbacks run on the room's strand.
+class Edits {
+ public:
+  virtual ~Edits() = default;
+  // `applied` may be empty; exactly one call of `saved`. What is refused for the number of edits is
+  // so at once, on the calling thread.
+  virtual void submit(EditRequest request, Applied applied, Saved saved) = 0;
+  virtual std::int64_t sequence() const = 0;
+  virtual std::int64_t durable_sequence() const = 0;
+  virtual DurableState durable_state() const = 0;
+  // Counts all tiles of a layer for the journal's sums (store::Layers::keep_sums). Edits wait
+  // meanwhile. Blocks.
+  virtual Result<void> keep_sums(std::int64_t layer_id) = 0;
+};
+
+}  // namespace strata::room

@@ -1,0 +1,7 @@
+#pragma once
+
+namespace strata::room {
+
+constexpr int kMaxViews = 4;  // of one participant
+
+}  // namespace strata::room

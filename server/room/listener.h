@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/uuid.h"
+#include "domain/layers/layer.h"
+#include "domain/layers/review.h"
+#include "domain/scene/look.h"
+#include "domain/scene/model.h"
+#include "room/edit_answer.h"
+
+namespace strata::room {
+
+// What the people in a room hear. Called on the room's strand, in one order for all; must return
+// quickly (post to a socket).
+class Listener {
+ public:
+  virtual ~Listener() = default;
+  struct Edit {
+    std::int64_t layer_id = 0;
+    std::string layer;  // slug
+    std::int64_t sequence = 0;
+    Uuid id, stroke;
+    int n = 0;
+    bool is_stroke = false;
+    std::string user, op;
+    EditAnswer answer;
+    struct Review {
+      Decision decision = Decision::accept;
+      std::string reason;
+      std::vector<std::string> authors;  // of what was reviewed
+    };
+    std::optional<Review> review{};
+  };
+  // visible, not yet durable
+  virtual void edit_applied(const Edit& edit) = 0;
+  // rolled back
+  virtual void edits_unsaved(const std::vector<Edit>& edits, const Error& why) = 0;
+  enum class LayerChange { created, changed, deleted };
+  virtual void layer_changed(LayerChange change, const Layer& layer) = 0;
+  virtual void look_changed(LayerChange change, const Look& look) = 0;
+  virtual void model_changed(const Model& model) = 0;
+  virtual void model_deleted() = 0;  // nothing else follows
+  virtual void presence_changed() = 0;
+  // Of this person's own view, and on the GPU thread: it cannot be drawn as asked for, until
+  // something changes.
+  virtual void view_refused(std::uint32_t view_id, const Error& why) = 0;
+};
+
+}  // namespace strata::room

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "domain/layers/layer.h"
+#include "domain/layers/tile_mirror.h"
+#include "mesh/surface/geometry.h"
+#include "room/open/layer_state.h"
+#include "store/store.h"
+
+namespace strata::room {
+
+// What an open room holds: layers as the journal has them, and their copies on the GPU. All
+// functions block.
+
+LayerState new_state(Layer layer);  // empty, and not on the GPU
+
+struct JournalContents {
+  std::int64_t last_sequence = 0;
+  std::vector<LayerState> layers;  // with mirrors, without handles
+  // by layer: the tiles that `held` has otherwise
+  std::map<std::int64_t, std::vector<TileAddress>> differing;
+};
+Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id,
+                                     const std::vector<LayerState>& held);
+
+// with mirrors, without handles
+Result<LayerState> read_layer_state(store::Store& store, Layer layer);
+
+// The model's mesh and its coarser copies.
+Result<render::ModelGeometry> read_geometry(store::Store& store, std::int64_t model_id);
+
+struct GpuContents {
+  render::ModelHandle model = 0;
+  std::map<std::int64_t, LayerHandles> layers;  // by id
+};
+// A model and its layers, from their mirrors: all of it or nothing.
+Result<GpuContents> fill_gpu(render::Renderer& renderer, const render::ModelGeometry& geometry,
+                             const std::vector<LayerState>& layers);
+Result<render::LayerHandle> add_layer(render::Renderer& renderer, render::ModelHandle model,
+                                      std::shared_ptr<const TileMirror> mirror);
+// A layer and what of it waits for review: both or nothing.
+Result<LayerHandles> add_layer(render::Renderer& renderer, render::ModelHandle model,
+                               const LayerState& layer);
+void remove_layer(render::Renderer& renderer, const LayerHandles& handles);
+
+}  // namespace strata::room

@@ -1,0 +1,78 @@
+#include "room/open/open_edits.h"
+
+#include <boost/asio/post.hpp>
+
+#include "room/open/strand.h"
+#include "room/pipeline/edit_pipeline.h"
+#include "room/pipeline/retired_keys.h"
+#include "room/pipeline/tile_changes.h"
+#include "store/content/layers.h"
+#include "store/store.h"
+
+namespace strata::room {
+
+void OpenRoom::EditsPart::submit(EditRequest request, Applied applied, Saved saved) {
+  room_.touch();
+  if (!room_.takes_edits_)
+    return saved(
+        fail(ErrorCode::unavailable, "Server is stopping",
+             "The server saves what is under way and stops; send the edit again when it is back."));
+  // Counted before it is posted: the strand's own queue has no bound.
+  if (++room_.unanswered_ > room_.services_.options.max_waiting_edits) {
+    --room_.unanswered_;
+    return saved(fail(ErrorCode::too_many_requests, "Too many edits",
+                      "This model has as many waiting edits as it may; send more slowly."));
+  }
+  boost::asio::post(
+      room_.strand_, [room = room_.shared_from_this(), this, request = std::move(request),
+                      applied = std::move(applied), saved = std::move(saved)]() mutable {
+        if (auto free = check_not_retired(request); !free) {
+          --room->unanswered_;
+          return saved(tl::unexpected(free.error()));
+        }
+        // The answer keeps the room alive until it is given.
+        room->pipeline_->edit(std::move(request), std::move(applied),
+                              [room, saved = std::move(saved)](Result<EditAnswer> answer) {
+                                --room->unanswered_;
+                                saved(std::move(answer));
+                              });
+      });
+}
+
+// In the order of edits: what a deletion does to the texels comes after every edit that was let in.
+Result<void> OpenRoom::EditsPart::check_not_retired(const EditRequest& request) const {
+  const LayerState* state = room_.find_layer(request.layer_id);
+  if (!state || !state->layer.table ||
+      !room_.services_.retired_keys.has_any_of(*state->layer.table))
+    return {};
+  for (const auto key : painted_by(state->layer, request))
+    if (room_.services_.retired_keys.holds(*state->layer.table, key))
+      return fail(ErrorCode::conflict, "Record was deleted",
+                  "Record " + std::to_string(key) + " was deleted meanwhile.", "value");
+  return {};
+}
+
+DurableState OpenRoom::EditsPart::durable_state() const {
+  return run_on(room_.strand_, [&] {
+    DurableState state{room_.durable_, {}};
+    for (const auto& [id, layer] : room_.layers_)
+      if (TileMap waiting = room_.pipeline_->durable_provisional(layer); !waiting.empty())
+        state.provisional.emplace(id, std::move(waiting));
+    return state;
+  });
+}
+
+Result<void> OpenRoom::EditsPart::keep_sums(std::int64_t layer_id) {
+  room_.touch();
+  const auto found = STRATA_TRY(room_.state(std::to_string(layer_id)));
+  const auto map = room_.surface_map(found.layer.resolution);
+  if (!map) return tl::unexpected(map.error());
+  return room_.exclusively<void>(
+      [this, layer = found.layer, mirror = found.mirror, map = *map]() -> Result<void> {
+        const auto snapshot = mirror->snapshot();
+        return room_.services_.store.layers().keep_sums(
+            layer.id, sum_tiles(layer, *map, {snapshot.tiles.begin(), snapshot.tiles.end()}));
+      });
+}
+
+}  // namespace strata::room

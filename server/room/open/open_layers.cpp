@@ -1,0 +1,299 @@
+// The layers of an open room: each change is in the database first or not at all, and in the order
+// of edits where it concerns what they hold.
+#include "room/open/open_layers.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/log.h"
+#include "room/open/open_participants.h"
+#include "room/open/strand.h"
+#include "room/pipeline/edit_pipeline.h"
+#include "room/pipeline/expression_binding.h"
+#include "store/content/bin.h"
+#include "store/content/layers.h"
+#include "store/store.h"
+
+namespace strata::room {
+namespace {
+
+Result<void> check_layer(const Layer& layer, const Model& model) {
+  const int lowest = model.atlas.lowest_resolution;
+  if (layer.resolution < lowest || layer.resolution > 16384 ||
+      (layer.resolution & (layer.resolution - 1)) != 0)
+    return fail(ErrorCode::invalid, "Resolution out of range",
+                "A layer of this model has a power of two from " + std::to_string(lowest) +
+                    " to 16384 texels a side.",
+                "resolution");
+  if (layer.name.empty() || layer.name.size() > 200)
+    return fail(ErrorCode::invalid, "Name missing", "A layer has a name of 1 to 200 bytes.",
+                "name");
+  if (!(layer.opacity >= 0 && layer.opacity <= 1))
+    return fail(ErrorCode::invalid, "Opacity out of range",
+                "Opacity goes from 0 (clear) to 1 (opaque).", "opacity");
+  return {};
+}
+
+}  // namespace
+
+std::vector<Layer> OpenRoom::LayersPart::all() const { return room_.layer_list(); }
+
+Result<Layer> OpenRoom::LayersPart::find(const std::string& ref) const {
+  return room_.state(ref).map([](const LayerState& s) { return s.layer; });
+}
+
+Result<Layer> OpenRoom::LayersPart::create(Layer layer, const store::FirstAnswer<Layer>& answer,
+                                           std::vector<Column> columns) {
+  layer.model_id = room_.model_id_;
+  STRATA_TRY(check_layer(layer, room_.model()));
+  auto created = room_.exclusively<Layer>([this, layer, answer, columns]() -> Result<Layer> {
+    // The GPU first: of what it refuses nothing is in the database.
+    LayerState state = new_state(layer);
+    auto handles = add_layer(room_.services_.renderer, room_.model_handle(), state);
+    if (!handles) return tl::unexpected(room_.gpu_problem(handles.error()));
+    auto made = room_.services_.store.layers().create(layer, answer, columns);
+    if (!made) {
+      remove_layer(room_.services_.renderer, *handles);
+      return made;
+    }
+    state.handles = *handles;
+    state.layer = *made;
+    state.palette = std::make_shared<const Palette>(made->palette);
+    run_on(room_.strand_, [&] {
+      {
+        std::lock_guard lock(room_.mutex_);
+        room_.layers_.emplace(made->id, std::move(state));
+      }
+      room_.participants_part_->tell_layer(std::nullopt, *made);
+      room_.participants_part_->styles_changed();
+    });
+    return made;
+  });
+  if (created) room_.maps_->request(created->resolution, [](auto) {});
+  return created;
+}
+
+Result<Layer> OpenRoom::LayersPart::update(Layer layer, const store::FirstAnswer<Layer>& answer) {
+  STRATA_TRY(check_layer(layer, room_.model()));
+  auto updated = STRATA_TRY(room_.services_.store.layers().update(std::move(layer), answer));
+  bool lock_falls = false;
+  const Layer now = run_on(room_.strand_, [&] {
+    const LayerState* before = room_.find_layer(updated.id);
+    lock_falls = updated.locked && before && !before->layer.locked;
+    return replace(updated);
+  });
+  // Who locks a layer hears so when what was being painted on it is there: from then on nothing
+  // comes. A database that is away keeps the edits under way from being saved, which does not take
+  // the lock back.
+  if (lock_falls)
+    if (const auto still = room_.settle(); !still)
+      log::warning("a layer was locked while its edits could not be saved: " +
+                   still.error().detail);
+  return now;
+}
+
+Layer OpenRoom::LayersPart::replace(const Layer& stored) {
+  Layer now = stored;
+  Visibility before = now.visibility;
+  {
+    std::lock_guard lock(room_.mutex_);
+    auto found = room_.layers_.find(now.id);
+    if (found == room_.layers_.end()) return now;
+    if (found->second.layer.version > now.version) return now;  // a later change came by first
+    before = found->second.layer.visibility;
+    now.sequence = found->second.layer.sequence;
+    found->second.layer = now;
+    found->second.palette = std::make_shared<const Palette>(now.palette);
+  }
+  room_.participants_part_->tell_layer(before, now);
+  room_.participants_part_->styles_changed();
+  return now;
+}
+
+Result<Layer> OpenRoom::LayersPart::mark_computed(
+    std::int64_t id, const std::string& expression, std::int64_t sequence,
+    const std::map<std::int64_t, std::int64_t>& tables) {
+  auto stored =
+      STRATA_TRY(room_.services_.store.layers().set_computed(id, expression, sequence, tables));
+  return run_on(room_.strand_, [&] { return replace(stored); });
+}
+
+void OpenRoom::LayersPart::outdate(const std::function<bool(const LayerFormula&)>& reads) {
+  std::vector<Layer> stale;
+  {
+    std::lock_guard lock(room_.mutex_);
+    for (auto& [id, state] : room_.layers_) {
+      if (!state.layer.formula || state.layer.formula->stale || !reads(*state.layer.formula))
+        continue;
+      state.layer.formula->stale = true;
+      stale.push_back(state.layer);
+    }
+  }
+  for (const Layer& layer : stale) room_.participants_part_->tell_layer(layer.visibility, layer);
+}
+
+void OpenRoom::LayersPart::records_changed(std::int64_t table_id) {
+  room_.record_colors_->records_changed(table_id);
+  room_.record_marks_->records_changed(table_id);
+  // Layers that take their colours from the terms of the table.
+  for (const Layer& layer : room_.layer_list()) {
+    if (!layer.palette_of_terms || layer.table != table_id) continue;
+    // One that is gone meanwhile, or cannot be read now, keeps the colours that it has.
+    if (auto stored = room_.services_.store.layers().find(room_.model_id_, std::to_string(layer.id),
+                                                          Role::owner))
+      run_on(room_.strand_, [&] { return replace(*stored); });
+  }
+  run_on(room_.strand_, [&] {
+    outdate([&](const LayerFormula& formula) {
+      return std::ranges::any_of(formula.inputs,
+                                 [&](const auto& input) { return input.table == table_id; });
+    });
+  });
+}
+
+Result<void> OpenRoom::LayersPart::check_expression(const Expression& expression,
+                                                    const std::string& field,
+                                                    Visibility layer) const {
+  std::vector<query::LayerView> views;
+  for (const Layer& each : room_.layer_list()) views.push_back({each, {}});
+  for (const std::string& shape : shapes_read(expression, views)) {
+    views.emplace_back();
+    views.back().layer.slug = std::string(kShapePrefix) + shape;
+  }
+  const auto bound =
+      bind_for_layer(expression, views, room_.services_.store, Role::owner, layer, field);
+  return bound ? Result<void>{} : tl::unexpected(bound.error());
+}
+
+Result<Layer> OpenRoom::LayersPart::widen(const Layer& layer, ValueType type,
+                                          const store::FirstAnswer<Layer>& answer) {
+  if (layer.formula || !widens_to(layer.type, type))
+    return fail(
+        ErrorCode::invalid, "Type not usable",
+        "A layer of whole numbers without a sign becomes a wider one of them (u8 to u16 or u32, u16 to u32); "
+        "computed layers have the type that they were made with.",
+        "type");
+  return room_.exclusively<Layer>([this, layer, type, answer]() -> Result<Layer> {
+    const auto held = STRATA_TRY(room_.state(std::to_string(layer.id)));
+    // The GPU first, as for a new layer. Nothing is on its way to the journal: the mirror is what
+    // it holds.
+    TileMirror::Snapshot content = held.mirror->snapshot();
+    for (auto& [address, tile] : content.tiles)
+      tile = std::make_shared<const TileData>(widened(*tile, type));
+    auto mirror = std::make_shared<TileMirror>(type, layer.resolution);
+    mirror->assign(std::move(content.tiles), content.sequence);
+    auto handle = add_layer(room_.services_.renderer, room_.model_handle(), mirror);
+    if (!handle) return tl::unexpected(room_.gpu_problem(handle.error()));
+    auto stored = room_.services_.store.layers().widen(layer, type, answer);
+    if (!stored) {
+      room_.services_.renderer.remove_layer(*handle);
+      return stored;
+    }
+    run_on(room_.strand_, [&] {
+      render::LayerHandle old = 0;
+      {
+        std::lock_guard lock(room_.mutex_);
+        const auto found = room_.layers_.find(layer.id);
+        if (found == room_.layers_.end()) return;
+        old = std::exchange(found->second.handles.content, *handle);
+        found->second.mirror = mirror;
+        found->second.sums = std::make_shared<query::TileSumsCache>();
+        found->second.layer.type = type;
+        room_.mirrors_share_.recount(room_.mirror_bytes());
+      }
+      *stored = replace(*stored);
+      room_.services_.renderer.remove_layer(old);
+    });
+    return stored;
+  });
+}
+
+Result<void> OpenRoom::LayersPart::erase(std::int64_t id, const store::FirstAnswer<>& answer) {
+  return unload(id,
+                [this, id, answer] { return room_.services_.store.layers().remove(id, answer); });
+}
+
+Result<void> OpenRoom::LayersPart::put_in_trash(std::int64_t id,
+                                                const store::FirstAnswer<>& answer) {
+  return unload(id,
+                [this, id, answer] { return room_.services_.store.bin().put_layer(id, answer); });
+}
+
+Result<void> OpenRoom::LayersPart::unload(std::int64_t id,
+                                          const std::function<Result<void>()>& in_store) {
+  // In the order of edits: none of the layer's may be on its way to a journal that no longer knows
+  // it.
+  return room_.exclusively<void>([this, id, in_store]() -> Result<void> {
+    STRATA_TRY(in_store());
+    run_on(room_.strand_, [&] {
+      LayerState gone;
+      {
+        std::lock_guard lock(room_.mutex_);
+        auto found = room_.layers_.find(id);
+        if (found == room_.layers_.end()) return;
+        gone = std::move(found->second);
+        room_.layers_.erase(found);
+        room_.mirrors_share_.recount(room_.mirror_bytes());
+      }
+      remove_layer(room_.services_.renderer, gone.handles);
+      room_.participants_part_->tell_seen(gone.layer, [&](Listener& l) {
+        l.layer_changed(Listener::LayerChange::deleted, gone.layer);
+      });
+      outdate([&](const LayerFormula& formula) {
+        return std::ranges::any_of(formula.inputs,
+                                   [&](const auto& input) { return input.layer == id; });
+      });
+      room_.participants_part_->styles_changed();
+    });
+    return {};
+  });
+}
+
+Result<store::BinRestored> OpenRoom::LayersPart::restore(
+    const store::BinEntry& entry, const store::FirstAnswer<store::BinRestored>& answer) {
+  // In the order of edits: the journal's numbers stay as they are.
+  auto restored =
+      room_.exclusively<store::BinRestored>([this, entry, answer]() -> Result<store::BinRestored> {
+        auto back = STRATA_TRY(room_.services_.store.bin().restore(entry, answer));
+        if (auto known = load(entry.id); !known) {
+          // It is there, as the database says: the room reads everything again until it has it.
+          log::warning("layer " + std::to_string(entry.id) +
+                       " was restored and could not be loaded: " + known.error().detail);
+          run_on(room_.strand_, [&] { room_.journal_differs(); });
+        }
+        return back;
+      });
+  return restored;
+}
+
+Result<void> OpenRoom::LayersPart::load(std::int64_t id) {
+  auto layer = STRATA_TRY(
+      room_.services_.store.layers().find(room_.model_id_, std::to_string(id), Role::owner));
+  auto state = STRATA_TRY(read_layer_state(room_.services_.store, std::move(layer)));
+  auto handles = add_layer(room_.services_.renderer, room_.model_handle(), state);
+  if (!handles) return tl::unexpected(room_.gpu_problem(handles.error()));
+  state.handles = *handles;
+  room_.maps_->request(state.layer.resolution, [](auto) {});
+  run_on(room_.strand_, [&] {
+    {
+      std::lock_guard lock(room_.mutex_);
+      room_.layers_.emplace(id, state);
+      room_.mirrors_share_.recount(room_.mirror_bytes());
+    }
+    room_.participants_part_->tell_layer(std::nullopt, state.layer);
+    room_.participants_part_->styles_changed();
+  });
+  // Layers that are computed from it may be up to date again.
+  for (const Layer& other : room_.layer_list()) {
+    if (!other.formula || std::ranges::none_of(other.formula->inputs, [&](const auto& input) {
+          return input.layer == id;
+        }))
+      continue;
+    if (auto stored = room_.services_.store.layers().find(room_.model_id_, std::to_string(other.id),
+                                                          Role::owner))
+      run_on(room_.strand_, [&] { replace(*stored); });
+  }
+  return {};
+}
+
+}  // namespace strata::room

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "room/layers.h"
+#include "room/open/open_room.h"
+
+namespace strata::room {
+
+class OpenRoom::LayersPart final : public Layers {
+ public:
+  explicit LayersPart(OpenRoom& room) : room_(room) {}
+  std::vector<Layer> all() const override;
+  Result<Layer> find(const std::string& ref) const override;
+  Result<Layer> create(Layer layer, const store::FirstAnswer<Layer>& answer,
+                       std::vector<Column> columns) override;
+  Result<Layer> update(Layer layer, const store::FirstAnswer<Layer>& answer) override;
+  Result<Layer> widen(const Layer& layer, ValueType type,
+                      const store::FirstAnswer<Layer>& answer) override;
+  Result<void> erase(std::int64_t id, const store::FirstAnswer<>& answer) override;
+  Result<void> put_in_trash(std::int64_t id, const store::FirstAnswer<>& answer) override;
+  Result<store::BinRestored> restore(const store::BinEntry& entry,
+                                     const store::FirstAnswer<store::BinRestored>& answer) override;
+  Result<Layer> mark_computed(std::int64_t id, const std::string& expression, std::int64_t sequence,
+                              const std::map<std::int64_t, std::int64_t>& tables) override;
+  void records_changed(std::int64_t table_id) override;
+  Result<void> check_expression(const Expression& expression, const std::string& field,
+                                Visibility layer) const override;
+
+  // On the strand: computed layers that `reads` tells become stale, and people are told.
+  void outdate(const std::function<bool(const LayerFormula&)>& reads);
+
+ private:
+  // on the strand: what is stored becomes what is here; tells
+  Layer replace(const Layer& stored);
+  Result<void> unload(std::int64_t id, const std::function<Result<void>()>& in_store);
+  // that the store has again; alone, as `exclusively` runs it
+  Result<void> load(std::int64_t id);
+
+  OpenRoom& room_;
+};
+
+}  // namespace strata::room

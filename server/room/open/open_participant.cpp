@@ -1,0 +1,195 @@
+#include "room/open/open_participant.h"
+
+#include "room/limits.h"
+#include "room/open/open_participants.h"
+#include "room/open/open_room.h"
+#include "room/pipeline/provisional.h"
+
+namespace strata::room {
+
+OpenParticipant::OpenParticipant(std::shared_ptr<OpenRoom> room, Author who, Portrait portrait,
+                                 Listener* listener, stream::SendFrames send)
+    : room_(std::move(room)),
+      who_(std::move(who)),
+      portrait_(std::move(portrait)),
+      listener_(listener),
+      send_(std::move(send)) {}
+
+OpenParticipant::~OpenParticipant() {
+  room_->people().leave(this);
+  for (auto& [id, view] : views_) view.viewer->close();
+}
+
+OpenParticipant::View* OpenParticipant::view(std::uint32_t view_id, bool make) {
+  auto found = views_.find(view_id);
+  if (found != views_.end()) return &found->second;
+  if (!make || views_.size() >= static_cast<std::size_t>(kMaxViews)) return nullptr;
+  View& made = views_[view_id];
+  stream::Viewer::Options options;
+  options.view_id = view_id;
+  options.sequence = room_->edits().sequence();
+  made.viewer = stream::Viewer::create(room_->stream_context(), room_->model_handle(), options,
+                                       send_, [listener = listener_, view_id](const Error& why) {
+                                         if (listener) listener->view_refused(view_id, why);
+                                       });
+  made.viewer->set_style(style(view_id, made));
+  return &made;
+}
+
+render::ViewStyle OpenParticipant::style(std::uint32_t view_id, View& view) const {
+  render::ViewStyle style;
+  style.looks = room_->look_shelf().styles(view.looks);
+  style.light = view.light;
+  style.background = view.background;
+  style.unit_mm = room_->model().metres() * 1000;
+  std::vector<LayerMarks> marked;
+  std::vector<LayerState> states = room_->layer_states();
+  sort_as_shown(states, [&](std::int64_t id) {
+    const auto own = view.overrides.find(id);
+    return own == view.overrides.end() ? nullptr : &own->second;
+  });
+  for (const auto& state : states) {
+    if (!sees(role(), state.layer.visibility)) continue;
+    auto own = view.overrides.find(state.layer.id);
+    const LayerView none;
+    const LayerView& mine = own == view.overrides.end() ? none : own->second;
+    if (!mine.visible.value_or(state.layer.visible)) continue;
+    const render::LayerStyle shown{state.handles.content, palette(view_id, view, state),
+                                   static_cast<float>(mine.opacity.value_or(state.layer.opacity))};
+    add_styles(shown, state.waiting(), style.layers);
+    if (!state.layer.table) continue;
+    if (auto marks = room_->record_marks().find(*state.layer.table, sight_of(role())))
+      marked.push_back({std::move(marks), shown.palette, shown.opacity});
+  }
+  if (marked != view.marked) {
+    view.marks = room_->record_marks().shown(marked);
+    view.marked = std::move(marked);
+  }
+  style.marks = view.marks;
+  return style;
+}
+
+std::shared_ptr<const Palette> OpenParticipant::palette(std::uint32_t view_id, View& view,
+                                                        const LayerState& state) const {
+  static const auto kUncolored = std::make_shared<const Palette>(
+      Palette{PaletteMode::categorical, 0, 1, {}, {}, kNoValueColor});
+  const std::int64_t id = state.layer.id;
+  const auto own = view.palettes.find(id);
+  const auto& palette = own == view.palettes.end() ? state.palette : own->second;
+  const auto asked = view.highlights.find(id);
+  const auto highlight = asked == view.highlights.end() ? nullptr : asked->second;
+  if (!state.layer.table || !RecordColors::needs_records(*palette, highlight)) {
+    view.by_record.erase(id);
+    return palette;
+  }
+  const auto found =
+      room_->record_colors().find({*state.layer.table, sight_of(role()), palette, highlight});
+  if (found.problem && view.told.insert(found.problem).second && listener_)
+    listener_->view_refused(view_id, *found.problem);
+  if (found.palette) view.by_record[id] = found.palette;
+  if (const auto last = view.by_record.find(id); last != view.by_record.end()) return last->second;
+  return palette->column.empty() ? palette : kUncolored;
+}
+
+void OpenParticipant::camera(std::uint32_t view_id, std::uint64_t seq, const Camera& camera,
+                             bool moving) {
+  {
+    std::lock_guard lock(mutex_);
+    if (View* v = view(view_id, true)) v->viewer->set_camera(seq, camera, moving);
+    if (view_id != 0) return;
+    camera_ = camera;
+    camera_->section.clear();
+  }
+  room_->people().camera_moved(session_);
+}
+
+Result<void> OpenParticipant::show(std::uint32_t view_id, ViewSettings settings) {
+  std::lock_guard lock(mutex_);
+  View* v = view(view_id, true);
+  if (!v)
+    return fail(ErrorCode::invalid, "Too many views",
+                "One connection has at most " + std::to_string(kMaxViews) + " views.", "view_id");
+  v->overrides.clear();
+  v->palettes.clear();
+  const auto before = std::exchange(v->highlights, {});
+  v->told.clear();
+  v->looks = std::move(settings.looks);
+  v->light = settings.light;
+  v->background = settings.background;
+  for (auto& own : settings.layers) {
+    if (own.palette) v->palettes[own.layer_id] = std::make_shared<const Palette>(*own.palette);
+    if (own.highlight) {
+      // The same records as before need not be looked for again.
+      const auto known = before.find(own.layer_id);
+      v->highlights[own.layer_id] =
+          known != before.end() && *known->second == *own.highlight
+              ? known->second
+              : std::make_shared<const Highlight>(std::move(*own.highlight));
+    }
+    v->overrides[own.layer_id] = std::move(own);
+  }
+  v->viewer->set_style(style(view_id, *v));
+  return {};
+}
+
+void OpenParticipant::ack(std::uint32_t view_id, std::uint64_t frame) {
+  std::lock_guard lock(mutex_);
+  if (View* v = view(view_id, false)) v->viewer->ack(frame);
+}
+
+void OpenParticipant::edits() {
+  std::lock_guard lock(mutex_);
+  for (auto& [id, view] : views_) view.viewer->acts();
+}
+
+void OpenParticipant::pointer(std::optional<Pointing> at) {
+  {
+    std::lock_guard lock(mutex_);
+    pointer_ = at;
+  }
+  room_->people().announce_presence();
+}
+
+Result<void> OpenParticipant::look_together(bool leading, const std::optional<Uuid>& follow) {
+  STRATA_TRY(room_->people().follow(session_, follow));
+  {
+    std::lock_guard lock(mutex_);
+    if (std::exchange(leading_, leading) == leading) return {};
+  }
+  room_->people().announce_presence();
+  return {};
+}
+
+Presence OpenParticipant::presence() const {
+  std::lock_guard lock(mutex_);
+  return {session_, who_.user, portrait_.full_name, portrait_.color,
+          pointer_, leading_,  std::nullopt,        camera_};
+}
+
+void OpenParticipant::content_changed(std::int64_t layer_id,
+                                      const std::optional<render::FrameRequest::Box>& box,
+                                      std::int64_t sequence) {
+  const auto state = room_->layer_state(layer_id);
+  if (state && !sees(role(), state->layer.visibility)) return;
+  std::lock_guard lock(mutex_);
+  for (auto& [id, view] : views_) {
+    auto own = view.overrides.find(layer_id);
+    const bool shown = own != view.overrides.end() && own->second.visible
+                           ? *own->second.visible
+                           : state && state->layer.visible;
+    if (!shown) continue;
+    box ? view.viewer->changed(*box, sequence) : view.viewer->changed_everywhere(sequence);
+  }
+}
+
+void OpenParticipant::styles_changed() {
+  std::lock_guard lock(mutex_);
+  for (auto& [id, view] : views_) view.viewer->set_style(style(id, view));
+}
+
+void OpenParticipant::model_changed(render::ModelHandle model) {
+  std::lock_guard lock(mutex_);
+  for (auto& [id, view] : views_) view.viewer->reset_model(model, style(id, view));
+}
+
+}  // namespace strata::room

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <vector>
+
+#include "core/uuid.h"
+#include "room/caches/record_marks.h"
+#include "room/listener.h"
+#include "room/participants.h"
+#include "stream/viewer.h"
+
+namespace strata::room {
+
+class OpenRoom;
+struct LayerState;
+
+// A connection of one person: the views they look through and what they show in each.
+class OpenParticipant final : public Participant {
+ public:
+  OpenParticipant(std::shared_ptr<OpenRoom> room, Author who, Portrait portrait, Listener* listener,
+                  stream::SendFrames send);
+  ~OpenParticipant() override;
+
+  Uuid session() const override { return session_; }
+  void camera(std::uint32_t view_id, std::uint64_t seq, const Camera& camera, bool moving) override;
+  Result<void> show(std::uint32_t view_id, ViewSettings settings) override;
+  void ack(std::uint32_t view_id, std::uint64_t frame) override;
+  void edits() override;
+  void pointer(std::optional<Pointing> at) override;
+  Result<void> look_together(bool leading, const std::optional<Uuid>& follow) override;
+
+  Listener* listener() const { return listener_; }
+  const std::string& user() const { return who_.user; }
+  Role role() const { return who_.role; }  // what they see follows from it
+  Presence presence() const;               // whom they follow is the room's to say
+  // Called by the room.
+  void content_changed(std::int64_t layer_id, const std::optional<render::FrameRequest::Box>& box,
+                       std::int64_t sequence);
+  void styles_changed();
+  void model_changed(render::ModelHandle model);
+
+ private:
+  struct View {
+    std::shared_ptr<stream::Viewer> viewer;
+    std::map<std::int64_t, LayerView> overrides;
+    // Of overrides, by layer.
+    std::map<std::int64_t, std::shared_ptr<const Palette>> palettes;
+    std::map<std::int64_t, std::shared_ptr<const Highlight>> highlights;
+    std::map<std::int64_t, std::shared_ptr<const Palette>>
+        by_record;                   // last made from records, drawn until the next is there
+    std::vector<LayerMarks> marked;  // what `marks` was made of
+    render::MarksShown marks;
+    std::set<std::shared_ptr<const Error>> told;  // why one cannot be made
+    std::optional<std::vector<LookView>> looks;
+    Light light;
+    Background background;
+  };
+  View* view(std::uint32_t view_id, bool make);
+  render::ViewStyle style(std::uint32_t view_id, View& view) const;
+  std::shared_ptr<const Palette> palette(std::uint32_t view_id, View& view,
+                                         const LayerState& state) const;
+
+  const std::shared_ptr<OpenRoom> room_;
+  const Uuid session_ = random_uuid();
+  const Author who_;
+  const Portrait portrait_;
+  Listener* const listener_;
+  const stream::SendFrames send_;
+  mutable std::mutex mutex_;
+  std::map<std::uint32_t, View> views_;
+  std::optional<Pointing> pointer_;
+  std::optional<Camera> camera_;  // of view 0, without its section
+  bool leading_ = false;
+};
+
+}  // namespace strata::room

@@ -1,0 +1,157 @@
+#include "room/open/open_participants.h"
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <utility>
+
+#include "room/open/open_participant.h"
+
+namespace strata::room {
+
+std::unique_ptr<Participant> OpenRoom::ParticipantsPart::join(Author who, Portrait portrait,
+                                                              Listener* listener,
+                                                              stream::SendFrames send) {
+  std::unique_ptr<OpenParticipant> joined;
+  {
+    std::lock_guard lock(mutex_);
+    joined = std::make_unique<OpenParticipant>(room_.shared_from_this(), std::move(who),
+                                               std::move(portrait), listener, std::move(send));
+    here_.push_back(joined.get());
+  }
+  room_.touch();
+  announce_presence();
+  return joined;
+}
+
+void OpenRoom::ParticipantsPart::tell(const std::function<void(Listener&)>& tell) {
+  std::lock_guard lock(mutex_);
+  for (OpenParticipant* each : here_)
+    if (each->listener()) tell(*each->listener());
+}
+
+void OpenRoom::ParticipantsPart::tell_seen(const Layer& layer,
+                                           const std::function<void(Listener&)>& tell) {
+  std::lock_guard lock(mutex_);
+  for (OpenParticipant* each : here_)
+    if (each->listener() && sees(each->role(), layer.visibility)) tell(*each->listener());
+}
+
+void OpenRoom::ParticipantsPart::tell_layer(std::optional<Visibility> before, const Layer& layer) {
+  using Change = Listener::LayerChange;
+  std::lock_guard lock(mutex_);
+  for (OpenParticipant* each : here_) {
+    const bool saw = before && sees(each->role(), *before),
+               sees_now = sees(each->role(), layer.visibility);
+    if (!each->listener() || (!saw && !sees_now)) continue;
+    each->listener()->layer_changed(!sees_now ? Change::deleted
+                                    : saw     ? Change::changed
+                                              : Change::created,
+                                    layer);
+  }
+}
+
+void OpenRoom::ParticipantsPart::tell_unsaved(const std::vector<Listener::Edit>& edits,
+                                              const Error& why) {
+  std::lock_guard lock(mutex_);
+  for (const OpenParticipant* each : here_) {
+    if (!each->listener()) continue;
+    std::vector<Listener::Edit> seen;
+    for (const Listener::Edit& edit : edits)
+      if (const auto state = room_.layer_state(edit.layer_id);
+          state && sees(each->role(), state->layer.visibility))
+        seen.push_back(edit);
+    if (!seen.empty()) each->listener()->edits_unsaved(seen, why);
+  }
+}
+
+void OpenRoom::ParticipantsPart::content_changed(
+    std::int64_t layer_id, const std::optional<render::FrameRequest::Box>& box,
+    std::int64_t sequence) {
+  std::lock_guard lock(mutex_);
+  for (OpenParticipant* each : here_) each->content_changed(layer_id, box, sequence);
+}
+
+void OpenRoom::ParticipantsPart::styles_changed() {
+  std::lock_guard lock(mutex_);
+  for (OpenParticipant* each : here_) each->styles_changed();
+}
+
+void OpenRoom::ParticipantsPart::model_changed(render::ModelHandle model) {
+  std::lock_guard lock(mutex_);
+  for (OpenParticipant* each : here_) each->model_changed(model);
+}
+
+void OpenRoom::ParticipantsPart::leave(OpenParticipant* participant) {
+  {
+    std::lock_guard lock(mutex_);
+    left_ += std::erase(here_, participant);
+    followers_.leave(participant->session());
+  }
+  room_.touch();
+  announce_presence();
+}
+
+void OpenRoom::ParticipantsPart::announce_presence() {
+  boost::asio::post(room_.strand_, [room = room_.shared_from_this(), this] {
+    tell([](Listener& listener) { listener.presence_changed(); });
+  });
+}
+
+Result<void> OpenRoom::ParticipantsPart::follow(const Uuid& follower,
+                                                const std::optional<Uuid>& leader) {
+  bool other = false;
+  {
+    std::lock_guard lock(mutex_);
+    if (!leader) {
+      other = followers_.stop(follower);
+    } else {
+      const bool here = std::any_of(here_.begin(), here_.end(),
+                                    [&](const auto* each) { return each->session() == *leader; });
+      if (!here)
+        return fail(
+            ErrorCode::not_found, "Not here",
+            "Who is to be followed has left, or was never at this model. `presence` lists who is here.",
+            "follow");
+      other = STRATA_TRY(followers_.follow(follower, *leader));
+    }
+  }
+  if (other) announce_presence();
+  return {};
+}
+
+void OpenRoom::ParticipantsPart::camera_moved(const Uuid& session) {
+  {
+    std::lock_guard lock(mutex_);
+    if (!followers_.has_followers(session)) return;
+  }
+  boost::asio::post(room_.strand_, [room = room_.shared_from_this(), this, session] {
+    std::lock_guard lock(mutex_);
+    for (OpenParticipant* each : here_)
+      if (each->listener() && followers_.leader_of(each->session()) == session)
+        each->listener()->presence_changed();
+  });
+}
+
+std::vector<Presence> OpenRoom::ParticipantsPart::presence(const Uuid& receiver) const {
+  std::lock_guard lock(mutex_);
+  const auto leader = followers_.leader_of(receiver);
+  std::vector<Presence> people;
+  for (const OpenParticipant* each : here_) {
+    people.push_back(each->presence());
+    people.back().following = followers_.leader_of(each->session());
+    if (leader != each->session()) people.back().camera.reset();
+  }
+  return people;
+}
+
+std::size_t OpenRoom::ParticipantsPart::count() const {
+  std::lock_guard lock(mutex_);
+  return here_.size();
+}
+
+std::size_t OpenRoom::ParticipantsPart::take_leave_count() {
+  std::lock_guard lock(mutex_);
+  return std::exchange(left_, 0);
+}
+
+}  // namespace strata::room

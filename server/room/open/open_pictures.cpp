@@ -1,0 +1,203 @@
+// Rendered pictures for a script: a view of their own, drawn once each.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "domain/people/question.h"
+#include "media/picture_writer.h"
+#include "room/open/await.h"
+#include "room/open/gpu_problem.h"
+#include "room/open/open_pictures.h"
+#include "room/pipeline/provisional.h"
+#include "store/journal/journal_reads.h"
+
+namespace strata::room {
+namespace {
+
+// Pictures with more pixels are drawn in bands, which have as many: a tenth of a second on a CPU,
+// 32 MB of a view's buffers.
+constexpr int kPixelsOfBand = 1 << 21;
+// Rows of the window above and below a band that are drawn with it and left out: what a pixel shows
+// depends on its neighbours (outlines), and marks are wider than their line.
+constexpr int kRowsAround = 16;
+constexpr int kRowsEncoded = 32;
+
+// Removes what a picture put on the GPU, however it ends.
+struct Borrowed {
+  render::Renderer& renderer;
+  render::ViewHandle view = 0;
+  std::vector<render::LayerHandle> layers;
+  ~Borrowed() {
+    if (view) renderer.remove_view(view);
+    for (auto layer : layers) renderer.remove_layer(layer);
+  }
+};
+
+}  // namespace
+
+Result<std::vector<std::uint8_t>> Pictures::draw_file(const PictureRequest& request,
+                                                      const Camera& camera, PictureFormat format,
+                                                      JpegSettings jpeg) {
+  std::optional<PictureWriter> writer;
+  const PicturePart part{camera};
+  auto seen = draw(request, {&part, 1}, [&](std::size_t, const PictureBand& band) -> Result<void> {
+    if (!writer) writer.emplace(format, band.width, band.height, jpeg);
+    // A few rows at a time: who else asks something computes between them.
+    const std::size_t row = band.rgba.size() / static_cast<std::size_t>(band.rows);
+    const QuestionTurn turn;
+    for (int top = 0; top < band.rows; top += kRowsEncoded) {
+      turn.check();
+      const auto rows = static_cast<std::size_t>(std::min(kRowsEncoded, band.rows - top));
+      writer->put(band.rgba.subspan(row * static_cast<std::size_t>(top), row * rows));
+    }
+    return {};
+  });
+  if (!seen) return tl::unexpected(seen.error());
+  return writer->finish();
+}
+
+Result<void> OpenRoom::PicturesPart::draw(const PictureRequest& asked,
+                                          std::span<const PicturePart> parts,
+                                          const SeePicture& see) {
+  room_.touch();
+  const Visibility sight = sight_of(asked.seen_by);
+  std::vector<LayerState> shown;
+  if (asked.layers) {
+    for (const auto& ref : *asked.layers) {
+      auto found = STRATA_TRY(room_.state(ref));
+      shown.push_back(std::move(found));
+    }
+  } else {
+    for (auto& candidate : room_.layer_states())
+      if (asked.shown.of(candidate.layer.id).visible.value_or(candidate.layer.visible))
+        shown.push_back(std::move(candidate));
+    sort_as_shown(shown, asked.shown);
+  }
+  if (asked.at && *asked.at > room_.durable_)
+    return fail(ErrorCode::invalid, "Sequence not reached",
+                "The newest durable edit of this model is " + std::to_string(room_.durable_) + ".",
+                "at");
+
+  Borrowed borrowed{room_.services_.renderer, 0, {}};
+  const auto model = room_.model_handle();
+  render::FrameRequest request;
+  std::vector<LayerMarks> marked;
+  const auto borrow = [&](ValueType type, int resolution,
+                          TileMap tiles) -> Result<render::LayerHandle> {
+    auto mirror = std::make_shared<TileMirror>(type, resolution);
+    mirror->assign(std::move(tiles), *asked.at);
+    auto copy = add_layer(room_.services_.renderer, model, std::move(mirror));
+    if (!copy) return tl::unexpected(room_.gpu_problem(copy.error()));
+    borrowed.layers.push_back(*copy);
+    return *copy;
+  };
+  for (const auto& item : shown) {
+    render::LayerStyle style{item.handles.content, item.palette,
+                             static_cast<float>(item.layer.opacity)};
+    std::optional<render::LayerHandle> waiting = item.waiting();
+    if (asked.at) {
+      auto past = STRATA_TRY(room_.services_.store.journal().load_tiles(item.layer, asked.at));
+      auto content =
+          STRATA_TRY(borrow(item.layer.type, item.layer.resolution, std::move(past.tiles)));
+      style.layer = content;
+      waiting.reset();
+      if (const auto then = asked.provisional.find(item.layer.id);
+          then != asked.provisional.end()) {
+        auto marks = STRATA_TRY(borrow(ValueType::u8, item.layer.resolution, then->second));
+        waiting = marks;
+      }
+    }
+    const LayerView& mine = asked.shown.of(item.layer.id);
+    if (mine.palette) style.palette = std::make_shared<const Palette>(*mine.palette);
+    const auto highlight =
+        mine.highlight ? std::make_shared<const Highlight>(*mine.highlight) : nullptr;
+    if (item.layer.table && RecordColors::needs_records(*style.palette, highlight)) {
+      auto made = STRATA_TRY(
+          room_.record_colors_->make({*item.layer.table, sight, style.palette, highlight}));
+      style.palette = std::move(made);
+    }
+    if (mine.opacity) style.opacity = static_cast<float>(*mine.opacity);
+    add_styles(style, waiting, request.style.layers);
+    if (!item.layer.table) continue;
+    // After the newest edit comes now: records that changed since are of that state, too.
+    const bool is_past = asked.at && *asked.at < room_.durable_;
+    auto marks = is_past ? room_.record_marks_->when(*item.layer.table, sight, *asked.at)
+                         : room_.record_marks_->newest(*item.layer.table, sight);
+    if (!marks) return tl::unexpected(marks.error());
+    if (*marks) marked.push_back({std::move(*marks), style.palette, style.opacity});
+  }
+  auto view = await<render::ViewHandle>(
+      [&](auto done) { room_.services_.renderer.add_view(model, std::move(done)); });
+  if (!view) return tl::unexpected(room_.gpu_problem(view.error()));
+  borrowed.view = request.view = *view;
+  auto looks = room_.look_shelf_->wait(asked.shown.looks);
+  if (!looks) return tl::unexpected(room_.gpu_problem(looks.error()));
+  request.style.looks = std::move(*looks);
+  request.style.light = asked.shown.light;
+  request.style.background = asked.shown.background;
+  request.style.marks = show_marks(marked);
+  request.style.unit_mm = room_.model().metres() * 1000;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    STRATA_TRY(draw_in_bands(request, parts[i], i, see));
+  return {};
+}
+
+Result<void> OpenRoom::PicturesPart::draw_in_bands(render::FrameRequest request,
+                                                   const PicturePart& part, std::size_t number,
+                                                   const SeePicture& see) {
+  const Camera& camera = part.camera;
+  STRATA_TRY(validate(camera));
+  const auto pixels = [&](int window) {
+    return static_cast<int>(std::lround(window * part.pixels));
+  };
+  const int width = pixels(camera.width), height = pixels(camera.height);
+  if (width < 1 || height < 1 || width > kMaxViewSize || height > kMaxViewSize)
+    return fail(ErrorCode::invalid, "Size out of range",
+                "A picture is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.", "width");
+  // Bands are whole rows of the camera's window, so that their own windows are.
+  const bool is_large = static_cast<std::int64_t>(width) * height > kPixelsOfBand;
+  const int most = static_cast<int>(kPixelsOfBand / (width * std::max(part.pixels, 1e-3)));
+  const int step = is_large ? std::clamp(most, 1, camera.height) : camera.height;
+  for (int top = 0; top < camera.height; top += step) {
+    room_.touch();
+    check_question();
+    const int end = std::min(top + step, camera.height);
+    const int first = is_large ? std::max(0, top - kRowsAround) : 0;
+    const int last = is_large ? std::min(camera.height, end + kRowsAround) : camera.height;
+    request.large = is_large;
+    request.camera = is_large ? camera_of_rows(camera, first, last - first) : camera;
+    request.width = width;
+    request.height = pixels(last) - pixels(first);
+    request.background_rows = glm::vec2(first, last) / static_cast<float>(camera.height);
+    const auto frame = await_for_question<render::SharedFrame>(
+        [&](auto done) { room_.services_.renderer.draw(request, std::move(done)); });
+    if (!frame) return tl::unexpected(room_.gpu_problem(frame.error()));
+    const std::size_t row = std::size_t{4} * static_cast<std::size_t>(width);
+    const int rows = pixels(end) - pixels(top);
+    const std::span<const std::uint8_t> all((*frame)->pixels);
+    const auto band = all.subspan(row * static_cast<std::size_t>(pixels(top) - pixels(first)),
+                                  row * static_cast<std::size_t>(rows));
+    if (rows == 0) continue;
+    STRATA_TRY(see(number, {width, height, pixels(top), rows, band}));
+  }
+  return {};
+}
+
+Result<std::vector<std::optional<std::uint32_t>>> OpenRoom::PicturesPart::seen_keys(
+    const std::string& layer, const Camera& camera, int columns, int rows, At at) {
+  room_.touch();
+  auto views = STRATA_TRY(room_.layer_views({layer}, at));
+  return query::seen_keys(*room_.surface_lookup_->tree(), room_.geometry_->origin, camera, columns,
+                          rows, views.front());
+}
+
+Result<std::vector<query::SeenLayer>> OpenRoom::PicturesPart::seen_layers(
+    const std::vector<std::string>& layers, const std::vector<query::LayerCover>& covers,
+    const Camera& camera, int columns, int rows, At at) {
+  room_.touch();
+  auto views = STRATA_TRY(room_.layer_views(layers, at));
+  return query::seen_layers(*room_.surface_lookup_->tree(), room_.geometry_->origin, camera,
+                            columns, rows, views, covers);
+}
+
+}  // namespace strata::room

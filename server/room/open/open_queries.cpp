@@ -1,0 +1,268 @@
+// Questions to an open model: they are answered from mirrors and maps in main memory, beside those
+// who paint.
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "domain/people/question.h"
+#include "mesh/parallel.h"
+#include "mesh/texels/slot_bits.h"
+#include "query/conditions/expression_evaluator.h"
+#include "query/conditions/flood.h"
+#include "query/conditions/texel_values.h"
+#include "query/sampling/nearest_points.h"
+#include "room/open/open_queries.h"
+#include "room/pipeline/expression_binding.h"
+#include "room/pipeline/region.h"
+#include "store/journal/journal_reads.h"
+
+namespace strata::room {
+namespace {
+
+// A mask's surface texels, a word a slot.
+query::TexelSelection as_selection(const TileMasks& masks, const mesh::SurfaceMap& map) {
+  query::TexelSelection selection(map.block_of_slot.size(), 0);
+  for (const auto& [address, mask] : masks)
+    for (std::uint32_t by = 0; by < query::kBlocksPerTile; ++by)
+      for (std::uint32_t bx = 0; bx < query::kBlocksPerTile; ++bx) {
+        const auto slot =
+            mesh::slot_at(map, static_cast<int>(address.x * query::kBlocksPerTile + bx),
+                          static_cast<int>(address.y * query::kBlocksPerTile + by));
+        if (slot != mesh::kNoSlot)
+          selection[slot] = query::block_bits(mask, static_cast<int>(bx), static_cast<int>(by)) &
+                            map.surface_mask[slot];
+      }
+  return selection;
+}
+
+// Whether nothing is painted on it: then nothing need be known of the surface to say so.
+bool is_empty(const query::LayerView& view) {
+  return std::ranges::none_of(view.snapshot.tiles,
+                              [](const auto& tile) { return tile.second != nullptr; });
+}
+
+query::Statistics nothing_painted(StatisticsWanted wanted) {
+  query::Statistics none;
+  if (wanted.pieces) none.pieces = 0;
+  if (wanted.perimeter) none.perimeter_m = 0;
+  return none;
+}
+
+}  // namespace
+
+Result<TileMirror::Snapshot> OpenRoom::QueriesPart::tiles(const std::string& layer, At at) {
+  room_.touch();
+  auto found = STRATA_TRY(room_.state(layer));
+  return room_.tiles_at(found, at);
+}
+
+Result<query::SurfacePoint> OpenRoom::QueriesPart::position(const glm::dvec3& world,
+                                                            const std::vector<std::string>& layers,
+                                                            At at) {
+  room_.touch();
+  auto views = STRATA_TRY(room_.layer_views(layers, at));
+  return query::nearest_point(*room_.surface_lookup_->tree(), room_.geometry_->origin, world,
+                              views);
+}
+
+Result<std::vector<query::SurfacePoint>> OpenRoom::QueriesPart::positions(
+    const std::vector<glm::dvec3>& world, const std::vector<std::string>& layers, At at) {
+  room_.touch();
+  auto views = STRATA_TRY(room_.layer_views(layers, at));
+  return query::nearest_points(*room_.surface_lookup_->tree(), room_.geometry_->origin, world,
+                               views, mesh::background_threads());
+}
+
+Result<query::SurfacePoint> OpenRoom::QueriesPart::pick(const Camera& camera, double x, double y,
+                                                        const std::vector<std::string>& layers,
+                                                        At at) {
+  room_.touch();
+  auto views = STRATA_TRY(room_.layer_views(layers, at));
+  return query::pick(*room_.surface_lookup_->tree(), room_.geometry_->origin, camera, x, y, views);
+}
+
+Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::texels_within(
+    const Selection& selection, const mesh::SurfaceMap& map) {
+  if (!selection.within) return std::nullopt;
+  if (const auto* outline = std::get_if<Outline>(&*selection.within)) {
+    const auto masks = STRATA_TRY(texels_in(*outline, map, *room_.surface_lookup_,
+                                            room_.services_.renderer, room_.model_handle()));
+    return as_selection(masks, map);
+  }
+  const auto& around = std::get<Selection::Around>(*selection.within);
+  const auto start = STRATA_TRY(find_place(around.at, map, *room_.surface_lookup_, "within.at"));
+  const auto graph = STRATA_TRY(room_.surface_lookup_->graph(map));
+  return query::select_near(map, *graph, start.texel, start.position,
+                            static_cast<float>(around.radius));
+}
+
+// Nothing where the whole surface is meant. A condition is looked at within the place alone, so
+// that a small one is quickly answered.
+Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::select_texels(
+    const Selection& selection, const mesh::SurfaceMap& map) {
+  auto inside = texels_within(selection, map);
+  if (!inside || !selection.where) return inside;
+  std::vector<std::string> slugs;
+  for (const auto& layer : room_.layer_list())
+    if (sees(selection.seen_by, layer.visibility)) slugs.push_back(layer.slug);
+  const std::vector<std::string> named = layers_of(*selection.where);
+  // Those that are not there are refused by the evaluator, with the field.
+  std::erase_if(slugs,
+                [&](const auto& slug) { return std::ranges::find(named, slug) == named.end(); });
+  const auto views = STRATA_TRY(room_.layer_views(slugs, selection.at));
+  const auto bound = STRATA_TRY(bind_expression(*selection.where, views, room_.services_.store,
+                                                selection.seen_by, selection.at, "where"));
+  auto holds = query::select_where(bound, views, map, "where", mesh::background_threads(),
+                                   {room_.geometry_->origin, room_.model().metres()},
+                                   *inside ? &**inside : nullptr);
+  if (!holds) return tl::unexpected(holds.error());
+  return std::move(*holds);
+}
+
+Result<query::Statistics> OpenRoom::QueriesPart::count(const query::LayerView& view,
+                                                       const mesh::SurfaceMap& map,
+                                                       const query::TexelSelection* within,
+                                                       bool is_now, StatisticsWanted wanted) {
+  query::StatisticsRequest request;
+  request.within = within;
+  request.quantiles = wanted.quantiles;
+  request.pieces = wanted.pieces;
+  request.perimeter = wanted.perimeter;
+  request.threads = mesh::background_threads();
+  std::shared_ptr<const mesh::TexelGraph> graph;
+  if (wanted.pieces || wanted.perimeter) {
+    auto found = STRATA_TRY(room_.surface_lookup_->graph(map));
+    graph = std::move(found);
+    request.graph = graph.get();
+  }
+  const auto found = room_.state(view.layer.slug);
+  if (found && is_now) request.cache = found->sums.get();
+  return query::statistics(view, map, room_.geometry_->origin, room_.model().metres(), request);
+}
+
+Result<query::Statistics> OpenRoom::QueriesPart::statistics(const std::string& layer,
+                                                            const Selection& selection,
+                                                            StatisticsWanted wanted) {
+  room_.touch();
+  const auto views = STRATA_TRY(room_.layer_views({layer}, selection.at));
+  if (is_empty(views.front()) && selection.whole()) return nothing_painted(wanted);
+  const auto map = STRATA_TRY(room_.surface_map(views.front().layer.resolution));
+  const auto selected = STRATA_TRY(select_texels(selection, *map));
+  return count(views.front(), *map, selected ? &*selected : nullptr, !selection.at, wanted);
+}
+
+Result<SelectedArea> OpenRoom::QueriesPart::select(const Selection& selection,
+                                                   const std::vector<std::string>& layers,
+                                                   StatisticsWanted wanted) {
+  room_.touch();
+  const auto views = STRATA_TRY(room_.layer_views(layers, selection.at));
+  SelectedArea area;
+  for (const auto& view : views) area.resolution = std::max(area.resolution, view.layer.resolution);
+  if (selection.where)
+    for (const auto& slug : layers_of(*selection.where))
+      if (const auto found = room_.state(slug))
+        area.resolution = std::max(area.resolution, found->layer.resolution);
+  if (area.resolution == 0) area.resolution = room_.model().default_resolution;
+  struct Selected {
+    std::shared_ptr<const mesh::SurfaceMap> map;
+    std::optional<query::TexelSelection> texels;
+    const query::TexelSelection* within() const { return texels ? &*texels : nullptr; }
+  };
+  std::map<int, Selected> of_resolution;  // layers of one resolution share it
+  std::set<int> resolutions{area.resolution};
+  for (const auto& view : views) resolutions.insert(view.layer.resolution);
+  for (const int resolution : resolutions) {
+    auto map = STRATA_TRY(room_.surface_map(resolution));
+    auto selected = STRATA_TRY(select_texels(selection, *map));
+    of_resolution[resolution] = {std::move(map), std::move(selected)};
+  }
+  const Selected& finest = of_resolution.at(area.resolution);
+  const double m2_per_unit2 = room_.model().metres() * room_.model().metres();
+  const auto extent =
+      query::measure_selection(*finest.map, finest.within(), mesh::background_threads());
+  area.texels = extent.texels;
+  area.area_m2 = extent.area * m2_per_unit2;
+  area.share = finest.map->area_total > 0 ? std::min(1.0, extent.area / finest.map->area_total) : 0;
+  area.bounds_min = glm::dvec3(extent.low) + room_.geometry_->origin;
+  area.bounds_max = glm::dvec3(extent.high) + room_.geometry_->origin;
+  for (const auto& view : views) {
+    const Selected& here = of_resolution.at(view.layer.resolution);
+    auto counted = STRATA_TRY(count(view, *here.map, here.within(), !selection.at, wanted));
+    area.layers.emplace(view.layer.slug, std::move(counted));
+  }
+  return area;
+}
+
+Result<query::Profile> OpenRoom::QueriesPart::profile(const ProfileLine& line,
+                                                      const std::vector<std::string>& layers,
+                                                      At at) {
+  room_.touch();
+  const auto views = STRATA_TRY(room_.layer_views(layers, at));
+  const auto tree = room_.surface_lookup_->tree();
+  if (const auto* seen = std::get_if<SeenLine>(&line))
+    return query::profile_seen(*tree, room_.geometry_->origin, seen->camera, seen->path, views);
+  const auto& steps = std::get<PlacesInSteps>(line);
+  return query::profile_near(*tree, room_.geometry_->origin, steps.places, steps.step, views);
+}
+
+Result<query::CrossTable> OpenRoom::QueriesPart::cross_table(const std::string& rows,
+                                                             const std::string& columns,
+                                                             const Selection& selection) {
+  room_.touch();
+  const auto views = STRATA_TRY(room_.layer_views({rows, columns}, selection.at));
+  const auto map =
+      room_.surface_map(std::max(views[0].layer.resolution, views[1].layer.resolution));
+  if (!map) return tl::unexpected(map.error());
+  const auto selected = STRATA_TRY(select_texels(selection, **map));
+  return query::cross_tabulate(views[0], views[1], **map, selected ? &*selected : nullptr,
+                               room_.model().metres());
+}
+
+Result<OpenRoom::QueriesPart::LayerGraph> OpenRoom::QueriesPart::layer_graph(
+    const std::string& layer, At at) {
+  auto views = STRATA_TRY(room_.layer_views({layer}, at));
+  auto map = STRATA_TRY(room_.surface_map(views.front().layer.resolution));
+  auto graph = STRATA_TRY(room_.surface_lookup_->graph(*map));
+  return LayerGraph{std::move(views.front()), std::move(map), std::move(graph)};
+}
+
+Result<query::Quantities> OpenRoom::QueriesPart::quantities(const std::string& layer, At at) {
+  room_.touch();
+  const auto found = STRATA_TRY(layer_graph(layer, at));
+  return query::quantities(found.view, *found.map, *found.graph,
+                           query::classes_of(found.view.layer), room_.model().metres());
+}
+
+Result<LayerAreas> OpenRoom::QueriesPart::layer_areas(const std::string& layer, At at) {
+  room_.touch();
+  auto found = STRATA_TRY(layer_graph(layer, at));
+  const query::ValueClasses classes = query::classes_of(found.view.layer);
+  auto quantities =
+      query::quantities(found.view, *found.map, *found.graph, classes, room_.model().metres());
+  if (!quantities) return tl::unexpected(quantities.error());
+  auto perimeters = query::measure_perimeters(found.view, *found.map, *found.graph, nullptr,
+                                              classes, mesh::background_threads());
+  return LayerAreas{std::move(found.view), std::move(found.map), std::move(*quantities),
+                    std::move(perimeters)};
+}
+
+Result<query::SurfaceTexels> OpenRoom::QueriesPart::surface_texels(const std::string& layer,
+                                                                   const Selection& selection) {
+  room_.touch();
+  auto views = STRATA_TRY(room_.layer_views({layer}, selection.at));
+  auto map = STRATA_TRY(room_.surface_map(views.front().layer.resolution));
+  auto selected = STRATA_TRY(select_texels(selection, *map));
+  return query::SurfaceTexels{std::move(views.front()), std::move(map), std::move(selected),
+                              room_.geometry_->origin, room_.model().metres()};
+}
+
+Result<std::map<std::int64_t, query::KeyArea>> OpenRoom::QueriesPart::key_areas(
+    const std::string& layer) {
+  room_.touch();
+  const auto found = STRATA_TRY(room_.state(layer));
+  const auto map = STRATA_TRY(room_.surface_map(found.layer.resolution));
+  return query::key_areas({found.layer, found.mirror->snapshot()}, *map, room_.geometry_->origin,
+                          room_.model().metres(), found.sums.get());
+}
+
+}  // namespace strata::room

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "query/conditions/texel_selection.h"
+#include "room/open/open_room.h"
+#include "room/queries.h"
+
+namespace strata::room {
+
+// Answers from mirrors and maps in main memory, beside those who paint.
+class OpenRoom::QueriesPart final : public Queries {
+ public:
+  explicit QueriesPart(OpenRoom& room) : room_(room) {}
+  Result<query::SurfacePoint> position(const glm::dvec3& world,
+                                       const std::vector<std::string>& layers, At at) override;
+  Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>& world,
+                                                     const std::vector<std::string>& layers,
+                                                     At at) override;
+  Result<query::SurfacePoint> pick(const Camera& camera, double x, double y,
+                                   const std::vector<std::string>& layers, At at) override;
+  Result<query::Statistics> statistics(const std::string& layer, const Selection& selection,
+                                       StatisticsWanted wanted) override;
+  Result<SelectedArea> select(const Selection& selection, const std::vector<std::string>& layers,
+                              StatisticsWanted wanted) override;
+  Result<query::Profile> profile(const ProfileLine& line, const std::vector<std::string>& layers,
+                                 At at) override;
+  Result<query::CrossTable> cross_table(const std::string& rows, const std::string& columns,
+                                        const Selection& selection) override;
+  Result<query::Quantities> quantities(const std::string& layer, At at) override;
+  Result<LayerAreas> layer_areas(const std::string& layer, At at) override;
+  Result<query::SurfaceTexels> surface_texels(const std::string& layer,
+                                              const Selection& selection) override;
+  Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string& layer) override;
+  Result<TileMirror::Snapshot> tiles(const std::string& layer, At at) override;
+
+ private:
+  struct LayerGraph {
+    query::LayerView view;
+    std::shared_ptr<const mesh::SurfaceMap> map;
+    std::shared_ptr<const mesh::TexelGraph> graph;
+  };
+  Result<LayerGraph> layer_graph(const std::string& layer, At at);
+  Result<std::optional<query::TexelSelection>> texels_within(const Selection& selection,
+                                                             const mesh::SurfaceMap& map);
+  Result<std::optional<query::TexelSelection>> select_texels(const Selection& selection,
+                                                             const mesh::SurfaceMap& map);
+  // `within` is null where the whole surface is meant; `is_now`: the view is the newest, whose sums
+  // are kept.
+  Result<query::Statistics> count(const query::LayerView& view, const mesh::SurfaceMap& map,
+                                  const query::TexelSelection* within, bool is_now,
+                                  StatisticsWanted wanted);
+
+  OpenRoom& room_;
+};
+
+}  // namespace strata::room

@@ -1,0 +1,300 @@
+#include "room/open/open_room.h"
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+
+#include "core/log.h"
+#include "core/text/slug.h"
+#include "room/open/gpu_problem.h"
+#include "room/open/open_edits.h"
+#include "room/open/open_layers.h"
+#include "room/open/open_looks.h"
+#include "room/open/open_participants.h"
+#include "room/open/open_pictures.h"
+#include "room/open/open_queries.h"
+#include "room/open/open_surface.h"
+#include "room/open/strand.h"
+#include "store/content/looks.h"
+#include "store/content/models.h"
+#include "store/journal/journal_reads.h"
+#include "store/store.h"
+
+namespace strata::room {
+
+OpenRoom::OpenRoom(const RoomServices& services, Model model, render::ModelGeometry geometry)
+    : services_(services),
+      model_id_(model.id),
+      geometry_(std::move(geometry.full)),
+      coarser_(std::move(geometry.coarser)),
+      strand_(services.strands.get_executor()),
+      maps_(std::make_shared<SurfaceMaps>(geometry_, services.renderer, services.memory,
+                                          services.workers)),
+      surface_lookup_(std::make_shared<SurfaceLookup>(geometry_, services.memory)),
+      model_(std::move(model)),
+      last_used_(std::chrono::steady_clock::now()),
+      recovery_(strand_),
+      layers_part_(std::make_unique<LayersPart>(*this)),
+      edits_part_(std::make_unique<EditsPart>(*this)),
+      queries_part_(std::make_unique<QueriesPart>(*this)),
+      surface_part_(std::make_unique<SurfacePart>(*this)),
+      pictures_part_(std::make_unique<PicturesPart>(*this)),
+      looks_part_(std::make_unique<LooksPart>(*this)),
+      participants_part_(std::make_unique<ParticipantsPart>(*this)) {
+  parts_ = {layers_part_.get(),   edits_part_.get(), queries_part_.get(),     surface_part_.get(),
+            pictures_part_.get(), looks_part_.get(), participants_part_.get()};
+}
+
+OpenRoom::~OpenRoom() = default;
+
+Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomServices& services,
+                                                 const std::string& model_ref) {
+  auto model = STRATA_TRY(services.store.models().find(model_ref));
+  auto geometry = STRATA_TRY(read_geometry(services.store, model.id));
+  std::uint64_t bytes = geometry.full->bytes();
+  for (const auto& level : geometry.coarser) bytes += level->bytes();
+  auto share = STRATA_TRY(services.memory.reserve(bytes, "the model's triangles"));
+  auto room = std::make_shared<OpenRoom>(services, std::move(model), std::move(geometry));
+  room->geometry_share_ = std::move(share);
+  auto journal = read_journal(services.store, room->model_id_, {});
+  if (!journal) return tl::unexpected(journal.error());
+  auto looks = STRATA_TRY(services.store.looks().of_model(room->model_id_));
+  for (LayerState& state : journal->layers) {
+    const std::int64_t id = state.layer.id;
+    room->layers_.emplace(id, std::move(state));
+  }
+  auto mirrors = services.memory.reserve(room->mirror_bytes(), "what its layers hold");
+  if (!mirrors) return tl::unexpected(mirrors.error());
+  room->mirrors_share_ = std::move(*mirrors);
+  auto gpu = fill_gpu(services.renderer, {room->geometry_, room->coarser_}, room->layer_states());
+  if (!gpu) return tl::unexpected(gpu.error());
+  for (auto& [id, state] : room->layers_) state.handles = gpu->layers.at(id);
+  room->model_handle_ = gpu->model;
+  room->maps_->set_model(gpu->model);
+  const auto restyle = [weak = std::weak_ptr<OpenRoom>(room)] {
+    auto open = weak.lock();
+    if (!open) return;
+    const Strand strand = open->strand_;  // not on the GPU thread
+    boost::asio::post(strand,
+                      [open = std::move(open)] { open->participants_part_->styles_changed(); });
+  };
+  room->look_shelf_ = std::make_shared<LookShelf>(services.store, services.renderer,
+                                                  services.workers, services.memory, restyle);
+  room->record_colors_ = std::make_shared<RecordColors>(services.store, services.workers, restyle);
+  room->record_marks_ =
+      std::make_shared<RecordMarks>(services.store, services.workers, room->id(), restyle);
+  room->look_shelf_->set_model(gpu->model);
+  for (const Look& look : looks) room->look_shelf_->put(look);
+  room->sequence_ = room->durable_ = journal->last_sequence;
+  room->pipeline_ = std::make_shared<EditPipeline>(
+      EditPipeline::Parts{services.store, services.writer, services.renderer, services.workers,
+                          services.readers, room->strand_, room->maps_, room->surface_lookup_,
+                          services.memory},
+      *room, journal->last_sequence);
+  // Painting needs the maps of the layers there are; bake them while people look around.
+  for (const auto& state : room->layer_states())
+    room->maps_->request(state.layer.resolution, [](auto) {});
+  return room;
+}
+
+Model OpenRoom::model() const {
+  std::lock_guard lock(mutex_);
+  Model copy = model_;
+  copy.sequence = durable_;
+  return copy;
+}
+
+std::vector<LayerState> OpenRoom::layer_states() const {
+  std::vector<LayerState> states;
+  {
+    std::lock_guard lock(mutex_);
+    for (const auto& [id, state] : layers_) states.push_back(state);
+  }
+  std::stable_sort(states.begin(), states.end(), [](const LayerState& a, const LayerState& b) {
+    return a.layer.order < b.layer.order;
+  });
+  return states;
+}
+
+std::vector<Layer> OpenRoom::layer_list() const {
+  std::vector<Layer> layers;
+  for (auto& state : layer_states()) layers.push_back(std::move(state.layer));
+  return layers;
+}
+
+Result<LayerState> OpenRoom::state(const std::string& ref) const {
+  std::lock_guard lock(mutex_);
+  for (const auto& [id, state] : layers_)
+    if (is_all_digits(ref) ? std::to_string(id) == ref : state.layer.slug == ref) return state;
+  return no_such_layer(ref);
+}
+
+std::optional<LayerState> OpenRoom::layer_state(std::int64_t id) const {
+  std::lock_guard lock(mutex_);
+  auto found = layers_.find(id);
+  return found == layers_.end() ? std::nullopt : std::optional(found->second);
+}
+
+Result<TileMirror::Snapshot> OpenRoom::tiles_at(const LayerState& state, At at) const {
+  if (!at) return state.mirror->snapshot();
+  if (*at > durable_)
+    return fail(ErrorCode::invalid, "Sequence not reached",
+                "The newest durable edit of this model is " + std::to_string(durable_) + ".", "at");
+  return services_.store.journal().load_tiles(state.layer, at);
+}
+
+Result<std::vector<query::LayerView>> OpenRoom::layer_views(const std::vector<std::string>& refs,
+                                                            At at) const {
+  std::vector<query::LayerView> views;
+  for (const auto& ref : refs) {
+    auto found = STRATA_TRY(state(ref));
+    auto tiles = STRATA_TRY(tiles_at(found, at));
+    views.push_back({found.layer, std::move(tiles)});
+  }
+  return views;
+}
+
+render::ModelHandle OpenRoom::model_handle() const {
+  std::lock_guard lock(mutex_);
+  return model_handle_;
+}
+
+Result<Model> OpenRoom::update_model(Model model, const store::FirstAnswer<Model>& answer) {
+  auto updated = STRATA_TRY(services_.store.models().update(std::move(model), answer));
+  run_on(strand_, [&] {
+    {
+      std::lock_guard lock(mutex_);
+      model_ = updated;
+    }
+    participants_part_->tell([&](Listener& l) { l.model_changed(updated); });
+    participants_part_->styles_changed();  // patterns are spaced in millimetres
+  });
+  return updated;
+}
+
+Result<void> OpenRoom::settle() {
+  return exclusively<void>([]() -> Result<void> { return {}; });
+}
+
+LayerState* OpenRoom::find_layer(std::int64_t id) {
+  auto found = layers_.find(id);
+  return found == layers_.end() ? nullptr : &found->second;
+}
+
+std::vector<query::LayerView> OpenRoom::layer_snapshots() {
+  std::vector<query::LayerView> views;
+  for (const auto& [id, state] : layers_) views.push_back({state.layer, state.mirror->snapshot()});
+  return views;
+}
+
+void OpenRoom::set_sequence(LayerState& layer, std::int64_t sequence) {
+  std::lock_guard lock(mutex_);
+  layer.layer.sequence = sequence;
+  mirrors_share_.recount(mirror_bytes());
+}
+
+std::uint64_t OpenRoom::mirror_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const auto& [id, state] : layers_)
+    bytes += state.mirror->bytes() + state.provisional->bytes();
+  return bytes;
+}
+
+void OpenRoom::content_changed(const LayerState& layer,
+                               const std::optional<render::FrameRequest::Box>& box,
+                               std::int64_t sequence) {
+  participants_part_->content_changed(layer.layer.id, box, sequence);
+}
+
+void OpenRoom::styles_changed() { participants_part_->styles_changed(); }
+
+void OpenRoom::edit_applied(const Listener::Edit& edit) {
+  sequence_ = edit.sequence;
+  if (const auto state = layer_state(edit.layer_id))
+    participants_part_->tell_seen(state->layer, [&](Listener& l) { l.edit_applied(edit); });
+}
+
+void OpenRoom::edit_saved(const Listener::Edit& edit) {
+  durable_ = edit.sequence;
+  layers_part_->outdate([&](const LayerFormula& formula) {
+    return formula.computed_sequence < edit.sequence &&
+           std::ranges::any_of(formula.inputs,
+                               [&](const auto& input) { return input.layer == edit.layer_id; });
+  });
+}
+
+void OpenRoom::edits_unsaved(const std::vector<Listener::Edit>& edits, const Error& why) {
+  sequence_ = pipeline_->sequence();
+  participants_part_->tell_unsaved(edits, why);
+}
+
+std::size_t OpenRoom::participant_count() const { return participants_part_->count(); }
+
+std::size_t OpenRoom::take_leave_count() { return participants_part_->take_leave_count(); }
+
+void OpenRoom::touch() {
+  std::lock_guard lock(mutex_);
+  last_used_ = std::chrono::steady_clock::now();
+}
+
+bool OpenRoom::drop_map() {
+  return surface_lookup_->drop_graphs() ||
+         run_on(strand_, [&] { return pipeline_->is_still() && maps_->drop_oldest(); });
+}
+
+bool OpenRoom::drop_large_unused_maps(std::chrono::steady_clock::time_point now) {
+  constexpr std::uint64_t kLarge = 512u << 20;  // others are back within a second
+  constexpr std::chrono::minutes kKept{2};
+  const auto since = now - kKept;
+  const auto oldest = maps_->oldest_use();
+  if (!oldest || *oldest >= since) return false;
+  const bool dropped =
+      run_on(strand_, [&] { return pipeline_->is_still() && maps_->drop_unused(since, kLarge); });
+  if (dropped) surface_lookup_->drop_graphs();
+  return dropped;
+}
+
+bool OpenRoom::is_idle(std::chrono::steady_clock::time_point now) const {
+  if (participants_part_->count() > 0) return false;
+  std::lock_guard lock(mutex_);
+  return now - last_used_ > services_.options.close_after;
+}
+
+void OpenRoom::close(const Error& why) {
+  {
+    std::lock_guard lock(mutex_);
+    closed_ = why;
+  }
+  maps_->stop();
+  look_shelf_->stop();
+  record_colors_->stop();
+  record_marks_->stop();
+  surface_lookup_->stop();
+  run_on(strand_, [&] {
+    recovery_.closed = true;
+    recovery_.timer.cancel();
+    pipeline_->close(why);
+  });
+  services_.renderer.remove_model(model_handle());
+}
+
+Error OpenRoom::gpu_problem(const Error& why) const {
+  std::lock_guard lock(mutex_);
+  return why.code == ErrorCode::not_found && closed_ ? *closed_ : room::gpu_problem(why);
+}
+
+void OpenRoom::close_deleted() {
+  run_on(strand_, [&] { participants_part_->tell([](Listener& l) { l.model_deleted(); }); });
+  close({ErrorCode::gone,
+         "Model deleted",
+         "The model was deleted; nothing can be painted on it any more.",
+         {}});
+}
+
+Result<std::shared_ptr<const mesh::SurfaceMap>> OpenRoom::surface_map(int resolution) {
+  touch();
+  auto map = maps_->wait(resolution);
+  if (!map) return tl::unexpected(gpu_problem(map.error()));
+  return map;
+}
+
+}  // namespace strata::room

@@ -1,0 +1,204 @@
+#pragma once
+
+#include <atomic>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <chrono>
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "domain/layers/layer.h"
+#include "domain/layers/tile_mirror.h"
+#include "domain/scene/model.h"
+#include "room/at.h"
+#include "room/caches/look_shelf.h"
+#include "room/caches/record_colors.h"
+#include "room/caches/record_marks.h"
+#include "room/caches/surface_lookup.h"
+#include "room/caches/surface_maps.h"
+#include "room/open/contents.h"
+#include "room/open/layer_state.h"
+#include "room/open/strand.h"
+#include "room/pipeline/edit_pipeline.h"
+#include "room/pipeline/retired_keys.h"
+#include "room/room.h"
+#include "room/rooms.h"
+#include "stream/viewer.h"
+
+namespace strata::room {
+
+// What rooms share.
+struct RoomServices {
+  store::Store& store;
+  store::JournalWriter& writer;
+  render::Renderer& renderer;
+  stream::StreamContext stream;
+  boost::asio::thread_pool& strands;  // room strands run here: short work, nothing that waits
+  boost::asio::thread_pool& workers;  // bakes, history, loading: long work
+  MemoryLedger& memory;               // of what rooms hold, but for the GPU's
+  // questions to the journal before each edit: they wait for the database only
+  boost::asio::thread_pool& readers;
+  const RetiredKeys& retired_keys;
+  RoomOptions options;
+};
+
+// A room as it is: its state, its life, and its recovery. What it does for others is in its parts,
+// each in files of its own beside this one.
+class OpenRoom final : public Room,
+                       public PipelineHost,
+                       public std::enable_shared_from_this<OpenRoom> {
+ public:
+  // Loads everything; blocks.
+  static Result<std::shared_ptr<OpenRoom>> open(const RoomServices& services,
+                                                const std::string& model_ref);
+  OpenRoom(const RoomServices& services, Model model, render::ModelGeometry geometry);
+  ~OpenRoom() override;
+
+  Model model() const override;
+  Result<Model> update_model(Model model, const store::FirstAnswer<Model>& answer) override;
+  Result<void> settle();  // returns when every edit before is durable; blocks
+
+  // --- PipelineHost (on the strand)
+  LayerState* find_layer(std::int64_t id) override;
+  std::vector<query::LayerView> layer_snapshots() override;
+  render::ModelHandle model_handle() const override;  // also for participants
+  const Model& pipeline_model() const override { return model_; }
+  void styles_changed() override;
+  void set_sequence(LayerState& layer, std::int64_t sequence) override;
+  void content_changed(const LayerState& layer, const std::optional<render::FrameRequest::Box>& box,
+                       std::int64_t sequence) override;
+  void edit_applied(const Listener::Edit& edit) override;
+  void edit_saved(const Listener::Edit& edit) override;
+  void edits_unsaved(const std::vector<Listener::Edit>& edits, const Error& why) override;
+  void journal_differs() override;
+  void paused() override;
+
+  // --- for participants
+  class ParticipantsPart;
+  ParticipantsPart& people() { return *participants_part_; }
+  stream::StreamContext stream_context() const { return services_.stream; }
+  LookShelf& look_shelf() const { return *look_shelf_; }
+  RecordColors& record_colors() const { return *record_colors_; }
+  RecordMarks& record_marks() const { return *record_marks_; }
+  std::vector<LayerState> layer_states() const;  // in drawing order
+  std::optional<LayerState> layer_state(std::int64_t id) const;
+
+  // --- for Rooms
+  void gpu_lost();
+  bool is_idle(std::chrono::steady_clock::time_point now) const;  // nobody for `close_after`
+  void touch();
+  std::size_t participant_count() const;  // who are in it, a connection each
+  std::size_t take_leave_count();         // who have left it since this was asked
+  const SurfaceMaps& maps() const { return *maps_; }
+  // the map that was not used for the longest time, where nothing is being painted. Blocks
+  bool drop_map();
+  // Lets go of what a question about a very fine layer has left, and nobody used for a while.
+  bool drop_large_unused_maps(std::chrono::steady_clock::time_point now);
+  void take_no_edits() { takes_edits_ = false; }          // new ones are refused
+  bool has_no_edits() const { return unanswered_ == 0; }  // every edit is durable or refused
+  // refuses what waits and what comes, lets go of the GPU; blocks
+  void close(const Error& why);
+  void close_deleted();  // as the model was deleted: people are told first
+  std::int64_t id() const { return model_id_; }
+
+ private:
+  class LayersPart;
+  class EditsPart;
+  class QueriesPart;
+  class SurfacePart;
+  class PicturesPart;
+  class LooksPart;
+
+  // Runs `work` on a worker when every edit before it is durable. No edit starts meanwhile, and no
+  // recovery. Blocks.
+  template <class T>
+  Result<T> exclusively(std::function<Result<T>()> work);
+  // recovery.cpp
+  void recover();
+  void on_gpu_filled(int losses_before, const Result<GpuContents>& contents);
+  void on_journal_read(Result<JournalContents> contents);
+  void retry_recovery(const Error& why);
+  // as gpu_problem.h has it, unless the room is closed
+  Error gpu_problem(const Error& why) const;
+  std::uint64_t mirror_bytes() const;  // with `mutex_` held
+  std::vector<Layer> layer_list() const;
+  Result<LayerState> state(const std::string& ref) const;
+  Result<TileMirror::Snapshot> tiles_at(const LayerState& state, At at) const;
+  Result<std::vector<query::LayerView>> layer_views(const std::vector<std::string>& refs,
+                                                    At at) const;
+  Result<std::shared_ptr<const mesh::SurfaceMap>> surface_map(int resolution);
+
+  const RoomServices services_;
+  const std::int64_t model_id_;
+  const std::shared_ptr<const mesh::Geometry> geometry_;
+  // copies of it, for moving cameras
+  const std::vector<std::shared_ptr<const mesh::Geometry>> coarser_;
+  const Strand strand_;
+  const std::shared_ptr<SurfaceMaps> maps_;
+  std::shared_ptr<LookShelf> look_shelf_;
+  std::shared_ptr<RecordColors> record_colors_;
+  std::shared_ptr<RecordMarks> record_marks_;
+  const std::shared_ptr<SurfaceLookup> surface_lookup_;
+  std::shared_ptr<EditPipeline> pipeline_;
+
+  // Changed on the strand, under `mutex_`; so read on the strand without it, and elsewhere under
+  // it.
+  mutable std::mutex mutex_;
+  Model model_;
+  std::map<std::int64_t, LayerState> layers_;
+  MemoryLedger::Share geometry_share_, mirrors_share_;
+  render::ModelHandle model_handle_ = 0;
+  std::chrono::steady_clock::time_point last_used_;  // under `mutex_` everywhere
+  std::optional<Error> closed_;                      // why, once it is; under `mutex_` everywhere
+
+  std::atomic<std::int64_t> sequence_{0}, durable_{0};
+  std::atomic<std::size_t> unanswered_{0};  // edits, and changes of layers that wait for them
+  std::atomic<bool> takes_edits_{true};
+
+  struct Recovery {  // on the strand
+    static constexpr std::chrono::milliseconds kFirstRetry{250}, kLastRetry{8000};
+    explicit Recovery(const Strand& strand) : timer(strand) {}
+    bool gpu_lacks_all = false;
+    bool journal_differs = false;
+    bool working = false;  // one of them is being mended
+    bool closed = false;
+    int gpu_losses = 0;
+    std::chrono::milliseconds retry_in = kFirstRetry;
+    boost::asio::steady_timer timer;
+  } recovery_;
+
+  const std::unique_ptr<LayersPart> layers_part_;
+  const std::unique_ptr<EditsPart> edits_part_;
+  const std::unique_ptr<QueriesPart> queries_part_;
+  const std::unique_ptr<SurfacePart> surface_part_;
+  const std::unique_ptr<PicturesPart> pictures_part_;
+  const std::unique_ptr<LooksPart> looks_part_;
+  const std::unique_ptr<ParticipantsPart> participants_part_;
+};
+
+template <class T>
+Result<T> OpenRoom::exclusively(std::function<Result<T>()> work) {
+  auto promise = std::make_shared<std::promise<Result<T>>>();
+  auto future = promise->get_future();
+  ++unanswered_;
+  boost::asio::post(strand_, [self = shared_from_this(), promise, work = std::move(work)] {
+    self->pipeline_->when_idle([promise, work](const Result<void>& may) {
+      if (may)
+        promise->set_value(work());
+      else
+        promise->set_value(tl::unexpected(may.error()));
+    });
+  });
+  auto result = future.get();
+  --unanswered_;
+  return result;
+}
+
+}  // namespace strata::room

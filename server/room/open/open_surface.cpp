@@ -1,0 +1,101 @@
+// What maps and measurements paint: found from the shape alone, whatever the layer holds.
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "domain/layers/mask_texels.h"
+#include "mesh/texels/slot_bits.h"
+#include "query/maps/dabs.h"
+#include "room/open/gpu_problem.h"
+#include "room/open/open_surface.h"
+#include "room/pipeline/seen_texels.h"
+
+namespace strata::room {
+namespace {
+
+constexpr int kProjectionSide_px = 4096;  // of the depth buffer that tells what is seen first
+
+TileMap as_tile_map(std::map<TileAddress, TileData> written) {
+  TileMap tiles;
+  for (auto& [address, tile] : written)
+    if (tile.valid.any()) tiles[address] = std::make_shared<const TileData>(std::move(tile));
+  return tiles;
+}
+
+// Sees all of the box, without perspective.
+Camera camera_along(const glm::dvec3& direction, const mesh::Geometry& geometry) {
+  const glm::dvec3 low = glm::dvec3(geometry.box_min) + geometry.origin,
+                   high = glm::dvec3(geometry.box_max) + geometry.origin;
+  const glm::dvec3 middle = (low + high) * 0.5;
+  const double radius = std::max(glm::length(high - low) / 2, 1e-9);
+  const glm::dvec3 up = std::abs(direction.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
+  Camera camera;
+  camera.view = glm::lookAt(middle - 2 * radius * direction, middle, up);
+  camera.projection = glm::ortho(-radius, radius, -radius, radius, 0.5 * radius, 3.5 * radius);
+  camera.width = camera.height = kProjectionSide_px;
+  return camera;
+}
+
+}  // namespace
+
+Result<TileMap> OpenRoom::SurfacePart::dabs(const Layer& layer,
+                                            const std::vector<PlacedValue>& values, double radius,
+                                            double tolerance) {
+  room_.touch();
+  const auto map = room_.maps_->wait(layer.resolution);
+  if (!map) return tl::unexpected(room_.gpu_problem(map.error()));
+  const auto graph = STRATA_TRY(room_.surface_lookup_->graph(**map));
+  const auto tree = room_.surface_lookup_->tree();
+  std::vector<query::Dab> dabs;
+  for (const PlacedValue& value : values) {
+    const auto hit = tree->nearest(glm::vec3(value.world - room_.geometry_->origin),
+                                   static_cast<float>(tolerance));
+    const auto texel = hit ? mesh::surface_texel_at(**map, hit->uv) : std::nullopt;
+    if (!texel)
+      return fail(ErrorCode::invalid, "Not on the model",
+                  "Line " + std::to_string(value.line) +
+                      ": no surface is as near as the tolerance allows. Check unit and " +
+                      "coordinates, or allow more.",
+                  "body");
+    dabs.push_back({*texel, hit->position, value.bits});
+  }
+  auto painted =
+      STRATA_TRY(query::paint_dabs(**map, *graph, dabs, static_cast<float>(radius), layer.type));
+  return as_tile_map(std::move(painted));
+}
+
+Result<TileMap> OpenRoom::SurfacePart::project(const Layer& layer, const glm::dvec3& direction,
+                                               const ValueAt& value_at) {
+  room_.touch();
+  const auto map = room_.maps_->wait(layer.resolution);
+  if (!map) return tl::unexpected(room_.gpu_problem(map.error()));
+  const glm::dvec2 window(kProjectionSide_px);
+  const auto seen =
+      seen_texels(room_.services_.renderer, room_.model_handle(), layer.resolution,
+                  camera_along(direction, *room_.geometry_), glm::dvec2(0), window, false);
+  if (!seen) return tl::unexpected(room_.gpu_problem(seen.error()));
+  std::map<TileAddress, TileData> written;
+  for (const auto& [address, mask] : *seen) {
+    TileData tile(layer.type);
+    for_each_texel(mask, [&, address = address](int texel) {
+      const auto place = mesh::slot_texel(**map, address, texel);
+      if (const auto bits = value_at(glm::dvec3((*map)->position(place.slot, place.texel)) +
+                                     room_.geometry_->origin))
+        tile.write(texel, *bits);
+    });
+    written.emplace(address, std::move(tile));
+  }
+  return as_tile_map(std::move(written));
+}
+
+Result<std::shared_ptr<const mesh::SurfaceMap>> OpenRoom::SurfacePart::map(int resolution) {
+  return room_.surface_map(resolution);
+}
+
+std::shared_ptr<const mesh::Geometry> OpenRoom::SurfacePart::geometry() const {
+  return room_.geometry_;
+}
+
+std::shared_ptr<const mesh::SearchTree> OpenRoom::SurfacePart::search_tree() {
+  return room_.surface_lookup_->tree();
+}
+
+}  // namespace strata::room

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "room/open/open_room.h"
+#include "room/surface.h"
+
+namespace strata::room {
+
+class OpenRoom::SurfacePart final : public Surface {
+ public:
+  explicit SurfacePart(OpenRoom& room) : room_(room) {}
+  std::shared_ptr<const mesh::Geometry> geometry() const override;
+  std::shared_ptr<const mesh::SearchTree> search_tree() override;
+  Result<std::shared_ptr<const mesh::SurfaceMap>> map(int resolution) override;
+  Result<TileMap> dabs(const Layer& layer, const std::vector<PlacedValue>& values, double radius,
+                       double tolerance) override;
+  Result<TileMap> project(const Layer& layer, const glm::dvec3& direction,
+                          const ValueAt& value_at) override;
+
+ private:
+  OpenRoom& room_;
+};
+
+}  // namespace strata::room

@@ -1,0 +1,148 @@
+// How an open room recovers: its copies on the GPU are made anew after a lost context, its mirrors
+// after the journal turned out to hold more than they do. Both happen while the pipeline is paused
+// and nothing is under way, so nothing else changes the layers. What fails is tried again until the
+// room is shut; who waits for it is refused after each try.
+#include <boost/asio/post.hpp>
+
+#include "core/log.h"
+#include "room/open/open_participants.h"
+#include "room/open/open_room.h"
+
+namespace strata::room {
+void OpenRoom::gpu_lost() {
+  boost::asio::post(strand_, [self = shared_from_this()] {
+    ++self->recovery_.gpu_losses;
+    self->recovery_.gpu_lacks_all = true;
+    self->pipeline_->pause();
+  });
+}
+
+void OpenRoom::journal_differs() {
+  recovery_.journal_differs = true;
+  pipeline_->pause();
+}
+
+void OpenRoom::paused() { recover(); }
+
+void OpenRoom::recover() {
+  if (recovery_.working || recovery_.closed) return;
+  recovery_.timer.cancel();
+  if (recovery_.gpu_lacks_all) {  // first: viewing needs no database
+    recovery_.working = true;
+    services_.renderer.remove_model(model_handle());  // there may not be room for both
+    boost::asio::post(
+        services_.workers, [self = shared_from_this(), losses = recovery_.gpu_losses] {
+          auto contents = fill_gpu(self->services_.renderer, {self->geometry_, self->coarser_},
+                                   self->layer_states());
+          boost::asio::post(self->strand_, [self, losses, contents = std::move(contents)] {
+            self->on_gpu_filled(losses, contents);
+          });
+        });
+  } else if (recovery_.journal_differs) {
+    recovery_.working = true;
+    boost::asio::post(services_.workers, [self = shared_from_this()] {
+      auto contents = read_journal(self->services_.store, self->model_id_, self->layer_states());
+      boost::asio::post(self->strand_, [self, contents = std::move(contents)]() mutable {
+        self->on_journal_read(std::move(contents));
+      });
+    });
+  } else {
+    recovery_.retry_in = Recovery::kFirstRetry;
+    pipeline_->resume();
+  }
+}
+
+void OpenRoom::on_journal_read(Result<JournalContents> contents) {
+  recovery_.working = false;
+  if (recovery_.closed) return;
+  if (!contents) return retry_recovery(contents.error());
+  recovery_.journal_differs = false;
+
+  std::map<std::int64_t, LayerState> read, before;
+  for (LayerState& state : contents->layers) read.emplace(state.layer.id, std::move(state));
+  {
+    std::lock_guard lock(mutex_);
+    for (auto& [id, state] : read) {
+      auto known = layers_.find(id);
+      if (known == layers_.end()) {
+        // made by a request that never heard so; rare enough to start from nothing
+        recovery_.gpu_lacks_all = true;
+        continue;
+      }
+      state.handles = known->second.handles;
+      // The GPU knows the layer by these mirrors.
+      for (auto mirror : {&LayerState::mirror, &LayerState::provisional}) {
+        auto tiles = (state.*mirror)->snapshot();
+        (known->second.*mirror)->assign(std::move(tiles.tiles), tiles.sequence);
+        state.*mirror = known->second.*mirror;
+      }
+      if (known->second.layer.version > state.layer.version) {  // changed since it was read
+        const std::int64_t sequence = state.layer.sequence;
+        state.layer = known->second.layer;
+        state.layer.sequence = sequence;
+        state.palette = known->second.palette;
+      }
+    }
+    before = std::exchange(layers_, read);
+    mirrors_share_.recount(mirror_bytes());
+  }
+  pipeline_->journal_read(contents->last_sequence);
+  sequence_ = durable_ = contents->last_sequence;
+
+  using Change = Listener::LayerChange;
+  const auto tell_layer = [&](Change change, const Layer& layer) {
+    participants_part_->tell([&](Listener& listener) { listener.layer_changed(change, layer); });
+  };
+  for (const auto& [id, tiles] : contents->differing) {
+    pipeline_->gpu_lacks(id, tiles);
+    tell_layer(Change::changed, read.at(id).layer);
+  }
+  for (const auto& [id, state] : read)
+    if (!before.contains(id)) tell_layer(Change::created, state.layer);
+  for (const auto& [id, state] : before) {
+    if (read.contains(id)) continue;
+    remove_layer(services_.renderer, state.handles);
+    tell_layer(Change::deleted, state.layer);
+  }
+  participants_part_->styles_changed();
+  log::info("model " + std::to_string(model_id_) + " was read from the journal again, up to edit " +
+            std::to_string(contents->last_sequence));
+  recover();
+}
+
+void OpenRoom::on_gpu_filled(int losses_before, const Result<GpuContents>& contents) {
+  recovery_.working = false;
+  const bool in_vain = losses_before != recovery_.gpu_losses;  // lost again meanwhile
+  if (contents && (in_vain || recovery_.closed)) services_.renderer.remove_model(contents->model);
+  if (recovery_.closed) return;
+  if (in_vain) return recover();
+  if (!contents) return retry_recovery(contents.error());
+  recovery_.gpu_lacks_all = false;
+  {
+    std::lock_guard lock(mutex_);
+    model_handle_ = contents->model;
+    for (auto& [id, state] : layers_) state.handles = contents->layers.at(id);
+  }
+  maps_->set_model(contents->model);
+  look_shelf_->set_model(contents->model);
+  pipeline_->gpu_filled();
+  participants_part_->model_changed(contents->model);
+  recover();
+}
+
+void OpenRoom::retry_recovery(const Error& why) {
+  log::warning("model " + std::to_string(model_id_) +
+               " could not be loaded again, trying again: " + why.title + ": " + why.detail);
+  pipeline_->refuse_waiting({ErrorCode::unavailable,
+                             "Model is reloading",
+                             "The model is being loaded again, which failed for now: " + why.detail,
+                             {}});
+  recovery_.timer.expires_after(recovery_.retry_in);
+  recovery_.retry_in = std::min(2 * recovery_.retry_in, Recovery::kLastRetry);
+  recovery_.timer.async_wait(
+      [self = shared_from_this()](const boost::system::error_code& cancelled) {
+        if (!cancelled) self->recover();
+      });
+}
+
+}  // namespace strata::room

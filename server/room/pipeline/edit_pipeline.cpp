@@ -1,0 +1,695 @@
+#include "room/pipeline/edit_pipeline.h"
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <chrono>
+#include <limits>
+#include <map>
+#include <new>
+
+#include "core/log.h"
+#include "core/overloaded.h"
+#include "room/open/gpu_problem.h"
+#include "room/pipeline/provisional.h"
+#include "store/journal/journal_reads.h"
+
+namespace strata::room {
+namespace {
+
+constexpr int kStrokesInFlight = 8;  // keeps the GPU fed; more would only lengthen a rollback
+constexpr int kKeyTileEvery = 64;    // revisions of a tile between two whole copies
+constexpr auto kRepairPause = std::chrono::milliseconds(500);
+
+const char* op_name(const EditRequest& request) {
+  return std::visit(
+      Overloaded{
+          [](const StrokeEdit&) { return "stroke"; }, [](const FillEdit&) { return "fill"; },
+          [](const PolygonEdit&) { return "polygon"; }, [](const ImportEdit&) { return "import"; },
+          [](const ComputeEdit&) { return "compute"; }, [](const UndoEdit&) { return "undo"; },
+          [](const RedoEdit&) { return "redo"; }, [](const RestoreEdit&) { return "restore"; },
+          [](const ReviewEdit& review) { return name(review.decision).data(); }},
+      request.edit);
+}
+
+// Undo, redo, reviews and restore read the journal, so everything before them must be in it.
+bool reads_journal(const EditRequest& request) {
+  return !paints(request) || std::holds_alternative<RestoreEdit>(request.edit);
+}
+
+// What its content is computed from besides its own layer.
+bool reads_layers(const EditRequest& request) {
+  if (std::holds_alternative<ComputeEdit>(request.edit)) return true;
+  const auto* fill = std::get_if<FillEdit>(&request.edit);
+  return fill && std::holds_alternative<FillEdit::Where>(fill->region);
+}
+
+// The part of the surface that changed tiles lie on.
+std::optional<render::FrameRequest::Box> box_of(const std::vector<TileChange>& changes,
+                                                const mesh::SurfaceMap& map) {
+  render::FrameRequest::Box box{glm::vec3(std::numeric_limits<float>::max()),
+                                glm::vec3(std::numeric_limits<float>::lowest())};
+  const int tiles_per_side = map.resolution / kTileSize;
+  for (const TileChange& change : changes) {
+    const auto& bounds =
+        map.bounds_of_tile[std::size_t(change.address.y) * tiles_per_side + change.address.x];
+    if (bounds.radius < 0) continue;
+    box.min = glm::min(box.min, bounds.center - bounds.radius);
+    box.max = glm::max(box.max, bounds.center + bounds.radius);
+  }
+  if (box.min.x > box.max.x) return std::nullopt;
+  return box;
+}
+
+// Who repeats an edit is told what became of it; nobody else is.
+Error taken_id() {
+  return {ErrorCode::invalid, "Id used for another edit",
+          "Another edit of this model has this id; every edit has an id of its own.", "id"};
+}
+
+// What a layer's expression says is written by computing alone, until the layer is unlocked to be
+// edited by hand; from then on what was painted is not computed away.
+Result<void> check_formula(const Layer& layer, const EditRequest& request) {
+  const auto* compute = std::get_if<ComputeEdit>(&request.edit);
+  if (compute && !layer.formula)
+    return fail(ErrorCode::conflict, "No expression",
+                "This layer has no expression that it could be computed from.", "layer");
+  if (compute && layer.edited_by_hand && !compute->overwrites)
+    return fail(
+        ErrorCode::conflict, "Edited by hand",
+        "This layer was unlocked and edited by hand. Computing it again would overwrite that; "
+        "ask for it with overwrite=true.",
+        "layer");
+  if (!compute && layer.formula && !layer.edited_by_hand)
+    return fail(
+        ErrorCode::conflict, "Computed layer",
+        "The values of this layer follow from its expression. Unlock it to edit them by hand.",
+        "layer");
+  return {};
+}
+
+}  // namespace
+
+EditPipeline::EditPipeline(Parts parts, PipelineHost& host, std::int64_t last_sequence)
+    : parts_(std::move(parts)),
+      host_(&host),
+      sequence_(last_sequence),
+      durable_(last_sequence),
+      repair_timer_(parts_.strand) {}
+
+template <class Handler>
+auto EditPipeline::then(Handler handler) {
+  return [self = shared_from_this(), handler = std::move(handler)](auto value) mutable {
+    boost::asio::post(self->parts_.strand,
+                      [self, handler = std::move(handler), value = std::move(value)]() mutable {
+                        handler(std::move(value));
+                        self->step();
+                      });
+  };
+}
+
+void EditPipeline::edit(EditRequest request, Applied applied, Saved saved) {
+  if (closed_) return saved(tl::unexpected(*closed_));
+  if (auto found = running_.find(request.id); found != running_.end()) {
+    if (found->second.user != request.author.user) return saved(tl::unexpected(taken_id()));
+    return found->second.followers.push_back(std::move(saved));
+  }
+  if (!parts_.writer.accepting())
+    return saved(fail(
+        ErrorCode::unavailable, "Not saved",
+        "The database does not take edits at the moment. Viewing goes on; try again shortly."));
+  if (parts_.memory.exceeded())
+    return saved(tl::unexpected(parts_.memory.used_up(0, "what an edit may add")));
+  running_[request.id].user = request.author.user;
+  waiting_.push_back({std::move(request), std::move(applied), std::move(saved), {}});
+  step();
+}
+
+void EditPipeline::when_idle(Work work) {
+  if (closed_) return work(tl::unexpected(*closed_));
+  waiting_.push_back({EditRequest{{}, {{}, Role::viewer}}, {}, {}, std::move(work)});
+  step();
+}
+
+// ----------------------------------------------------------------------------------------------------
+// looking up
+
+// One question at a time, about all that came meanwhile. Where `verify_` is set, also: is the
+// journal where the room thinks it is? When the last question had no answer, that one is asked only
+// where somebody waits for it.
+void EditPipeline::ask_journal() {
+  if (asking_) return;
+  const bool settled = in_flight_ == 0 && !busy_ && !paused_ && pending_.empty();
+  const bool verifying = verify_ && settled && !(journal_away_ && waiting_.empty());
+  if (verify_ && !verifying) return;
+  std::vector<Uuid> ids;
+  for (Waiting& item : waiting_) {
+    if (item.work || item.lookup != Waiting::Lookup::none) continue;
+    item.lookup = Waiting::Lookup::asked;
+    ids.push_back(item.request.id);
+  }
+  if (ids.empty() && !verifying) return;
+  asking_ = true;
+  using State = Result<store::JournalState>;
+  boost::asio::post(parts_.readers, [&store = parts_.store, model_id = host_->pipeline_model().id,
+                                     ids = std::move(ids), was_away = journal_away_,
+                                     done = then([this, verifying](const State& state) {
+                                       on_journal(verifying, state);
+                                     })]() mutable {
+    // The pool waits for a database that restarts. Once is enough: those who come later hear at
+    // once that it is away.
+    if (was_away && !store.ready())
+      return done(State(fail(
+          ErrorCode::unavailable, "Database unavailable",
+          "The database does not answer, so nothing can be saved. Viewing goes on; try again shortly.")));
+    done(store.journal().state(model_id, ids));
+  });
+}
+
+void EditPipeline::on_journal(bool verifying, const Result<store::JournalState>& state) {
+  asking_ = false;
+  if (closed_) return;
+  journal_away_ = !state;
+  if (!state) {
+    // All that wait for the journal, not only those it was asked about: edits of one stroke must
+    // not change places.
+    std::deque<Waiting> all = std::exchange(waiting_, {});
+    for (Waiting& item : all) {
+      if (!verify_ && (item.work || item.lookup == Waiting::Lookup::is_new))
+        waiting_.push_back(std::move(item));
+      else
+        refuse(item, state.error());
+    }
+    return;
+  }
+  // A commit whose answer was lost may have happened after all: the journal is right, the room is
+  // not. Until the room holds what the journal has, no repeat may hear that its edit is there, so
+  // all is asked again then. (And a question from before `verify_` was set tells nothing.)
+  if (verifying && state->last_sequence == durable_) verify_ = false;
+  const auto is_beyond = [&](const store::JournalRow& row) { return row.sequence > durable_; };
+  if (std::any_of(state->known.begin(), state->known.end(), is_beyond)) verify_ = true;
+  if (!verify_) return on_known(state->known);
+  for (Waiting& item : waiting_)
+    if (item.lookup == Waiting::Lookup::asked) item.lookup = Waiting::Lookup::none;
+  if (verifying && state->last_sequence != durable_) host_->journal_differs();
+}
+
+void EditPipeline::on_known(const std::vector<store::JournalRow>& known) {
+  std::deque<Waiting> all = std::exchange(waiting_, {});
+  for (Waiting& item : all) {
+    const auto row = item.lookup == Waiting::Lookup::asked
+                         ? std::find_if(known.begin(), known.end(),
+                                        [&](const auto& r) { return r.id == item.request.id; })
+                         : known.end();
+    if (row != known.end() && row->user != item.request.author.user) {
+      refuse(item, taken_id());
+      continue;
+    }
+    if (row != known.end()) {
+      const EditAnswer first = first_answer(*row);
+      if (item.applied) item.applied(first);
+      answer(item.request.id, item.saved, first);
+      continue;
+    }
+    if (item.lookup == Waiting::Lookup::asked) item.lookup = Waiting::Lookup::is_new;
+    waiting_.push_back(std::move(item));
+  }
+}
+
+// ------------------------------------------------------------------------------------------------------
+// starting
+
+void EditPipeline::step() {
+  roll_back_when_answered();
+  if (closed_) return;
+  ask_journal();
+  if (paused_) {
+    if (in_flight_ == 0 && !busy_ && std::exchange(tell_paused_, false)) host_->paused();
+    return;
+  }
+  if (busy_ || failure_) return;
+  if (repair() || verify_) return;
+  while (!waiting_.empty() && !busy_ && !waits_for_map_)
+    if (!start_front()) return;
+}
+
+bool EditPipeline::start_front() {
+  Waiting& front = waiting_.front();
+  const auto take = [&] {
+    Waiting item = std::move(front);
+    waiting_.pop_front();
+    return item;
+  };
+  if (front.work) {
+    if (in_flight_ > 0 || !pending_.empty()) return false;
+    start_work(take().work);
+    return true;
+  }
+  if (front.lookup != Waiting::Lookup::is_new) return false;
+  const LayerState* layer = host_->find_layer(front.request.layer_id);
+  // Who does not see the layer any more hears what is heard when it was deleted.
+  if (!layer || !sees(front.request.author.role, layer->layer.visibility)) {
+    Waiting item = take();
+    refuse(item, {ErrorCode::not_found, "No such layer", "The layer was deleted.", "layer"});
+    return true;
+  }
+  if (auto may = check_not_locked(layer->layer, front.request.author.role, computes(front.request));
+      !may) {
+    Waiting item = take();
+    refuse(item, may.error());
+    return true;
+  }
+  if (auto may = check_formula(layer->layer, front.request); !may) {
+    Waiting item = take();
+    refuse(item, may.error());
+    return true;
+  }
+  if (!map_ready(layer->layer.resolution)) return false;
+  if (std::holds_alternative<StrokeEdit>(front.request.edit)) {
+    if (in_flight_ >= kStrokesInFlight) return false;
+    start_stroke(take(), *layer);
+  } else {
+    if (in_flight_ > 0 || (reads_journal(front.request) && !pending_.empty())) return false;
+    start_computed(take(), *layer);
+  }
+  return true;
+}
+
+void EditPipeline::start_work(Work work) {
+  busy_ = true;
+  boost::asio::post(parts_.workers, [work = std::move(work),
+                                     done = then([this](bool) { busy_ = false; })]() mutable {
+    work({});
+    done(true);
+  });
+}
+
+bool EditPipeline::map_ready(int resolution) {
+  if (parts_.maps->get(resolution)) return true;
+  waits_for_map_ = true;
+  parts_.maps->request(resolution, then([this](const Result<SurfaceMaps::MapPtr>& map) {
+                         waits_for_map_ = false;
+                         if (map || waiting_.empty() || waiting_.front().work) return;
+                         Waiting item = std::move(waiting_.front());
+                         waiting_.pop_front();
+                         refuse(item, gpu_problem(map.error()));
+                       }));
+  return false;
+}
+
+void EditPipeline::start_stroke(Waiting taken, const LayerState& layer) {
+  ++in_flight_;
+  auto item = std::make_shared<Waiting>(std::move(taken));
+  item->hold = layer.mirror->hold();
+  parts_.renderer.paint(layer.handles.content, std::get<StrokeEdit>(item->request.edit).batch,
+                        then([this, item](Result<render::StrokeOutcome> outcome) {
+                          --in_flight_;
+                          stroke_done(*item, std::move(outcome));
+                        }));
+}
+
+void EditPipeline::stroke_done(Waiting& item, Result<render::StrokeOutcome> outcome) {
+  if (!outcome) return refuse(item, gpu_problem(outcome.error()));
+  if (closed_) return refuse(item, *closed_);
+  LayerState* layer = host_->find_layer(item.request.layer_id);
+  if (!layer)
+    return refuse(item, {ErrorCode::not_found, "No such layer", "The layer was deleted.", "layer"});
+  ComputedEdit computed;
+  for (const auto& tile : outcome->tiles) {
+    auto before = layer->mirror->tile(tile.address);
+    if (!before) before = std::make_shared<const TileData>(layer->layer.type);
+    computed.changes.push_back(
+        painted_change(tile.address, std::move(before), tile.written, tile.after));
+  }
+  std::optional<render::FrameRequest::Box> box;
+  if (!computed.changes.empty())
+    box = render::FrameRequest::Box{outcome->written_min, outcome->written_max};
+  commit(item, *layer, std::move(computed), box);
+}
+
+void EditPipeline::start_computed(Waiting taken, const LayerState& layer) {
+  busy_ = true;
+  auto item = std::make_shared<Waiting>(std::move(taken));
+  auto done = then(
+      [this, item](Result<ComputedEdit> computed) { upload_computed(item, std::move(computed)); });
+  std::vector<query::LayerView> layers;
+  if (reads_layers(item->request)) layers = host_->layer_snapshots();
+  boost::asio::post(
+      parts_.workers, [this, self = shared_from_this(), item, meta = layer.layer,
+                       tiles = layer.mirror->snapshot().tiles, layers = std::move(layers),
+                       metres = host_->pipeline_model().metres(), model = host_->model_handle(),
+                       done = std::move(done)]() mutable {
+        const auto map = parts_.maps->get(meta.resolution);
+        if (!map)
+          return done(Result<ComputedEdit>(
+              fail(ErrorCode::gpu_lost, "GPU lost",
+                   "The graphics context is being restored; send the edit again.")));
+        auto question = item->request.question;
+        const Author& author = item->request.author;
+        if (!question)
+          question = std::make_shared<Question>(author.user, limits_of(author.role), nullptr);
+        question->skip_turns();
+        const Question::Scope scope(question);
+        try {
+          question->check();
+          done(compute_edit(item->request, meta,
+                            {*map, tiles, layers, metres, parts_.store, *parts_.surface,
+                             parts_.renderer, model, meta.visibility, item->request.author.role}));
+        } catch (const QuestionEnded& ended) {
+          done(Result<ComputedEdit>(tl::unexpected(ended.problem())));
+        } catch (const std::bad_alloc&) {
+          done(Result<ComputedEdit>(
+              fail(ErrorCode::out_of_memory, "Out of memory",
+                   "The server lacks the memory for this edit at the moment; try again later.")));
+        }
+      });
+}
+
+// Applied only once the GPU has it: a stroke that comes next is painted over what the mirror holds.
+void EditPipeline::upload_computed(const std::shared_ptr<Waiting>& item,
+                                   Result<ComputedEdit> computed) {
+  busy_ = false;
+  if (!computed) return refuse(*item, computed.error());
+  if (closed_) return refuse(*item, *closed_);
+  LayerState* layer = host_->find_layer(item->request.layer_id);
+  if (!layer)
+    return refuse(*item,
+                  {ErrorCode::not_found, "No such layer", "The layer was deleted.", "layer"});
+  std::vector<render::TileUpload> uploads;
+  for (const auto& change : computed->changes)
+    if (change.after != change.before) uploads.push_back({change.address, change.after});
+  busy_ = true;
+  item->hold = layer->mirror->hold();
+  parts_.renderer.write_tiles(
+      layer->handles.content, std::move(uploads),
+      then([this, item, computed = std::move(*computed)](const Result<void>& uploaded) mutable {
+        busy_ = false;
+        computed_uploaded(*item, std::move(computed), uploaded);
+      }));
+}
+
+void EditPipeline::computed_uploaded(Waiting& item, ComputedEdit computed,
+                                     const Result<void>& uploaded) {
+  if (closed_) return refuse(item, *closed_);
+  LayerState* layer = host_->find_layer(item.request.layer_id);
+  if (!layer)
+    return refuse(item, {ErrorCode::not_found, "No such layer", "The layer was deleted.", "layer"});
+  if (!uploaded) {
+    for (const auto& change : computed.changes) stale_[layer->layer.id].insert(change.address);
+    return refuse(item, gpu_problem(uploaded.error()));
+  }
+  const auto map = parts_.maps->get(layer->layer.resolution);
+  const auto box = map ? box_of(computed.changes, *map) : std::nullopt;
+  commit(item, *layer, std::move(computed), box);
+}
+
+// ------------------------------------------------------------------------------------ making
+// durable, or taking back
+
+void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit computed,
+                          const std::optional<render::FrameRequest::Box>& box) {
+  const auto map = parts_.maps->get(layer.layer.resolution);
+  const Model& model = host_->pipeline_model();
+  const std::int64_t sequence = ++sequence_;
+
+  store::JournalEntry entry;
+  const bool is_provisional = waits_for_review(layer.layer, item.request);
+  EditAnswer answer{sequence, 0, 0, false, is_provisional};
+  TileMap tiles, provisional_before, provisional;
+  auto& since_key_tile = since_key_tile_[layer.layer.id];
+  for (TileChange& change : computed.changes) {
+    if (is_provisional) change.provisional = change.written;
+    if (auto marked = layer.provisional->tile(change.address); marked || change.provisional.any()) {
+      provisional[change.address] = with_provisional(marked, change);
+      provisional_before[change.address] = std::move(marked);
+    }
+    if (change.before == change.after) continue;  // nothing moves
+    if (map) {
+      const ChangeCount count = count_changes(change, *map);
+      answer.texels_changed += count.texels;
+      answer.area_m2 += count.area * model.metres() * model.metres();
+    }
+    tiles[change.address] = change.after;
+    store::JournalEntry::Revision revision{
+        change.address,
+        encode_revision(
+            make_revision(change.address, *change.before, *change.after, change.written)),
+        {}};
+    // The first revision in this room is stored whole: chains stay short however often rooms open
+    // and close.
+    auto [since, first] = since_key_tile.try_emplace(change.address, 0);
+    if (first || ++since->second >= kKeyTileEvery) {
+      revision.key_tile = encode_tile(*change.after);
+      since->second = 0;
+    }
+    entry.revisions.push_back(std::move(revision));
+  }
+  if (map) {
+    std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>> after(tiles.begin(),
+                                                                               tiles.end());
+    entry.sum_tiles = [map, about = layer.layer, after = std::move(after)] {
+      return sum_tiles(about, *map, after);
+    };
+  }
+  const std::int64_t sequence_before = layer.layer.sequence;
+  layer.mirror->put(tiles, sequence);
+  put_provisional(layer, provisional, sequence);
+  host_->set_sequence(layer, sequence);
+
+  const auto* stroke = std::get_if<StrokeEdit>(&item.request.edit);
+  entry.model_id = model.id;
+  entry.layer_id = layer.layer.id;
+  entry.sequence = sequence;
+  entry.id = item.request.id;
+  entry.user = item.request.author.user;
+  entry.stroke = stroke ? stroke->stroke : item.request.id;
+  entry.op = op_name(item.request);
+  entry.record = std::move(item.request.record);
+  entry.answer = to_json(answer);
+  entry.time = std::chrono::system_clock::now();
+  entry.disable = std::move(computed.disable);
+  entry.enable = std::move(computed.enable);
+  if (is_provisional) entry.review = Review::pending;
+  entry.reviewed = std::move(computed.reviewed);
+
+  Listener::Edit event{layer.layer.id,    layer.layer.slug,
+                       sequence,          entry.id,
+                       entry.stroke,      stroke ? stroke->n : 0,
+                       stroke != nullptr, item.request.author.user,
+                       entry.op,          answer};
+  if (auto* review = std::get_if<ReviewEdit>(&item.request.edit))
+    event.review = {review->decision, std::move(review->reason), std::move(computed.authors)};
+  if (!tiles.empty() || !provisional.empty()) host_->content_changed(layer, box, sequence);
+  host_->edit_applied(event);
+  if (item.applied) item.applied(answer);
+
+  pending_.push_back({event, std::move(computed.changes), std::move(provisional_before),
+                      sequence_before, std::move(item.saved), false});
+  if (failure_) {
+    pending_.back().answered = true;
+    return;
+  }
+  const bool taken = parts_.writer.submit(
+      std::move(entry),
+      then([this, sequence](const Result<void>& result) { on_saved(sequence, result); }));
+  if (!taken) {
+    failure_ = Error{ErrorCode::unavailable,
+                     "Not saved",
+                     "The database does not keep up with the edits; they were taken back.",
+                     {}};
+    pending_.back().answered = true;
+  }
+}
+
+void EditPipeline::put_provisional(LayerState& layer, const TileMap& tiles, std::int64_t sequence) {
+  if (tiles.empty()) return;
+  const bool was_empty = layer.provisional->empty();
+  layer.provisional->put(tiles, sequence);
+  if (layer.provisional->empty() != was_empty) host_->styles_changed();
+  std::set<TileAddress> addresses = std::exchange(stale_marks_[layer.layer.id], {});
+  for (const auto& [address, tile] : tiles) addresses.insert(address);
+  std::vector<render::TileUpload> uploads;
+  for (const TileAddress address : addresses)
+    uploads.push_back({address, layer.provisional->tile(address)});
+  const auto failed = [this, id = layer.layer.id,
+                       addresses = std::move(addresses)](const Result<void>& uploaded) {
+    if (!uploaded) stale_marks_[id].insert(addresses.begin(), addresses.end());
+  };
+  parts_.renderer.write_tiles(layer.handles.provisional, std::move(uploads), then(failed));
+}
+
+TileMap EditPipeline::durable_provisional(const LayerState& layer) const {
+  TileMap tiles = layer.provisional->snapshot().tiles;
+  for (auto pending = pending_.rbegin(); pending != pending_.rend(); ++pending)
+    if (pending->event.layer_id == layer.layer.id)
+      for (const auto& [address, before] : pending->provisional) tiles[address] = before;
+  std::erase_if(tiles, [](const auto& entry) { return !entry.second; });
+  return tiles;
+}
+
+void EditPipeline::on_saved(std::int64_t sequence, const Result<void>& result) {
+  auto found = std::find_if(pending_.begin(), pending_.end(), [&](const Pending& pending) {
+    return pending.event.sequence == sequence;
+  });
+  if (found == pending_.end()) return;
+  if (!result) {
+    found->answered = true;
+    if (!failure_) failure_ = result.error();
+    return;
+  }
+  Pending pending = std::move(*found);
+  pending_.erase(found);
+  durable_ = sequence;
+  if (host_) host_->edit_saved(pending.event);
+  answer(pending.event.id, pending.saved, pending.event.answer);
+}
+
+// Nothing is taken back while the room is paused: what it reads or puts on the GPU then must not
+// change under it.
+void EditPipeline::roll_back_when_answered() {
+  if (!failure_ || in_flight_ > 0 || busy_ || (paused_ && !closed_)) return;
+  for (const Pending& pending : pending_)
+    if (!pending.answered) return;
+
+  const Error why = *failure_;
+  failure_.reset();
+  verify_ = true;
+  sequence_ = durable_;
+  std::deque<Pending> taken_back = std::exchange(pending_, {});
+  struct Before {
+    TileMap tiles, provisional;
+    std::int64_t sequence = 0;
+  };
+  std::map<std::int64_t, Before> layers;  // what they were before their oldest pending edit
+  for (auto pending = taken_back.rbegin(); pending != taken_back.rend(); ++pending) {
+    Before& before = layers[pending->event.layer_id];
+    before.sequence = pending->layer_sequence_before;
+    for (const auto& change : pending->changes) before.tiles[change.address] = change.before;
+    for (const auto& [address, tile] : pending->provisional) before.provisional[address] = tile;
+  }
+  for (auto& [layer_id, before] : layers) {
+    LayerState* layer = closed_ ? nullptr : host_->find_layer(layer_id);
+    if (!layer) continue;
+    layer->mirror->put(before.tiles, before.sequence);
+    put_provisional(*layer, before.provisional, before.sequence);
+    host_->set_sequence(*layer, before.sequence);
+    since_key_tile_.erase(layer_id);  // the whole copies may be among what was not saved
+    for (const auto& [address, data] : before.tiles) stale_[layer_id].insert(address);
+  }
+  if (!closed_) repair();  // on its way before anybody hears of it
+  std::vector<Listener::Edit> events;
+  for (const auto& pending : taken_back) events.push_back(pending.event);
+  log::warning("took back " + std::to_string(events.size()) +
+               " edits that could not be saved: " + why.title + ": " + why.detail);
+  if (!closed_) host_->edits_unsaved(events, why);
+  for (auto& pending : taken_back) answer(pending.event.id, pending.saved, tl::unexpected(why));
+}
+
+// Writes what the mirrors hold where the GPU may hold something else. First the tiles that are
+// empty: that frees the pages which the others may need.
+bool EditPipeline::repair() {
+  std::erase_if(stale_, [&](const auto& entry) { return !host_->find_layer(entry.first); });
+  if (stale_.empty()) return false;
+  if (repair_waits_ || in_flight_ > 0) return true;
+  busy_ = true;
+  auto left = std::make_shared<std::size_t>(4 * stale_.size());
+  auto failure = std::make_shared<std::optional<Error>>();
+  const auto write = [&](render::LayerHandle handle, const TileMirror& mirror,
+                         const std::set<TileAddress>& tiles, bool empty_ones) {
+    std::vector<render::TileUpload> uploads;
+    for (const TileAddress address : tiles)
+      if (auto tile = mirror.tile(address); !tile == empty_ones)
+        uploads.push_back({address, std::move(tile)});
+    parts_.renderer.write_tiles(handle, std::move(uploads),
+                                then([this, left, failure](const Result<void>& uploaded) {
+                                  if (!uploaded && !*failure) *failure = uploaded.error();
+                                  if (--*left == 0) repaired(*failure);
+                                }));
+  };
+  for (const bool empty_ones : {true, false})
+    for (const auto& [layer_id, tiles] : stale_) {
+      const LayerState* layer = host_->find_layer(layer_id);
+      write(layer->handles.content, *layer->mirror, tiles, empty_ones);
+      write(layer->handles.provisional, *layer->provisional, tiles, empty_ones);
+    }
+  return true;
+}
+
+void EditPipeline::repaired(const std::optional<Error>& failure) {
+  busy_ = false;
+  if (closed_) return;
+  if (!failure) {
+    for (const auto& [layer_id, tiles] : std::exchange(stale_, {}))
+      if (const LayerState* layer = host_->find_layer(layer_id))
+        host_->content_changed(*layer, std::nullopt, sequence_);
+    return;
+  }
+  if (paused_) return;  // a lost context: everything is put on the GPU again
+  log::warning("tiles were not written to the GPU, trying again: " + failure->detail);
+  refuse_waiting(gpu_problem(*failure));
+  repair_waits_ = true;
+  repair_timer_.expires_after(kRepairPause);
+  repair_timer_.async_wait([self = shared_from_this()](const boost::system::error_code& cancelled) {
+    self->repair_waits_ = false;
+    if (!cancelled) self->step();
+  });
+}
+
+void EditPipeline::refuse(Waiting& item, const Error& why) {
+  if (item.work)
+    item.work(tl::unexpected(why));
+  else
+    answer(item.request.id, item.saved, tl::unexpected(why));
+}
+
+void EditPipeline::refuse_waiting(const Error& why) {
+  std::deque<Waiting> all = std::exchange(waiting_, {});
+  for (Waiting& item : all) refuse(item, why);
+}
+
+void EditPipeline::answer(const Uuid& id, const Saved& saved, const Result<EditAnswer>& result) {
+  std::vector<Saved> followers;
+  if (auto found = running_.find(id); found != running_.end()) {
+    followers = std::move(found->second.followers);
+    running_.erase(found);
+  }
+  if (saved) saved(result);
+  for (auto& follower : followers) {
+    Result<EditAnswer> repeated = result;
+    if (repeated) repeated->repeated = true;
+    follower(repeated);
+  }
+}
+
+// -----------------------------------------------------------------------------------------------
+// pausing, closing
+
+void EditPipeline::pause() {
+  paused_ = tell_paused_ = true;
+  step();
+}
+
+void EditPipeline::journal_read(std::int64_t last_sequence) {
+  sequence_ = durable_ = last_sequence;  // nothing is pending: the last rollback took all of it
+  verify_ = false;
+  since_key_tile_.clear();
+}
+
+void EditPipeline::gpu_lacks(std::int64_t layer_id, const std::vector<TileAddress>& tiles) {
+  stale_[layer_id].insert(tiles.begin(), tiles.end());
+}
+
+void EditPipeline::resume() {
+  paused_ = false;
+  step();
+}
+
+void EditPipeline::close(const Error& why) {
+  if (closed_) return;
+  closed_ = why;
+  host_ = nullptr;
+  repair_timer_.cancel();
+  refuse_waiting(why);
+  roll_back_when_answered();
+}
+
+}  // namespace strata::room

@@ -1,0 +1,61 @@
+#include "room/pipeline/provisional.h"
+
+#include "domain/layers/mask_texels.h"
+#include "room/pipeline/tile_past.h"
+#include "store/journal/journal_reads.h"
+
+namespace strata::room {
+
+Result<TileMap> read_provisional(store::Store& store, const Layer& layer) {
+  const auto waiting = STRATA_TRY(store.journal().under_review(layer.id, Decision::accept, {}));
+  if (waiting.empty()) return TileMap{};
+  std::vector<std::int64_t> sequences;
+  for (const auto& edit : waiting) sequences.push_back(edit.sequence);
+  const auto written = STRATA_TRY(store.journal().written_by(layer, sequences));
+  TileMap tiles;
+  for (const auto& [tile, texels] : written) {
+    // what the texels hold does not matter here
+    TileResolver resolver(TileData(layer.type), texels);
+    STRATA_TRY(walk_back(resolver, layer, tile, store, [](PastRevision&) {}));
+    if (resolver.provisional().any())
+      tiles[tile] =
+          with_provisional(nullptr, {tile, nullptr, nullptr, texels, resolver.provisional()});
+  }
+  return tiles;
+}
+
+std::shared_ptr<const TileData> with_provisional(const std::shared_ptr<const TileData>& before,
+                                                 const TileChange& change) {
+  auto after =
+      before ? std::make_shared<TileData>(*before) : std::make_shared<TileData>(ValueType::u8);
+  for_each_texel(change.written, [&](int texel) {
+    if (change.provisional.test(texel))
+      after->write(texel, 1);
+    else
+      after->clear(texel);
+  });
+  return after;
+}
+
+std::shared_ptr<const Palette> provisional_palette() {
+  // Dark lines that stay apart in greyscale and on colours of any palette, and let what is below be
+  // read.
+  static const auto kHatch =
+      std::make_shared<const Palette>(Palette{.mode = PaletteMode::categorical,
+                                              .points = {{.at = 1,
+                                                          .color = {24, 24, 24, 230},
+                                                          .label = {},
+                                                          .value = {},
+                                                          .pattern = Pattern::hatch,
+                                                          .angle = 135}},
+                                              .column = {}});
+  return kHatch;
+}
+
+void add_styles(const render::LayerStyle& style, std::optional<render::LayerHandle> waiting,
+                std::vector<render::LayerStyle>& styles) {
+  styles.push_back(style);
+  if (waiting) styles.push_back({*waiting, provisional_palette(), style.opacity, true});
+}
+
+}  // namespace strata::room

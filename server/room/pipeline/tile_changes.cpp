@@ -1,0 +1,164 @@
+#include "room/pipeline/tile_changes.h"
+
+#include <cstring>
+#include <set>
+
+#include "domain/layers/mask_texels.h"
+#include "mesh/texels/slot_bits.h"
+#include "query/statistics/surface_keys.h"
+
+namespace strata::room {
+namespace {
+
+// Texels whose value or validity differs.
+TileMask differing(const TileData& a, const TileData& b) {
+  TileMask mask;
+  const int width = a.texel_bytes();
+  for (int w = 0; w < kMaskWords; ++w) mask.words[w] = a.valid.words[w] ^ b.valid.words[w];
+  if (std::memcmp(a.values.data(), b.values.data(), a.values.size()) == 0) return mask;
+  for (int texel = 0; texel < kTexelsPerTile; ++texel)
+    if (std::memcmp(&a.values[std::size_t(texel) * width], &b.values[std::size_t(texel) * width],
+                    width) != 0)
+      mask.set(texel);
+  return mask;
+}
+
+// Writes the texels that `mask_of(address)` tells.
+template <class MaskOf>
+std::vector<TileChange> fill(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
+                             WrittenValue value, MaskOf mask_of) {
+  std::vector<TileChange> changes;
+  const int tiles_per_side = map.resolution / kTileSize;
+  for (int y = 0; y < tiles_per_side; ++y)
+    for (int x = 0; x < tiles_per_side; ++x) {
+      const TileAddress address{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
+      const TileMask mask = mask_of(address);
+      if (!mask.any()) continue;
+      auto before = tile_or_empty(tiles, address, type);
+      if (!value && !before->valid.any()) continue;
+      auto after = std::make_shared<TileData>(*before);
+      for_each_texel(mask,
+                     [&](int texel) { value ? after->write(texel, *value) : after->clear(texel); });
+      changes.push_back({address, std::move(before), std::move(after), mask});
+    }
+  return changes;
+}
+
+}  // namespace
+
+std::shared_ptr<const TileData> tile_or_empty(const TileMap& tiles, TileAddress address,
+                                              ValueType type) {
+  auto found = tiles.find(address);
+  if (found != tiles.end() && found->second) return found->second;
+  return std::make_shared<const TileData>(type);
+}
+
+ChangeCount count_changes(const TileChange& change, const mesh::SurfaceMap& map) {
+  ChangeCount count;
+  TileMask changed = differing(*change.before, *change.after);
+  if (!changed.any()) return count;
+  const TileMask surface = map.surface_in_tile(change.address);
+  for (int w = 0; w < kMaskWords; ++w) changed.words[w] &= surface.words[w];
+  for_each_texel(changed, [&](int texel) {
+    ++count.texels;
+    count.area += map.area_of(change.address, texel);
+  });
+  return count;
+}
+
+std::vector<TileChange> fill_everywhere(const TileMap& tiles, ValueType type,
+                                        const mesh::SurfaceMap& map, WrittenValue value) {
+  return fill(tiles, type, map, value,
+              [&](TileAddress address) { return map.owned_in_tile(address); });
+}
+
+std::vector<TileChange> fill_selected(const TileMap& tiles, ValueType type,
+                                      const mesh::SurfaceMap& map, query::TexelSelection selection,
+                                      WrittenValue value) {
+  mesh::spread_to_gutter(map, selection);
+  return fill(tiles, type, map, value, [&](TileAddress address) {
+    return mesh::gather_tile_bits(map, address,
+                                  [&](std::uint32_t slot) { return selection[slot]; });
+  });
+}
+
+std::vector<TileChange> fill_masks(const TileMap& tiles, ValueType type,
+                                   const mesh::SurfaceMap& map,
+                                   const std::map<TileAddress, TileMask>& masks,
+                                   WrittenValue value) {
+  return fill(tiles, type, map, value, [&](TileAddress address) {
+    const auto found = masks.find(address);
+    return found == masks.end() ? TileMask{} : found->second;
+  });
+}
+
+std::vector<TileChange> replace_content(const TileMap& tiles, const TileMap& wished, ValueType type,
+                                        const mesh::SurfaceMap& map) {
+  std::set<TileAddress> addresses;
+  for (const auto& [address, data] : tiles) addresses.insert(address);
+  for (const auto& [address, data] : wished) addresses.insert(address);
+  std::vector<TileChange> changes;
+  for (TileAddress address : addresses) {
+    auto before = tile_or_empty(tiles, address, type);
+    auto after = std::make_shared<TileData>(*tile_or_empty(wished, address, type));
+    const TileMask owned = map.owned_in_tile(address);
+    TileMask foreign;
+    for (int w = 0; w < kMaskWords; ++w) foreign.words[w] = after->valid.words[w] & ~owned.words[w];
+    for_each_texel(foreign, [&](int texel) { after->clear(texel); });
+    const TileMask written = differing(*before, *after);
+    if (written.any()) changes.push_back({address, std::move(before), std::move(after), written});
+  }
+  return changes;
+}
+
+std::vector<TileChange> paint_over(const TileMap& tiles, const TileMap& written, ValueType type,
+                                   const mesh::SurfaceMap& map) {
+  std::vector<TileChange> changes;
+  for (const auto& [address, data] : written) {
+    const TileMask owned = map.owned_in_tile(address);
+    TileMask mask;
+    for (int w = 0; w < kMaskWords; ++w) mask.words[w] = data->valid.words[w] & owned.words[w];
+    if (!mask.any()) continue;
+    auto before = tile_or_empty(tiles, address, type);
+    auto after = std::make_shared<TileData>(*before);
+    copy_texels(*data, mask, *after);
+    changes.push_back({address, std::move(before), std::move(after), mask});
+  }
+  return changes;
+}
+
+TileChange painted_change(TileAddress address, std::shared_ptr<const TileData> before,
+                          const TileMask& written, const TileData& read_back) {
+  auto after = std::make_shared<TileData>(*before);
+  copy_texels(read_back, written, *after);
+  return {address, std::move(before), std::move(after), written};
+}
+
+std::vector<TileAddress> differing_tiles(const TileMap& a, const TileMap& b) {
+  std::vector<TileAddress> addresses;
+  for (const auto& [address, tile] : a) {
+    auto other = b.find(address);
+    if (other == b.end() || !(*other->second == *tile)) addresses.push_back(address);
+  }
+  for (const auto& [address, tile] : b)
+    if (!a.contains(address)) addresses.push_back(address);
+  return addresses;
+}
+
+std::vector<store::TileKeys> sum_tiles(
+    const Layer& layer, const mesh::SurfaceMap& map,
+    const std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>>& tiles) {
+  const bool apart = query::tells_keys_apart(layer);
+  std::vector<store::TileKeys> out;
+  for (const auto& [address, tile] : tiles) {
+    store::TileKeys& of_tile = out.emplace_back(store::TileKeys{address, {}});
+    for (const auto& key : query::surface_keys(*tile, address, layer, map)) {
+      const auto value = static_cast<std::int64_t>(decode_value(layer.type, key.bits));
+      of_tile.keys.push_back({apart ? std::optional(value) : std::nullopt, key.texels,
+                              key.area.value(), key.weighted_position, key.lowest, key.highest});
+    }
+  }
+  return out;
+}
+
+}  // namespace strata::room
