@@ -3,7 +3,7 @@
 #include "mesh/io/file_comments.h"
 #include "mesh/io/file_nature.h"
 #include "mesh/io/load_formats.h"
-#include "mesh/io/texture_shelf.h"
+#include "mesh/io/texture_loader.h"
 
 namespace strata::mesh {
 namespace {

@@ -6,7 +6,7 @@
 #include "mesh/io/mtl.h"
 #include "mesh/io/obj_lines.h"
 #include "mesh/io/plain_text.h"
-#include "mesh/io/texture_shelf.h"
+#include "mesh/io/texture_loader.h"
 #include "mesh/texture/vertex_color.h"
 
 namespace strata::mesh {
@@ -318,7 +318,7 @@ class ObjReader {
   struct UvTransform {
     glm::vec2 scale{1}, offset{0};
   };
-  TextureShelf shelf_;
+  TextureLoader shelf_;
   std::vector<std::string> libraries_;
   std::map<std::string, std::uint16_t, std::less<>> material_of_name_, undefined_;
   std::vector<std::string> references_;  // a material's picture as the MTL names it

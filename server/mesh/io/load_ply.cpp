@@ -6,7 +6,7 @@
 #include "mesh/io/load_formats.h"
 #include "mesh/io/ply_colors.h"
 #include "mesh/io/ply_source.h"
-#include "mesh/io/texture_shelf.h"
+#include "mesh/io/texture_loader.h"
 
 namespace strata::mesh {
 namespace {
@@ -23,7 +23,7 @@ class PlyReader {
         file_bytes_(files.scan().bytes.size()),
         progress_(progress),
         faces_(loaded_.mesh, max_triangles) {
-    TextureShelf shelf(files, loaded_.mesh, loaded_.repairs);
+    TextureLoader shelf(files, loaded_.mesh, loaded_.repairs);
     for (const std::string& file : header.texture_files)
       loaded_.mesh.materials.push_back({.name = file, .texture = shelf.of_file(file)});
     faces_.use_material(0);

@@ -7,9 +7,9 @@
 #include "net/api/models/personal_view.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/auth/kiosk_gate.h"
-#include "net/auth/project_gate.h"
-#include "net/auth/still_welcome.h"
+#include "net/auth/kiosk_authorization.h"
+#include "net/auth/project_authorization.h"
+#include "net/auth/session_recheck.h"
 #include "net/http/accept.h"
 #include "net/http/compression.h"
 #include "net/http/entity_tags.h"
@@ -34,7 +34,7 @@ bool changes(Method method) {
 }
 
 Result<void> check_record(store::Store& store, std::int64_t project_id,
-                          const app::EditorBook::Record& record) {
+                          const app::RecordEditLocks::Record& record) {
   const auto table = store.tables().find(std::to_string(record.table), Role::viewer);
   if (!table && table.error().code != ErrorCode::not_found) return tl::unexpected(table.error());
   if (!table || table->project_id != project_id)
@@ -45,17 +45,18 @@ Result<void> check_record(store::Store& store, std::int64_t project_id,
 }
 
 std::shared_ptr<LiveShared> make_shared_state(const ServerOptions& options, store::Store& store,
-                                              const std::shared_ptr<app::ToolShelf>& tools) {
+                                              const std::shared_ptr<app::BrushShapeCache>& tools) {
   auto shared = std::make_shared<LiveShared>();
   shared->metrics = std::make_shared<Metrics>();
-  shared->strokes = std::make_shared<app::StrokeBook>();
+  shared->strokes = std::make_shared<app::StrokeTracker>();
   shared->queries = std::make_shared<WorkerPool>(options.query_threads, kMaxWaitingQueries);
   shared->sockets = std::make_shared<LiveSockets>();
-  shared->editors = std::make_shared<app::EditorBook>();
+  shared->editors = std::make_shared<app::RecordEditLocks>();
   shared->store = &store;
   shared->limits = options.live;
   shared->find_tool = [tools](const std::string& ref) { return tools->find(ref); };
-  shared->check_record = [&store](std::int64_t project_id, const app::EditorBook::Record& record) {
+  shared->check_record = [&store](std::int64_t project_id,
+                                  const app::RecordEditLocks::Record& record) {
     return check_record(store, project_id, record);
   };
   return shared;
@@ -80,7 +81,7 @@ const Headers& security_headers() {
 }
 
 Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs,
-         render::Renderer& renderer, app::TemplateShelf templates)
+         render::Renderer& renderer, app::TemplateRegistry templates)
     : options_(std::move(options)),
       own_names_(own_names(options_.host, options_.allowed_origins)),
       store_(store),
@@ -89,7 +90,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
       answers_(store),
       edit_book_(store),
       files_(options_.static_dir),
-      tools_(std::make_shared<app::ToolShelf>(store)),
+      tools_(std::make_shared<app::BrushShapeCache>(store)),
       templates_(std::move(templates)),
       shared_(make_shared_state(options_, store, tools_)),
       workers_(options_.worker_threads, options_.max_waiting_requests),

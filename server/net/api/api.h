@@ -5,17 +5,17 @@
 #include <optional>
 #include <string>
 
-#include "app/bin_keeper.h"
 #include "app/layers/recomputer.h"
-#include "app/strokes/tool_shelf.h"
-#include "app/template_shelf.h"
+#include "app/strokes/brush_shape_cache.h"
+#include "app/template_registry.h"
+#include "app/trash_purger.h"
 #include "domain/people/role.h"
 #include "jobs/job_queue.h"
 #include "net/api/metrics.h"
 #include "net/api/route_context.h"
 #include "net/auth/auth.h"
-#include "net/http/answer_book.h"
-#include "net/http/edit_book.h"
+#include "net/http/edit_idempotency.h"
+#include "net/http/idempotency_store.h"
 #include "net/http/question_desk.h"
 #include "net/http/router.h"
 #include "net/http/static_files.h"
@@ -38,7 +38,7 @@ namespace strata::net {
 class Api {
  public:
   Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs,
-      render::Renderer& renderer, app::TemplateShelf templates);
+      render::Renderer& renderer, app::TemplateRegistry templates);
   ~Api();
 
   const ServerOptions& options() const { return options_; }
@@ -89,18 +89,18 @@ class Api {
   store::Store& store_;
   room::Rooms& rooms_;
   Authenticator auth_;
-  AnswerBook answers_;
-  EditBook edit_book_;
+  IdempotencyStore answers_;
+  EditIdempotency edit_book_;
   StaticFiles files_;
-  const std::shared_ptr<app::ToolShelf> tools_;
-  const app::TemplateShelf templates_;
+  const std::shared_ptr<app::BrushShapeCache> tools_;
+  const app::TemplateRegistry templates_;
   std::shared_ptr<LiveShared> shared_;
   WorkerPool workers_;
   QuestionDesk questions_;
   Router router_;
   Route page_;  // everything that is no API address
   Route live_;  // the live connections, which no handler answers
-  app::BinKeeper bin_keeper_;
+  app::TrashPurger bin_keeper_;
   const TableEvents table_events_;
   const RouteContext context_;
   app::Recomputer recomputer_;

@@ -10,16 +10,16 @@ namespace render {
 class Renderer;
 }
 namespace app {
-class BinKeeper;
-class TemplateShelf;
-class ToolShelf;
+class TrashPurger;
+class TemplateRegistry;
+class BrushShapeCache;
 }  // namespace app
 }  // namespace strata
 
 namespace strata::net {
 
 class Authenticator;
-class EditBook;
+class EditIdempotency;
 class LiveSockets;
 class QuestionDesk;
 class WorkerPool;
@@ -33,14 +33,14 @@ struct RouteContext : app::Services {
   jobs::JobQueue& jobs;
   render::Renderer& renderer;
   Authenticator& auth;
-  EditBook& edit_book;
+  EditIdempotency& edit_idempotency;
   LiveSockets& live_sockets;
   Metrics& metrics;
   WorkerPool& workers;
   QuestionDesk& questions;
-  app::ToolShelf& tools;
-  const app::TemplateShelf& templates;
-  app::BinKeeper& bin_keeper;
+  app::BrushShapeCache& tools;
+  const app::TemplateRegistry& templates;
+  app::TrashPurger& trash_purger;
 };
 
 }  // namespace strata::net

@@ -6,7 +6,7 @@
 #include "core/uuid.h"
 #include "jobs/job_queue.h"
 #include "net/api/metrics.h"
-#include "net/http/edit_book.h"
+#include "net/http/edit_idempotency.h"
 #include "net/serialization/job_serialization.h"
 #include "room/edit.h"
 #include "room/edits.h"
@@ -104,7 +104,7 @@ void apply_edit(const RouteContext& context, const Request& request,
   if (Question* question = Question::current()) edit.question = question->shared_from_this();
   const bool keyed = !request.header("idempotency-key").empty();
   if (keyed)
-    if (auto same = context.edit_book.begin(room->model().id, edit); !same)
+    if (auto same = context.edit_idempotency.begin(room->model().id, edit); !same)
       return respond(same.error());
   const Uuid id = edit.id;
   room->edits().submit(
@@ -114,7 +114,7 @@ void apply_edit(const RouteContext& context, const Request& request,
       },
       [&context, keyed, id, respond,
        body_of = std::move(body_of)](Result<room::EditAnswer> answer) {
-        if (keyed) context.edit_book.end(id);
+        if (keyed) context.edit_idempotency.end(id);
         if (!answer) {
           ++context.metrics.edits.refused;
           return respond(answer.error());

@@ -1,6 +1,6 @@
 #include "net/http/precondition.h"
 
-#include "net/auth/project_gate.h"
+#include "net/auth/project_authorization.h"
 #include "store/content/projects.h"
 #include "store/store.h"
 

@@ -4,7 +4,7 @@
 
 #include "app/records/painted_keys.h"
 #include "net/auth/auth.h"
-#include "net/auth/kiosk_gate.h"
+#include "net/auth/kiosk_authorization.h"
 #include "net/live/close_codes.h"
 #include "net/live/live_sockets.h"
 #include "net/serialization/edit_serialization.h"
@@ -37,7 +37,7 @@ std::string ref_of(const std::optional<std::string>& id) { return id.value_or(st
 constexpr std::size_t kMostEditorsTold = 1000;  // in a message
 
 std::vector<protocol::RecordEditors> editor_messages(
-    const std::vector<app::EditorBook::Entry>& entries) {
+    const std::vector<app::RecordEditLocks::Entry>& entries) {
   std::vector<protocol::RecordEditors> messages;
   for (const auto& [record, editor] : entries) {
     if (messages.empty() || messages.back().records.size() == kMostEditorsTold)
@@ -168,7 +168,7 @@ void LiveSession::on(const protocol::Hello& message) {
   welcome.personal_view = personal_view_;
   const LiveLimits& limits = shared_->limits;
   welcome.limits.message_bytes = static_cast<int>(limits.message_bytes);
-  welcome.limits.path_points = static_cast<int>(app::StrokeBook::kMaxPath - 1);
+  welcome.limits.path_points = static_cast<int>(app::StrokeTracker::kMaxPath - 1);
   welcome.limits.view_size = kMaxViewSize;
   welcome.limits.views = limits.views;
   welcome.limits.frames_in_flight = stream::Viewer::Options{}.window;
@@ -180,10 +180,10 @@ void LiveSession::on(const protocol::Hello& message) {
     std::lock_guard lock(mutex_);
     member_ = std::move(joined);
   }
-  shared_->editors->list(project_id(),
-                         [this](std::int64_t, const std::vector<app::EditorBook::Entry>& entries) {
-                           for (const auto& each : editor_messages(entries)) send(each);
-                         });
+  shared_->editors->list(
+      project_id(), [this](std::int64_t, const std::vector<app::RecordEditLocks::Entry>& entries) {
+        for (const auto& each : editor_messages(entries)) send(each);
+      });
   presence_changed();
 }
 
@@ -302,7 +302,7 @@ LiveSession::Work LiveSession::on(const protocol::RecordEdit& message) {
 void LiveSession::edit_record(const protocol::RecordEdit& message) {
   const auto here = member();
   if (!here) return;
-  const app::EditorBook::Record record{message.table, message.key};
+  const app::RecordEditLocks::Record record{message.table, message.key};
   auto begun = shared_->check_record(project_id(), record);
   if (begun)
     begun = shared_->editors->begin(project_id(), record, {here->session(), principal_.user},
@@ -635,9 +635,9 @@ bool LiveSession::may_edit(const std::string& ref) {
   return false;
 }
 
-app::EditorBook::Tell LiveSession::tell_project() const {
+app::RecordEditLocks::Tell LiveSession::tell_project() const {
   return [sockets = shared_->sockets](std::int64_t project_id,
-                                      const std::vector<app::EditorBook::Entry>& entries) {
+                                      const std::vector<app::RecordEditLocks::Entry>& entries) {
     for (const auto& message : editor_messages(entries)) sockets->tell_project(project_id, message);
   };
 }

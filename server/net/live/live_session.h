@@ -10,9 +10,9 @@
 #include <string>
 #include <unordered_map>
 
-#include "app/strokes/editor_book.h"
-#include "app/strokes/stroke_book.h"
-#include "app/strokes/tool_shelf.h"
+#include "app/strokes/brush_shape_cache.h"
+#include "app/strokes/record_edit_locks.h"
+#include "app/strokes/stroke_tracker.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
 #include "domain/scene/look.h"
@@ -48,16 +48,16 @@ class LiveSocket {
 class LiveSockets;
 
 // 404 (`table`, `key`) for a record that the project has not. May block.
-using CheckRecord =
-    std::function<Result<void>(std::int64_t project_id, const app::EditorBook::Record& record)>;
+using CheckRecord = std::function<Result<void>(std::int64_t project_id,
+                                               const app::RecordEditLocks::Record& record)>;
 
 // What all sessions share; outlives the rooms' callbacks by being shared.
 struct LiveShared {
   std::shared_ptr<Metrics> metrics;
-  std::shared_ptr<app::StrokeBook> strokes;
+  std::shared_ptr<app::StrokeTracker> strokes;
   std::shared_ptr<WorkerPool> queries;  // picks: they may be slow the first time
   std::shared_ptr<LiveSockets> sockets;
-  std::shared_ptr<app::EditorBook> editors;
+  std::shared_ptr<app::RecordEditLocks> editors;
   store::Store* store = nullptr;
   app::FindTool find_tool;
   CheckRecord check_record;
@@ -129,7 +129,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   void on_saved(const Uuid& id, const std::optional<BatchName>& batch,
                 const Result<room::EditAnswer>& answer);
   Author author() const { return {principal_.user, principal_.role}; }
-  app::EditorBook::Tell tell_project() const;
+  app::RecordEditLocks::Tell tell_project() const;
   bool may_edit(const std::string& ref);
   bool may_edit(const Uuid& id) { return may_edit(to_string(id)); }
   bool has_view(int view_id, const std::string& ref);
@@ -148,7 +148,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   const Principal principal_;
   const room::Portrait portrait_;
   const std::optional<protocol::PersonalView> personal_view_;
-  const app::StrokeBook::Owner owner_;
+  const app::StrokeTracker::Owner owner_;
   const std::weak_ptr<LiveSocket> socket_;
 
   // On the socket's strand.

@@ -1,6 +1,6 @@
 #include "net/live/model_events.h"
 
-#include "net/auth/still_welcome.h"
+#include "net/auth/session_recheck.h"
 #include "net/serialization/activity_serialization.h"
 #include "store/content/models.h"
 #include "store/content/projects.h"

@@ -150,7 +150,7 @@ Result<app::StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const La
   return tool;
 }
 
-room::EditRequest batch_request(app::StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id,
+room::EditRequest batch_request(app::StrokeTracker::Batch batch, const Uuid& stroke, const Uuid& id,
                                 int n, Author author) {
   room::EditRequest request{id, std::move(author), batch.tool.layer_id};
   request.record = std::move(batch.tool.record);
@@ -165,14 +165,14 @@ room::EditRequest batch_request(app::StrokeBook::Batch batch, const Uuid& stroke
   return request;
 }
 
-std::optional<app::StrokeBook::End> end_of_path(const nlohmann::json& record) {
+std::optional<app::StrokeTracker::End> end_of_path(const nlohmann::json& record) {
   if (!record.is_object()) return std::nullopt;
   const auto path = record.find("path");
   if (path == record.end() || !path->is_array() || path->empty()) return std::nullopt;
   const auto& point = path->back();
   if (!point.is_array() || point.size() != 2 || !point[0].is_number() || !point[1].is_number())
     return std::nullopt;
-  app::StrokeBook::End end{{point[0].get<double>(), point[1].get<double>()}};
+  app::StrokeTracker::End end{{point[0].get<double>(), point[1].get<double>()}};
   const auto widths = record.find("widths");
   if (widths != record.end() && widths->is_array() && !widths->empty() &&
       widths->back().is_number())

@@ -3,8 +3,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 
-#include "app/strokes/stroke_book.h"
-#include "app/strokes/tool_shelf.h"
+#include "app/strokes/brush_shape_cache.h"
+#include "app/strokes/stroke_tracker.h"
 #include "core/error.h"
 #include "core/uuid.h"
 #include "protocol/parse.h"
@@ -31,12 +31,12 @@ Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& 
                                        const app::FindTool& find_tool = {});
 Result<app::StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& layer,
                                     const Model& model, const app::FindTool& find_tool = {});
-room::EditRequest batch_request(app::StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id,
+room::EditRequest batch_request(app::StrokeTracker::Batch batch, const Uuid& stroke, const Uuid& id,
                                 int n, Author author);
 
 // Where the path of a stroke's batch ended, from its journal record; nothing when the record is of
 // another kind.
-std::optional<app::StrokeBook::End> end_of_path(const nlohmann::json& record);
+std::optional<app::StrokeTracker::End> end_of_path(const nlohmann::json& record);
 
 room::Place place_of(const protocol::SurfacePlace& place);
 

@@ -81,7 +81,7 @@ Result<tcp::acceptor> listen(asio::io_context& io, const std::string& host, std:
 
 struct Server::Impl {
   Impl(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs,
-       render::Renderer& renderer, app::TemplateShelf templates,
+       render::Renderer& renderer, app::TemplateRegistry templates,
        std::optional<Certificate> own_certificate)
       : api(std::move(options), store, rooms, jobs, renderer, std::move(templates)),
         io(std::make_shared<asio::io_context>(api.options().http_threads)),
@@ -132,7 +132,7 @@ Result<std::unique_ptr<Server>> Server::start(ServerOptions options, store::Stor
         "STRATA_OWNER_TOKEN has at least 32 characters; make one with `openssl rand -hex 32`.",
         "STRATA_OWNER_TOKEN");
   STRATA_TRY(prepare_upload_dir(options.upload_dir));
-  auto templates = STRATA_TRY(app::TemplateShelf::load(options.templates_dir));
+  auto templates = STRATA_TRY(app::TemplateRegistry::load(options.templates_dir));
   std::optional<Certificate> certificate;
   if (!options.tls_chain.empty()) {
     auto loaded = STRATA_TRY(Certificate::load(options.tls_chain, options.tls_key));

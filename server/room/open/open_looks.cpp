@@ -1,7 +1,7 @@
 #include "room/open/open_looks.h"
 
 #include "core/no_such.h"
-#include "room/caches/look_shelf.h"
+#include "room/caches/surface_image_cache.h"
 #include "room/open/open_participants.h"
 #include "room/open/strand.h"
 #include "store/content/looks.h"
@@ -9,10 +9,10 @@
 
 namespace strata::room {
 
-std::vector<Look> OpenRoom::LooksPart::all() const { return room_.look_shelf_->all(); }
+std::vector<Look> OpenRoom::LooksPart::all() const { return room_.surface_image_cache_->all(); }
 
 Result<Look> OpenRoom::LooksPart::find(const std::string& ref) const {
-  if (auto look = room_.look_shelf_->find(ref)) return *look;
+  if (auto look = room_.surface_image_cache_->find(ref)) return *look;
   return no_such("look", ref, "look");
 }
 
@@ -20,22 +20,22 @@ Result<Look> OpenRoom::LooksPart::create(Look look, std::span<const std::uint8_t
                                          const store::FirstAnswer<Look>& answer) {
   look.model_id = room_.model_id_;
   auto created = STRATA_TRY(room_.services_.store.looks().create(look, picture, answer));
-  room_.look_shelf_->put(created);
+  room_.surface_image_cache_->put(created);
   tell(Listener::LayerChange::created, created);
   return created;
 }
 
 Result<Look> OpenRoom::LooksPart::update(const Look& look, const store::FirstAnswer<Look>& answer) {
   auto updated = STRATA_TRY(room_.services_.store.looks().update(look, answer));
-  room_.look_shelf_->put(updated);
+  room_.surface_image_cache_->put(updated);
   tell(Listener::LayerChange::changed, updated);
   return updated;
 }
 
 Result<void> OpenRoom::LooksPart::erase(std::int64_t id, const store::FirstAnswer<>& answer) {
-  const auto known = room_.look_shelf_->find(std::to_string(id));
+  const auto known = room_.surface_image_cache_->find(std::to_string(id));
   STRATA_TRY(room_.services_.store.looks().remove(id, answer));
-  room_.look_shelf_->drop(id);
+  room_.surface_image_cache_->drop(id);
   if (known) tell(Listener::LayerChange::deleted, *known);
   return {};
 }

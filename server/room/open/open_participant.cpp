@@ -38,7 +38,7 @@ OpenParticipant::View* OpenParticipant::view(std::uint32_t view_id, bool make) {
 
 render::ViewStyle OpenParticipant::style(std::uint32_t view_id, View& view) const {
   render::ViewStyle style;
-  style.looks = room_->look_shelf().styles(view.looks);
+  style.looks = room_->surface_image_cache().styles(view.looks);
   style.light = view.light;
   style.background = view.background;
   style.unit_mm = room_->model().metres() * 1000;

@@ -130,7 +130,7 @@ Result<void> OpenRoom::PicturesPart::draw(const PictureRequest& asked,
       [&](auto done) { room_.services_.renderer.add_view(model, std::move(done)); });
   if (!view) return tl::unexpected(room_.gpu_problem(view.error()));
   borrowed.view = request.view = *view;
-  auto looks = room_.look_shelf_->wait(asked.shown.looks);
+  auto looks = room_.surface_image_cache_->wait(asked.shown.looks);
   if (!looks) return tl::unexpected(room_.gpu_problem(looks.error()));
   request.style.looks = std::move(*looks);
   request.style.light = asked.shown.light;

@@ -77,13 +77,13 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomServices& services,
     boost::asio::post(strand,
                       [open = std::move(open)] { open->participants_part_->styles_changed(); });
   };
-  room->look_shelf_ = std::make_shared<LookShelf>(services.store, services.renderer,
-                                                  services.workers, services.memory, restyle);
+  room->surface_image_cache_ = std::make_shared<SurfaceImageCache>(
+      services.store, services.renderer, services.workers, services.memory, restyle);
   room->record_colors_ = std::make_shared<RecordColors>(services.store, services.workers, restyle);
   room->record_marks_ =
       std::make_shared<RecordMarks>(services.store, services.workers, room->id(), restyle);
-  room->look_shelf_->set_model(gpu->model);
-  for (const Look& look : looks) room->look_shelf_->put(look);
+  room->surface_image_cache_->set_model(gpu->model);
+  for (const Look& look : looks) room->surface_image_cache_->put(look);
   room->sequence_ = room->durable_ = journal->last_sequence;
   room->pipeline_ = std::make_shared<EditPipeline>(
       EditPipeline::Parts{services.store, services.writer, services.renderer, services.workers,
@@ -265,7 +265,7 @@ void OpenRoom::close(const Error& why) {
     closed_ = why;
   }
   maps_->stop();
-  look_shelf_->stop();
+  surface_image_cache_->stop();
   record_colors_->stop();
   record_marks_->stop();
   surface_lookup_->stop();

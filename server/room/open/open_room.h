@@ -18,9 +18,9 @@
 #include "domain/layers/tile_mirror.h"
 #include "domain/scene/model.h"
 #include "room/at.h"
-#include "room/caches/look_shelf.h"
 #include "room/caches/record_colors.h"
 #include "room/caches/record_marks.h"
+#include "room/caches/surface_image_cache.h"
 #include "room/caches/surface_lookup.h"
 #include "room/caches/surface_maps.h"
 #include "room/open/contents.h"
@@ -84,7 +84,7 @@ class OpenRoom final : public Room,
   class ParticipantsPart;
   ParticipantsPart& people() { return *participants_part_; }
   stream::StreamContext stream_context() const { return services_.stream; }
-  LookShelf& look_shelf() const { return *look_shelf_; }
+  SurfaceImageCache& surface_image_cache() const { return *surface_image_cache_; }
   RecordColors& record_colors() const { return *record_colors_; }
   RecordMarks& record_marks() const { return *record_marks_; }
   std::vector<LayerState> layer_states() const;  // in drawing order
@@ -142,7 +142,7 @@ class OpenRoom final : public Room,
   const std::vector<std::shared_ptr<const mesh::Geometry>> coarser_;
   const Strand strand_;
   const std::shared_ptr<SurfaceMaps> maps_;
-  std::shared_ptr<LookShelf> look_shelf_;
+  std::shared_ptr<SurfaceImageCache> surface_image_cache_;
   std::shared_ptr<RecordColors> record_colors_;
   std::shared_ptr<RecordMarks> record_marks_;
   const std::shared_ptr<SurfaceLookup> surface_lookup_;

@@ -124,7 +124,7 @@ void OpenRoom::on_gpu_filled(int losses_before, const Result<GpuContents>& conte
     for (auto& [id, state] : layers_) state.handles = contents->layers.at(id);
   }
   maps_->set_model(contents->model);
-  look_shelf_->set_model(contents->model);
+  surface_image_cache_->set_model(contents->model);
   pipeline_->gpu_filled();
   participants_part_->model_changed(contents->model);
   recover();

@@ -4,13 +4,13 @@
 #include <fstream>
 #include <thread>
 
-#include "app/bin_keeper.h"
 #include "app/change_notifier.h"
 #include "app/edits.h"
 #include "app/figures/figures.h"
 #include "app/layers/formula_layers.h"
 #include "app/layers/recomputer.h"
 #include "app/services.h"
+#include "app/trash_purger.h"
 #include "room/edits.h"
 #include "room/layers.h"
 #include "room/queries.h"
@@ -109,11 +109,11 @@ TEST_F(UseCases, what_was_in_the_trash_for_long_enough_is_erased_and_nothing_els
         ->total;
   };
   {
-    BinKeeper keeper(store_->bin(), std::chrono::days(30));
+    TrashPurger keeper(store_->bin(), std::chrono::days(30));
     keeper.stop();
   }
   EXPECT_EQ(in_trash(), 1);
-  BinKeeper keeper(store_->bin(), std::chrono::days(0));
+  TrashPurger keeper(store_->bin(), std::chrono::days(0));
   keeper.look();
   EXPECT_TRUE(wait_until([&] { return in_trash() == 0; }));
   keeper.stop();

@@ -262,12 +262,12 @@ struct Live : testing::Test {
   Live() {
     shared = std::make_shared<LiveShared>();
     shared->metrics = std::make_shared<Metrics>();
-    shared->strokes = std::make_shared<app::StrokeBook>();
+    shared->strokes = std::make_shared<app::StrokeTracker>();
     shared->queries = std::make_shared<WorkerPool>(1, 16);
     shared->sockets = std::make_shared<LiveSockets>();
-    shared->editors = std::make_shared<app::EditorBook>();
+    shared->editors = std::make_shared<app::RecordEditLocks>();
     shared->check_record = [](std::int64_t project_id,
-                              const app::EditorBook::Record& record) -> Result<void> {
+                              const app::RecordEditLocks::Record& record) -> Result<void> {
       if (project_id == 1 && record.table == 4) return {};
       return fail(ErrorCode::not_found, "No such table", "There is none.", "table");
     };

@@ -199,10 +199,10 @@ TEST(Wire, a_batch_keeps_in_the_journal_all_that_made_it) {
   EXPECT_EQ(request.record["radius_px"], 4);
   EXPECT_EQ(request.record["camera"]["width"], 640);
   EXPECT_FALSE(request.record.contains("id"));
-  EXPECT_EQ(end_of_path(request.record), (app::StrokeBook::End{{2, 3}}));
+  EXPECT_EQ(end_of_path(request.record), (app::StrokeTracker::End{{2, 3}}));
   auto pressed = request.record;
   pressed["widths"] = {0.5, 0.25};
-  EXPECT_EQ(end_of_path(pressed), (app::StrokeBook::End{{2, 3}, 0.25}));
+  EXPECT_EQ(end_of_path(pressed), (app::StrokeTracker::End{{2, 3}, 0.25}));
 }
 
 TEST(Wire, a_tool_of_the_site_gives_its_shape_and_its_id_to_the_record) {

@@ -8,7 +8,7 @@
 
 #include "core/text/utf8.h"
 #include "mesh/io/load_formats.h"
-#include "mesh/io/texture_shelf.h"
+#include "mesh/io/texture_loader.h"
 #include "mesh/texture/vertex_color.h"
 
 namespace strata::mesh {
@@ -156,7 +156,7 @@ class MaterialReader {
   GltfDocument& document_;
   TriangleMesh& mesh_;
   std::vector<Repair>& repairs_;
-  TextureShelf shelf_;
+  TextureLoader shelf_;
   std::set<std::uint64_t> pictureless_;
   std::map<std::uint64_t, int> image_textures_;
 };

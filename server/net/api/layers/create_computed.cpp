@@ -5,7 +5,7 @@
 #include "app/layers/formula_layers.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
-#include "net/http/answer_book.h"
+#include "net/http/idempotency_store.h"
 #include "room/room.h"
 #include "store/content/layers.h"
 #include "store/store.h"
@@ -28,7 +28,7 @@ jobs::ShapeRecipe recipe_of(const protocol::ShapeRecipe& asked) {
 
 }  // namespace
 
-Result<Response> create_shape_layer(const RouteContext& context, JobBook& book,
+Result<Response> create_shape_layer(const RouteContext& context, JobIdempotency& book,
                                     const Request& request, const std::shared_ptr<room::Room>& room,
                                     const protocol::LayerCreate& asked, Layer layer) {
   auto recipe =
@@ -44,7 +44,7 @@ Result<Response> create_shape_layer(const RouteContext& context, JobBook& book,
       });
 }
 
-Result<Response> create_formula_layer(const RouteContext& context, JobBook& book,
+Result<Response> create_formula_layer(const RouteContext& context, JobIdempotency& book,
                                       const Request& request,
                                       const std::shared_ptr<room::Room>& room, Layer layer,
                                       bool has_palette,

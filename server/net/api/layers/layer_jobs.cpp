@@ -3,7 +3,7 @@
 #include "app/edits.h"
 #include "domain/layers/layer.h"
 #include "jobs/job_queue.h"
-#include "net/http/answer_book.h"
+#include "net/http/idempotency_store.h"
 #include "room/room.h"
 #include "store/content/first_answer.h"
 #include "store/content/models.h"
@@ -34,8 +34,9 @@ Result<jobs::JobResult> run(room::Room& room, app::NewLayers& layers, const Make
 
 }  // namespace
 
-Result<Response> start_layer_job(const RouteContext& context, JobBook& book, const Request& request,
-                                 const std::shared_ptr<room::Room>& room, MakeLayers make) {
+Result<Response> start_layer_job(const RouteContext& context, JobIdempotency& book,
+                                 const Request& request, const std::shared_ptr<room::Room>& room,
+                                 MakeLayers make) {
   auto known = STRATA_TRY(book.find(request));
   if (known) return std::move(job_response(context, *known).with("Idempotency-Replayed", "true"));
   auto job = context.jobs.add(
@@ -54,7 +55,7 @@ Result<Response> start_layer_job(const RouteContext& context, JobBook& book, con
   return job_response(context, *job);
 }
 
-Result<Response> repeat_layer_job(const RouteContext& context, JobBook& book,
+Result<Response> repeat_layer_job(const RouteContext& context, JobIdempotency& book,
                                   const Request& request, const nlohmann::json& kept) {
   auto known = STRATA_TRY(book.find(request));
   if (known) return job_response(context, *known);

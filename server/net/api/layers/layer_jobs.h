@@ -2,7 +2,7 @@
 
 #include "app/layers/new_layers.h"
 #include "net/api/route_help.h"
-#include "net/http/job_book.h"
+#include "net/http/job_idempotency.h"
 #include "room/room.h"
 
 namespace strata::net {
@@ -14,10 +14,11 @@ using MakeLayers =
 // Answers 202 with a job that makes layers of the room: all of them or, where it fails or is
 // cancelled, none. With an Idempotency-Key the job is known to repeats, also once another server
 // has done it.
-Result<Response> start_layer_job(const RouteContext& context, JobBook& book, const Request& request,
-                                 const std::shared_ptr<room::Room>& room, MakeLayers make);
+Result<Response> start_layer_job(const RouteContext& context, JobIdempotency& book,
+                                 const Request& request, const std::shared_ptr<room::Room>& room,
+                                 MakeLayers make);
 // For a route's `replay`: what was kept of a job that succeeded.
-Result<Response> repeat_layer_job(const RouteContext& context, JobBook& book,
+Result<Response> repeat_layer_job(const RouteContext& context, JobIdempotency& book,
                                   const Request& request, const nlohmann::json& kept);
 
 }  // namespace strata::net

@@ -1,5 +1,5 @@
-#include "app/authorization/show_through.h"
-#include "app/strokes/tool_shelf.h"
+#include "app/authorization/visibility_leak_check.h"
+#include "app/strokes/brush_shape_cache.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
 #include "net/api/route_help.h"

@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "app/authorization/show_through.h"
-#include "app/bin_keeper.h"
+#include "app/authorization/visibility_leak_check.h"
 #include "app/layers/formula_layers.h"
+#include "app/trash_purger.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
 #include "domain/people/visibility.h"
@@ -13,7 +13,7 @@
 #include "net/api/layers/create_computed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/http/answer_book.h"
+#include "net/http/idempotency_store.h"
 #include "net/http/page.h"
 #include "net/live/comment_events.h"
 #include "net/serialization/table_serialization.h"
@@ -138,7 +138,8 @@ Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model,
   return layer;
 }
 
-Result<Response> create_layer(const RouteContext& context, JobBook& book, const Request& request) {
+Result<Response> create_layer(const RouteContext& context, JobIdempotency& book,
+                              const Request& request) {
   auto asked = STRATA_TRY(body_of<protocol::LayerCreate>(request));
   auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
   const Model model = room->model();
@@ -293,14 +294,14 @@ Result<Response> delete_layer(const RouteContext& context, const Request& reques
   auto gone = room->layers().put_in_trash(
       layer.id, first_answer<>(request, [] { return empty_response(204); }));
   if (!gone) return tl::unexpected(gone.error());
-  if (context.options.bin_days == 0) context.bin_keeper.look();
+  if (context.options.bin_days == 0) context.trash_purger.look();
   return empty_response(204);
 }
 
 }  // namespace
 
 void add_layer_routes(Router& router, const RouteContext& context) {
-  auto book = std::make_shared<JobBook>(context.jobs);
+  auto book = std::make_shared<JobIdempotency>(context.jobs);
   const std::string layers = "/api/v1/models/{model}/layers";
   router.add({.method = Method::get,
               .pattern = layers,

@@ -131,7 +131,7 @@ Result<nlohmann::json> transfer(const RouteContext& context, room::Room& room,
   return report;
 }
 
-Result<Response> start_transfer(const RouteContext& context, JobBook& book,
+Result<Response> start_transfer(const RouteContext& context, JobIdempotency& book,
                                 const Request& request) {
   auto asked = STRATA_TRY(body_of<protocol::Transfer>(request));
   auto room = context.rooms.open(request.param("model"), request.role());
@@ -221,7 +221,7 @@ void write_vertices(const RouteContext& context, const Request& request, const R
 }  // namespace
 
 void add_shape_routes(Router& router, const RouteContext& context) {
-  auto book = std::make_shared<JobBook>(context.jobs);
+  auto book = std::make_shared<JobIdempotency>(context.jobs);
   router.add({.method = Method::post,
               .pattern = "/api/v1/models/{model}/transfer",
               .handler = answering([&context, book](const Request& request) {

@@ -13,7 +13,7 @@
 #include "net/api/annotated_routes.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/http/answer_book.h"
+#include "net/http/idempotency_store.h"
 #include "net/http/page.h"
 #include "net/live/comment_events.h"
 #include "net/live/live_sockets.h"

@@ -10,8 +10,8 @@
 #include "jobs/job_queue.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/http/answer_book.h"
-#include "net/http/job_book.h"
+#include "net/http/idempotency_store.h"
+#include "net/http/job_idempotency.h"
 #include "net/http/upload.h"
 #include "net/serialization/job_serialization.h"
 #include "net/transport/server_options.h"
@@ -93,7 +93,8 @@ Result<std::shared_ptr<TemporaryFile>> keep_upload(const Request& request, const
   return std::make_shared<TemporaryFile>(kept);
 }
 
-Result<Response> start_import(const RouteContext& context, JobBook& book, const Request& request) {
+Result<Response> start_import(const RouteContext& context, JobIdempotency& book,
+                              const Request& request) {
   auto known = STRATA_TRY(book.find(request));
   if (known) return std::move(job_response(context, *known).with("Idempotency-Replayed", "true"));
   auto asked = import_request(context, request);
@@ -133,8 +134,8 @@ Result<Response> start_import(const RouteContext& context, JobBook& book, const 
 }
 
 // The import succeeded. Its job is known where this server did it.
-Result<Response> repeat_import(const RouteContext& context, JobBook& book, const Request& request,
-                               const nlohmann::json& kept) {
+Result<Response> repeat_import(const RouteContext& context, JobIdempotency& book,
+                               const Request& request, const nlohmann::json& kept) {
   auto known = STRATA_TRY(book.find(request));
   if (known) return job_response(context, *known);
   const auto project =
@@ -146,7 +147,7 @@ Result<Response> repeat_import(const RouteContext& context, JobBook& book, const
 }  // namespace
 
 void add_import_routes(Router& router, const RouteContext& context) {
-  auto book = std::make_shared<JobBook>(context.jobs);
+  auto book = std::make_shared<JobIdempotency>(context.jobs);
   router.add(
       {.method = Method::post,
        .pattern = "/api/v1/models",

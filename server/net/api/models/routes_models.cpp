@@ -1,10 +1,10 @@
 #include <map>
 
-#include "app/bin_keeper.h"
+#include "app/trash_purger.h"
 #include "domain/people/role.h"
 #include "domain/scene/model.h"
-#include "net/auth/project_gate.h"
-#include "net/http/answer_book.h"
+#include "net/auth/project_authorization.h"
+#include "net/http/idempotency_store.h"
 #include "net/http/page.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
@@ -158,7 +158,7 @@ void add_model_routes(Router& router, const RouteContext& context) {
                 STRATA_TRY(context.store.bin().put_model(
                     model.id, first_answer<>(request, [] { return empty_response(204); })));
                 context.rooms.forget(model.id);
-                if (context.options.bin_days == 0) context.bin_keeper.look();
+                if (context.options.bin_days == 0) context.trash_purger.look();
                 return empty_response(204);
               }),
               .role = Role::curator,

@@ -10,8 +10,8 @@
 #include "jobs/orthophoto.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/http/answer_book.h"
-#include "net/http/job_book.h"
+#include "net/http/idempotency_store.h"
+#include "net/http/job_idempotency.h"
 #include "net/serialization/map_query.h"
 #include "net/transport/server_options.h"
 #include "room/looks.h"
@@ -92,8 +92,8 @@ Result<Look> bake(room::Room& room, const Wish& wish, const app::MapPicture& map
   return room.looks().create(std::move(look), png, answer);
 }
 
-Result<Response> start_orthophoto(const RouteContext& context, JobBook& book, ByteBudget& budget,
-                                  const Request& request) {
+Result<Response> start_orthophoto(const RouteContext& context, JobIdempotency& book,
+                                  ByteBudget& budget, const Request& request) {
   auto known = STRATA_TRY(book.find(request));
   if (known) return std::move(job_response(context, *known).with("Idempotency-Replayed", "true"));
   auto wish = wish_of(request);
@@ -136,7 +136,7 @@ Result<Response> start_orthophoto(const RouteContext& context, JobBook& book, By
   return job_response(context, *job);
 }
 
-Result<Response> repeat_orthophoto(const RouteContext& context, JobBook& book,
+Result<Response> repeat_orthophoto(const RouteContext& context, JobIdempotency& book,
                                    const Request& request, const nlohmann::json& kept) {
   auto known = STRATA_TRY(book.find(request));
   if (known) return job_response(context, *known);
@@ -150,7 +150,7 @@ Result<Response> repeat_orthophoto(const RouteContext& context, JobBook& book,
 }  // namespace
 
 void add_orthophoto_routes(Router& router, const RouteContext& context) {
-  const auto book = std::make_shared<JobBook>(context.jobs);
+  const auto book = std::make_shared<JobIdempotency>(context.jobs);
   const auto budget = std::make_shared<ByteBudget>(context.options.max_rasters_at_once);
   router.add({.method = Method::post,
               .pattern = "/api/v1/models/{model}/orthophotos",

@@ -5,7 +5,7 @@
 #include "net/api/annotated_routes.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/http/answer_book.h"
+#include "net/http/idempotency_store.h"
 #include "net/http/page.h"
 #include "net/serialization/tour_serialization.h"
 #include "store/content/models.h"

@@ -8,7 +8,7 @@
 #include "net/api/models/picture_response.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/http/answer_book.h"
+#include "net/http/idempotency_store.h"
 #include "net/http/page.h"
 #include "net/live/live_sockets.h"
 #include "net/serialization/view_serialization.h"

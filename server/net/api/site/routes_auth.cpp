@@ -7,8 +7,8 @@
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/auth/auth.h"
-#include "net/auth/project_gate.h"
-#include "net/auth/sign_in_gate.h"
+#include "net/auth/login_throttle.h"
+#include "net/auth/project_authorization.h"
 #include "net/http/origin.h"
 #include "net/http/page.h"
 #include "net/live/close_codes.h"
@@ -67,7 +67,7 @@ namespace {
 
 using store::TokenKind;
 
-Result<Response> sign_in(const RouteContext& context, SignInGate& gate, const Request& request) {
+Result<Response> sign_in(const RouteContext& context, LoginThrottle& gate, const Request& request) {
   const auto asked = STRATA_TRY(body_of<protocol::Login>(request));
   const std::string user = asked.user.value_or(""), address = address_of(request);
   STRATA_TRY(gate.pass(address, user));
@@ -98,7 +98,7 @@ Result<Response> change_me(const RouteContext& context, const Request& request) 
   return who_is_signed_in(context, request.user(), request.principal->role);
 }
 
-Result<Response> change_password(const RouteContext& context, SignInGate& gate,
+Result<Response> change_password(const RouteContext& context, LoginThrottle& gate,
                                  const Request& request) {
   const auto asked = STRATA_TRY(body_of<protocol::PasswordChange>(request));
   STRATA_TRY(store::check_password(asked.password, request.user(), "password"));
@@ -216,7 +216,7 @@ Result<Response> create_token(const RouteContext& context, const Request& reques
 }  // namespace
 
 void add_auth_routes(Router& router, const RouteContext& context) {
-  auto gate = std::make_shared<SignInGate>();
+  auto gate = std::make_shared<LoginThrottle>();
   // What people change of themselves.
   const auto add = [&](Method method, std::string pattern, auto answer,
                        std::vector<std::string> query = {}) {

@@ -1,13 +1,13 @@
 // What was deleted in a project and can be restored. Who may delete such things may restore them.
 #include <charconv>
 
-#include "app/bin_keeper.h"
 #include "app/change_notifier.h"
+#include "app/trash_purger.h"
 #include "core/text/timestamp.h"
 #include "domain/people/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/http/answer_book.h"
+#include "net/http/idempotency_store.h"
 #include "net/http/page.h"
 #include "net/serialization/people_serialization.h"
 #include "net/transport/server_options.h"
@@ -157,7 +157,7 @@ Result<Response> erase(const RouteContext& context, const Request& request) {
   const auto entry = STRATA_TRY(find_entry(context, request));
   STRATA_TRY(context.store.bin().erase(
       entry, first_answer<>(request, [] { return empty_response(204); })));
-  context.bin_keeper.look();
+  context.trash_purger.look();
   return empty_response(204);
 }
 

@@ -2,7 +2,7 @@
 #include "domain/people/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/auth/project_gate.h"
+#include "net/auth/project_authorization.h"
 #include "net/http/page.h"
 #include "net/serialization/group_serialization.h"
 #include "net/transport/server_options.h"

@@ -6,8 +6,8 @@
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/auth/auth.h"
-#include "net/auth/project_gate.h"
-#include "net/auth/sign_in_gate.h"
+#include "net/auth/login_throttle.h"
+#include "net/auth/project_authorization.h"
 #include "net/http/origin.h"
 #include "net/http/page.h"
 #include "net/live/close_codes.h"
@@ -107,7 +107,7 @@ Result<Response> self(const RouteContext& context, const Kiosk& kiosk, bool want
   return json_response(json).with("Cache-Control", "no-store");
 }
 
-Result<Response> sign_in(const RouteContext& context, SignInGate& gate, const Request& request) {
+Result<Response> sign_in(const RouteContext& context, LoginThrottle& gate, const Request& request) {
   const auto asked = STRATA_TRY(body_of<protocol::KioskLogin>(request));
   const std::string address = address_of(request);
   STRATA_TRY(gate.pass(address, {}));
@@ -163,7 +163,7 @@ void add_kiosk_routes(Router& router, const RouteContext& context) {
               .pattern = "/api/v1/kiosks/{kiosk}/reload",
               .handler = answer_by(reload_kiosk),
               .role = Role::curator});
-  auto gate = std::make_shared<SignInGate>();
+  auto gate = std::make_shared<LoginThrottle>();
   router.add({.method = Method::post,
               .pattern = "/api/v1/auth/kiosk",
               .handler = answering([&context, gate](const Request& request) {

@@ -1,7 +1,7 @@
 #include "domain/people/role.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/http/answer_book.h"
+#include "net/http/idempotency_store.h"
 #include "net/http/page.h"
 #include "net/transport/server_options.h"
 #include "store/content/projects.h"

@@ -2,7 +2,7 @@
 
 #include "app/edits.h"
 #include "app/layers/new_layers.h"
-#include "app/template_shelf.h"
+#include "app/template_registry.h"
 #include "core/log.h"
 #include "core/text/search_text.h"
 #include "domain/layers/layer.h"
@@ -13,7 +13,7 @@
 #include "net/api/layers/layer_jobs.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/http/answer_book.h"
+#include "net/http/idempotency_store.h"
 #include "net/http/page.h"
 #include "net/live/live_sockets.h"
 #include "net/live/table_events.h"

@@ -12,7 +12,7 @@
 #include "expression/expression_parser.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/http/answer_book.h"
+#include "net/http/idempotency_store.h"
 #include "net/http/page.h"
 #include "net/serialization/record_place.h"
 #include "net/serialization/sheet_response.h"

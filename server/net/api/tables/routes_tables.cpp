@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <map>
 
-#include "app/authorization/show_through.h"
+#include "app/authorization/visibility_leak_check.h"
 #include "app/change_notifier.h"
 #include "app/records/painted_keys.h"
 #include "core/compensated_sum.h"
@@ -15,7 +15,7 @@
 #include "expression/expression.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/http/answer_book.h"
+#include "net/http/idempotency_store.h"
 #include "net/http/page.h"
 #include "net/live/live_sockets.h"
 #include "net/live/table_events.h"

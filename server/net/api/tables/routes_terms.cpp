@@ -6,7 +6,7 @@
 #include "domain/tables/term_list.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/http/answer_book.h"
+#include "net/http/idempotency_store.h"
 #include "net/http/page.h"
 #include "net/live/live_sockets.h"
 #include "net/live/table_events.h"

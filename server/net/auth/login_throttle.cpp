@@ -1,4 +1,4 @@
-#include "net/auth/sign_in_gate.h"
+#include "net/auth/login_throttle.h"
 
 #include <boost/asio/ip/address.hpp>
 
@@ -13,8 +13,8 @@ std::string both(const std::string& address, const std::string& name) {
 
 }  // namespace
 
-TokenBucket& SignInGate::bucket(Buckets& buckets, const std::string& key, Rate rate,
-                                Clock::time_point now) {
+TokenBucket& LoginThrottle::bucket(Buckets& buckets, const std::string& key, Rate rate,
+                                   Clock::time_point now) {
   if (buckets.size() >= kMostKeys && !buckets.contains(key)) {
     for (auto at = buckets.begin(); at != buckets.end();)
       at = at->second.is_full(now) ? buckets.erase(at) : std::next(at);
@@ -23,8 +23,8 @@ TokenBucket& SignInGate::bucket(Buckets& buckets, const std::string& key, Rate r
   return buckets.try_emplace(key, rate.per_second, rate.burst, now).first->second;
 }
 
-Result<void> SignInGate::pass(const std::string& address, const std::string& name,
-                              Clock::time_point now) {
+Result<void> LoginThrottle::pass(const std::string& address, const std::string& name,
+                                 Clock::time_point now) {
   const auto refused = [] {
     return fail(ErrorCode::too_many_requests, "Too many sign-ins",
                 "There were too many tries. Wait ten seconds and try again.");
@@ -44,7 +44,7 @@ Result<void> SignInGate::pass(const std::string& address, const std::string& nam
   return {};
 }
 
-void SignInGate::was_right(const std::string& address, const std::string& name) {
+void LoginThrottle::was_right(const std::string& address, const std::string& name) {
   if (name.empty()) return;
   std::lock_guard lock(mutex_);
   const std::string key = both(address, name);

@@ -17,7 +17,7 @@ namespace strata::app {
 // Who is writing into which record just now. Advice for people, one editor a record, kept while the
 // connection is there and never stored: what keeps them from overwriting each other is the record's
 // version. Thread-safe; does not block.
-class EditorBook {
+class RecordEditLocks {
  public:
   static constexpr std::size_t kMostOfSession = 100;  // records
 

@@ -1,4 +1,4 @@
-#include "net/auth/sign_in_gate.h"
+#include "net/auth/login_throttle.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@ namespace {
 using std::chrono::seconds;
 
 struct Gate {
-  SignInGate gate;
-  SignInGate::Clock::time_point now = SignInGate::Clock::now();
+  LoginThrottle gate;
+  LoginThrottle::Clock::time_point now = LoginThrottle::Clock::now();
   bool pass(const std::string& address, const std::string& name) {
     return gate.pass(address, name, now).has_value();
   }
@@ -23,7 +23,7 @@ struct Gate {
   }
 };
 
-TEST(SignInGate, guesses_for_a_name_are_few_from_an_address_and_bounded_from_many) {
+TEST(LoginThrottle, guesses_for_a_name_are_few_from_an_address_and_bounded_from_many) {
   Gate at;
   const int alone = at.passed(600, "10.0.0.1", "ada");
   EXPECT_GE(alone, 60);
@@ -39,7 +39,7 @@ TEST(SignInGate, guesses_for_a_name_are_few_from_an_address_and_bounded_from_man
   EXPECT_TRUE(at.pass("10.2.0.1", "grace"));
 }
 
-TEST(SignInGate, who_was_right_from_an_address_is_not_held_up_by_guesses_from_others) {
+TEST(LoginThrottle, who_was_right_from_an_address_is_not_held_up_by_guesses_from_others) {
   Gate at;
   ASSERT_TRUE(at.pass("10.0.0.1", "ada"));
   at.gate.was_right("10.0.0.1", "ADA");
@@ -48,7 +48,7 @@ TEST(SignInGate, who_was_right_from_an_address_is_not_held_up_by_guesses_from_ot
   EXPECT_TRUE(at.pass("10.0.0.1", "ada"));
 }
 
-TEST(SignInGate, an_address_that_is_too_fast_takes_nothing_from_others) {
+TEST(LoginThrottle, an_address_that_is_too_fast_takes_nothing_from_others) {
   Gate at;
   for (int i = 0; i < 1000; ++i) at.pass("10.0.0.1", "name" + std::to_string(i));
   EXPECT_FALSE(at.pass("10.0.0.1", "ada"));
@@ -56,7 +56,7 @@ TEST(SignInGate, an_address_that_is_too_fast_takes_nothing_from_others) {
   EXPECT_TRUE(at.pass("10.0.0.2", "ada"));
 }
 
-TEST(SignInGate, who_is_right_may_come_again_and_again_as_fast_as_an_address_may) {
+TEST(LoginThrottle, who_is_right_may_come_again_and_again_as_fast_as_an_address_may) {
   Gate at;
   for (int i = 0; i < 200; ++i) {
     ASSERT_TRUE(at.pass("10.0.0.1", "ada")) << i;
@@ -65,14 +65,15 @@ TEST(SignInGate, who_is_right_may_come_again_and_again_as_fast_as_an_address_may
   }
 }
 
-TEST(SignInGate, so_many_addresses_that_none_can_be_kept_in_mind_give_no_more_guesses_for_a_name) {
+TEST(LoginThrottle,
+     so_many_addresses_that_none_can_be_kept_in_mind_give_no_more_guesses_for_a_name) {
   Gate at;
   int count = 0;
   for (int i = 0; i < 150'000; ++i) count += at.pass("address " + std::to_string(i), "ada");
   EXPECT_EQ(count, 60);
 }
 
-TEST(SignInGate, the_address_is_that_of_the_peer_unless_it_is_a_proxy_of_this_machine) {
+TEST(LoginThrottle, the_address_is_that_of_the_peer_unless_it_is_a_proxy_of_this_machine) {
   Request request;
   request.peer = "192.0.2.7";
   request.headers = {{"x-forwarded-for", "10.0.0.1"}};

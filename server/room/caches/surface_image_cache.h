@@ -27,11 +27,12 @@ std::vector<LookView> looks_shown(const std::vector<Look>& by_order);
 // lost context without the database. Up to 16384² is shown, which OpenGL 4.5 guarantees, or less
 // where the GPU's memory has no room for it. Its pixels are reserved in `memory` until they are on
 // the GPU; where there is no room a JPEG is decoded smaller. Thread-safe.
-class LookShelf : public std::enable_shared_from_this<LookShelf> {
+class SurfaceImageCache : public std::enable_shared_from_this<SurfaceImageCache> {
  public:
   // `ready` is called, on any thread, whenever a texture that was asked for is there.
-  LookShelf(store::Store& store, render::Renderer& renderer, boost::asio::thread_pool& workers,
-            MemoryLedger& memory, std::function<void()> ready);
+  SurfaceImageCache(store::Store& store, render::Renderer& renderer,
+                    boost::asio::thread_pool& workers, MemoryLedger& memory,
+                    std::function<void()> ready);
 
   void put(const Look& look);
   void drop(std::int64_t id);

@@ -1,4 +1,4 @@
-#include "mesh/io/texture_shelf.h"
+#include "mesh/io/texture_loader.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,12 +23,12 @@ std::string printable(std::string_view text) {
 
 }  // namespace
 
-void TextureShelf::missing(std::string_view reference) {
+void TextureLoader::missing(std::string_view reference) {
   if (repairs_.size() < kMostNotes)
     note(repairs_, "texture not among the files: " + printable(reference), 1);
 }
 
-int TextureShelf::of_file(std::string_view reference) {
+int TextureLoader::of_file(std::string_view reference) {
   if (const auto known = known_.find(reference); known != known_.end()) return known->second;
   const auto* entry = files_.find(reference);
   int texture = -1;
@@ -44,7 +44,7 @@ int TextureShelf::of_file(std::string_view reference) {
   return texture;
 }
 
-int TextureShelf::of_bytes(const std::string& name, std::vector<std::uint8_t> bytes) {
+int TextureLoader::of_bytes(const std::string& name, std::vector<std::uint8_t> bytes) {
   if (const auto info = inspect_picture(bytes); !info) {
     if (repairs_.size() < kMostNotes)
       note(repairs_, "texture not read: " + printable(name) + ": " + info.error().detail, 1);
@@ -74,7 +74,7 @@ bool UdimTiles::is_pattern(std::string_view reference) {
   return reference.find(kUdim) != std::string_view::npos;
 }
 
-void UdimTiles::resolve(TextureShelf& shelf, const std::vector<std::string>& references,
+void UdimTiles::resolve(TextureLoader& shelf, const std::vector<std::string>& references,
                         TriangleMesh& mesh) {
   if (std::none_of(references.begin(), references.end(), is_pattern)) return;
   for (std::size_t m = 0; m < references.size(); ++m)

@@ -1,12 +1,12 @@
-#include "app/strokes/stroke_book.h"
+#include "app/strokes/stroke_tracker.h"
 
 #include <gtest/gtest.h>
 
 namespace strata::app {
 namespace {
 
-const StrokeBook::Owner kAnna{1, "anna"};
-const StrokeBook::Owner kBert{1, "bert"};
+const StrokeTracker::Owner kAnna{1, "anna"};
+const StrokeTracker::Owner kBert{1, "bert"};
 
 StrokeTool tool(double radius = 5) {
   StrokeTool made;
@@ -19,7 +19,7 @@ StrokeTool tool(double radius = 5) {
 using Path = std::vector<glm::dvec2>;
 
 struct Book : testing::Test {
-  StrokeBook book;
+  StrokeTracker book;
   const Uuid stroke = random_uuid();
   const std::vector<Uuid> ids{random_uuid(), random_uuid(), random_uuid()};
 };
@@ -147,29 +147,29 @@ TEST_F(Book, a_batch_starts_with_the_width_that_the_one_before_ended_with) {
 
 TEST_F(Book, the_joining_point_counts_in_the_longest_path) {
   ASSERT_TRUE(book.begin(kAnna, stroke, tool()));
-  const Path longest(StrokeBook::kMaxPath, glm::dvec2(1, 1));
+  const Path longest(StrokeTracker::kMaxPath, glm::dvec2(1, 1));
   ASSERT_TRUE(book.extend(kAnna, stroke, ids[0], 0, longest));
   const auto refused = book.extend(kAnna, stroke, ids[1], 1, longest);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().field, "path");
   EXPECT_TRUE(
-      book.extend(kAnna, stroke, ids[1], 1, Path(StrokeBook::kMaxPath - 1, glm::dvec2(1, 1))))
+      book.extend(kAnna, stroke, ids[1], 1, Path(StrokeTracker::kMaxPath - 1, glm::dvec2(1, 1))))
       << "a refused batch takes no number";
 }
 
 TEST_F(Book, old_strokes_are_forgotten) {
-  const auto start = StrokeBook::Clock::now();
+  const auto start = StrokeTracker::Clock::now();
   ASSERT_TRUE(book.begin(kAnna, stroke, tool(), start));
   ASSERT_TRUE(book.begin(kAnna, random_uuid(), tool(),
-                         start + StrokeBook::kKeepFor + std::chrono::seconds(1)));
+                         start + StrokeTracker::kKeepFor + std::chrono::seconds(1)));
   EXPECT_FALSE(book.tool(kAnna, stroke));
   EXPECT_EQ(book.open_strokes(kAnna).size(), 1u);
 }
 
 TEST_F(Book, one_person_cannot_fill_the_memory_with_strokes) {
-  for (std::size_t i = 0; i < StrokeBook::kMaxStrokes + 50; ++i)
+  for (std::size_t i = 0; i < StrokeTracker::kMaxStrokes + 50; ++i)
     ASSERT_TRUE(book.begin(kAnna, random_uuid(), tool()));
-  EXPECT_EQ(book.open_strokes(kAnna).size(), StrokeBook::kMaxStrokes);
+  EXPECT_EQ(book.open_strokes(kAnna).size(), StrokeTracker::kMaxStrokes);
 }
 
 }  // namespace

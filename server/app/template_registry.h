@@ -12,12 +12,12 @@ namespace strata::app {
 
 // The templates that come with the server: `<slug>.json` in a folder, as the protocol's Template.
 // Read once, at start.
-class TemplateShelf {
+class TemplateRegistry {
  public:
   // Refused (500), with the file's name: what is no Template, terms that cannot be in a list,
   // columns and layers of tables that it does not have. Without a folder (empty path) there are
   // none.
-  static Result<TemplateShelf> load(const std::filesystem::path& folder);
+  static Result<TemplateRegistry> load(const std::filesystem::path& folder);
 
   const std::vector<protocol::Template>& all() const { return templates_; }  // by name
   const protocol::Template* find(const std::string& slug) const;             // null: there is none

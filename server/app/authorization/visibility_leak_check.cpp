@@ -1,4 +1,4 @@
-#include "app/authorization/show_through.h"
+#include "app/authorization/visibility_leak_check.h"
 
 #include <algorithm>
 #include <map>

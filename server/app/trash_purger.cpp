@@ -1,4 +1,4 @@
-#include "app/bin_keeper.h"
+#include "app/trash_purger.h"
 
 #include "core/log.h"
 
@@ -10,16 +10,16 @@ constexpr std::chrono::minutes kAfterFailure{1};  // the database may be back by
 
 }  // namespace
 
-BinKeeper::BinKeeper(store::Bin& bin, std::chrono::days keep)
+TrashPurger::TrashPurger(store::Bin& bin, std::chrono::days keep)
     : bin_(bin), keep_(keep), thread_([this] { run(); }) {}
 
-void BinKeeper::look() {
+void TrashPurger::look() {
   const std::lock_guard lock(mutex_);
   look_ = true;
   wake_.notify_all();
 }
 
-void BinKeeper::stop() {
+void TrashPurger::stop() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
@@ -28,12 +28,12 @@ void BinKeeper::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-bool BinKeeper::is_stopping() {
+bool TrashPurger::is_stopping() {
   const std::lock_guard lock(mutex_);
   return stopping_;
 }
 
-void BinKeeper::run() {
+void TrashPurger::run() {
   std::chrono::minutes pause = kBetweenLooks;
   for (;;) {
     {

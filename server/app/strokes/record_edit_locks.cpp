@@ -1,11 +1,11 @@
-#include "app/strokes/editor_book.h"
+#include "app/strokes/record_edit_locks.h"
 
 #include <algorithm>
 
 namespace strata::app {
 
-Result<void> EditorBook::begin(std::int64_t project_id, const Record& record, const Editor& editor,
-                               bool take_over, const Tell& tell) {
+Result<void> RecordEditLocks::begin(std::int64_t project_id, const Record& record,
+                                    const Editor& editor, bool take_over, const Tell& tell) {
   std::lock_guard lock(mutex_);
   const auto found = held_.find(record);
   if (found != held_.end()) {
@@ -24,7 +24,7 @@ Result<void> EditorBook::begin(std::int64_t project_id, const Record& record, co
   return {};
 }
 
-void EditorBook::end(const Record& record, const Uuid& session, const Tell& tell) {
+void RecordEditLocks::end(const Record& record, const Uuid& session, const Tell& tell) {
   std::lock_guard lock(mutex_);
   const auto found = held_.find(record);
   if (found == held_.end() || found->second.editor.session != session) return;
@@ -33,7 +33,7 @@ void EditorBook::end(const Record& record, const Uuid& session, const Tell& tell
   tell(project_id, {{record, std::nullopt}});
 }
 
-void EditorBook::leave(const Uuid& session, const Tell& tell) {
+void RecordEditLocks::leave(const Uuid& session, const Tell& tell) {
   std::lock_guard lock(mutex_);
   std::map<std::int64_t, std::vector<Entry>> gone;  // by project
   std::erase_if(held_, [&](const auto& entry) {
@@ -44,7 +44,7 @@ void EditorBook::leave(const Uuid& session, const Tell& tell) {
   for (const auto& [project_id, entries] : gone) tell(project_id, entries);
 }
 
-void EditorBook::list(std::int64_t project_id, const Tell& tell) const {
+void RecordEditLocks::list(std::int64_t project_id, const Tell& tell) const {
   std::lock_guard lock(mutex_);
   std::vector<Entry> entries;
   for (const auto& [record, held] : held_)

@@ -12,10 +12,10 @@ namespace strata::app {
 // Erases what has been in the Bin for long enough, at start and every hour, and at once what people
 // erase, in small steps that nobody waits for. What is left when the server ends goes on at its
 // next start.
-class BinKeeper {
+class TrashPurger {
  public:
-  BinKeeper(store::Bin& bin, std::chrono::days keep);  // the Bin must outlive it
-  ~BinKeeper() { stop(); }
+  TrashPurger(store::Bin& bin, std::chrono::days keep);  // the Bin must outlive it
+  ~TrashPurger() { stop(); }
   void look();  // something is there to be erased; does not wait
   void stop();  // waits for the step that is under way
 

@@ -29,7 +29,7 @@ struct StrokeTool {
 // whose path starts where the batch before ended, also when a batch is sent again after a
 // reconnect. Forgets strokes that nobody touched for ten minutes, and the oldest when a person has
 // very many. Thread-safe.
-class StrokeBook {
+class StrokeTracker {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr std::size_t kMaxStrokes = 256;   // of one person in one model

@@ -1,27 +1,27 @@
-#include "app/strokes/stroke_book.h"
+#include "app/strokes/stroke_tracker.h"
 
 #include <algorithm>
 
 namespace strata::app {
 
-const StrokeBook::Stroke* StrokeBook::find(const Owner& owner, const Uuid& stroke) const {
+const StrokeTracker::Stroke* StrokeTracker::find(const Owner& owner, const Uuid& stroke) const {
   auto strokes = owners_.find(owner);
   if (strokes == owners_.end()) return nullptr;
   auto found = strokes->second.find(stroke);
   return found == strokes->second.end() ? nullptr : &found->second;
 }
 
-StrokeBook::Stroke* StrokeBook::find(const Owner& owner, const Uuid& stroke) {
+StrokeTracker::Stroke* StrokeTracker::find(const Owner& owner, const Uuid& stroke) {
   return const_cast<Stroke*>(std::as_const(*this).find(owner, stroke));
 }
 
-int StrokeBook::Stroke::saved_through() const {
+int StrokeTracker::Stroke::saved_through() const {
   const auto gap = std::find_if_not(batches.begin(), batches.end(),
                                     [](const PastBatch& batch) { return batch.is_saved; });
   return first_n - 1 + static_cast<int>(gap - batches.begin());
 }
 
-void StrokeBook::forget_old(Clock::time_point now) {
+void StrokeTracker::forget_old(Clock::time_point now) {
   for (auto strokes = owners_.begin(); strokes != owners_.end();) {
     std::erase_if(strokes->second,
                   [&](const auto& item) { return now - item.second.touched > kKeepFor; });
@@ -29,8 +29,8 @@ void StrokeBook::forget_old(Clock::time_point now) {
   }
 }
 
-Result<void> StrokeBook::begin(const Owner& owner, const Uuid& stroke, StrokeTool tool,
-                               Clock::time_point now) {
+Result<void> StrokeTracker::begin(const Owner& owner, const Uuid& stroke, StrokeTool tool,
+                                  Clock::time_point now) {
   std::lock_guard lock(mutex_);
   forget_old(now);
   if (Stroke* known = find(owner, stroke)) {
@@ -54,13 +54,13 @@ Result<void> StrokeBook::begin(const Owner& owner, const Uuid& stroke, StrokeToo
   return {};
 }
 
-bool StrokeBook::lacks_start(const Owner& owner, const Uuid& stroke, int n) const {
+bool StrokeTracker::lacks_start(const Owner& owner, const Uuid& stroke, int n) const {
   std::lock_guard lock(mutex_);
   const Stroke* known = find(owner, stroke);
   return known && known->batches.empty() && !known->last && n > 0;
 }
 
-void StrokeBook::continue_from(const Owner& owner, const Uuid& stroke, int n, const End& end) {
+void StrokeTracker::continue_from(const Owner& owner, const Uuid& stroke, int n, const End& end) {
   std::lock_guard lock(mutex_);
   Stroke* known = find(owner, stroke);
   if (!known || !known->batches.empty()) return;
@@ -68,10 +68,11 @@ void StrokeBook::continue_from(const Owner& owner, const Uuid& stroke, int n, co
   known->last = end;
 }
 
-Result<StrokeBook::Batch> StrokeBook::extend(const Owner& owner, const Uuid& stroke, const Uuid& id,
-                                             int n, const std::vector<glm::dvec2>& path,
-                                             const std::vector<double>& widths,
-                                             Clock::time_point now) {
+Result<StrokeTracker::Batch> StrokeTracker::extend(const Owner& owner, const Uuid& stroke,
+                                                   const Uuid& id, int n,
+                                                   const std::vector<glm::dvec2>& path,
+                                                   const std::vector<double>& widths,
+                                                   Clock::time_point now) {
   std::lock_guard lock(mutex_);
   Stroke* known = find(owner, stroke);
   if (!known)
@@ -125,7 +126,7 @@ Result<StrokeBook::Batch> StrokeBook::extend(const Owner& owner, const Uuid& str
   return batch;
 }
 
-void StrokeBook::saved(const Owner& owner, const Uuid& stroke, int n) {
+void StrokeTracker::saved(const Owner& owner, const Uuid& stroke, int n) {
   std::lock_guard lock(mutex_);
   Stroke* known = find(owner, stroke);
   if (!known || n < known->first_n || n >= known->first_n + static_cast<int>(known->batches.size()))
@@ -133,7 +134,7 @@ void StrokeBook::saved(const Owner& owner, const Uuid& stroke, int n) {
   known->batches[static_cast<std::size_t>(n - known->first_n)].is_saved = true;
 }
 
-Result<void> StrokeBook::end(const Owner& owner, const Uuid& stroke) {
+Result<void> StrokeTracker::end(const Owner& owner, const Uuid& stroke) {
   std::lock_guard lock(mutex_);
   Stroke* known = find(owner, stroke);
   if (!known)
@@ -143,7 +144,7 @@ Result<void> StrokeBook::end(const Owner& owner, const Uuid& stroke) {
   return {};
 }
 
-std::vector<StrokeBook::Progress> StrokeBook::open_strokes(const Owner& owner) const {
+std::vector<StrokeTracker::Progress> StrokeTracker::open_strokes(const Owner& owner) const {
   std::lock_guard lock(mutex_);
   std::vector<Progress> open;
   auto strokes = owners_.find(owner);
@@ -153,7 +154,7 @@ std::vector<StrokeBook::Progress> StrokeBook::open_strokes(const Owner& owner) c
   return open;
 }
 
-std::optional<StrokeTool> StrokeBook::tool(const Owner& owner, const Uuid& stroke) const {
+std::optional<StrokeTool> StrokeTracker::tool(const Owner& owner, const Uuid& stroke) const {
   std::lock_guard lock(mutex_);
   const Stroke* known = find(owner, stroke);
   if (!known) return std::nullopt;

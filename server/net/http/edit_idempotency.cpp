@@ -1,4 +1,4 @@
-#include "net/http/edit_book.h"
+#include "net/http/edit_idempotency.h"
 #include "store/journal/journal_reads.h"
 
 namespace strata::net {
@@ -12,7 +12,7 @@ tl::unexpected<Error> used_for_another() {
 
 }  // namespace
 
-Result<void> EditBook::begin(std::int64_t model_id, const room::EditRequest& edit) {
+Result<void> EditIdempotency::begin(std::int64_t model_id, const room::EditRequest& edit) {
   {
     std::lock_guard lock(mutex_);
     AtWork& at_work = at_work_[edit.id];
@@ -30,7 +30,7 @@ Result<void> EditBook::begin(std::int64_t model_id, const room::EditRequest& edi
   return good;
 }
 
-void EditBook::end(const Uuid& id) {
+void EditIdempotency::end(const Uuid& id) {
   std::lock_guard lock(mutex_);
   if (const auto found = at_work_.find(id); --found->second.calls == 0) at_work_.erase(found);
 }

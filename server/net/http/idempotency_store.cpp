@@ -1,4 +1,4 @@
-#include "net/http/answer_book.h"
+#include "net/http/idempotency_store.h"
 
 #include "core/digest.h"
 #include "store/content/answers.h"
@@ -37,7 +37,7 @@ Response response_of(const nlohmann::json& kept) {
   return response;
 }
 
-Result<std::optional<nlohmann::json>> AnswerBook::begin(const Request& request) {
+Result<std::optional<nlohmann::json>> IdempotencyStore::begin(const Request& request) {
   const std::string scoped = scoped_key(request);
   {
     std::lock_guard lock(mutex_);
@@ -55,7 +55,7 @@ Result<std::optional<nlohmann::json>> AnswerBook::begin(const Request& request) 
   return kept;
 }
 
-void AnswerBook::end(const Request& request) {
+void IdempotencyStore::end(const Request& request) {
   std::lock_guard lock(mutex_);
   at_work_.erase(scoped_key(request));
 }

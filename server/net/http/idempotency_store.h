@@ -17,9 +17,9 @@ namespace strata::net {
 // address; the same key with another body is refused (422), and a repeat while the first call is
 // still at work too (409). Refusals are not kept: the call changed nothing and may be tried again.
 // Thread-safe, blocks.
-class AnswerBook {
+class IdempotencyStore {
  public:
-  explicit AnswerBook(store::Store& store) : store_(store) {}
+  explicit IdempotencyStore(store::Store& store) : store_(store) {}
 
   // What was kept for the request's key, or nothing when the call is new: then `end` must follow.
   Result<std::optional<nlohmann::json>> begin(const Request& request);

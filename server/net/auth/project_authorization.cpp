@@ -1,4 +1,4 @@
-#include "net/auth/project_gate.h"
+#include "net/auth/project_authorization.h"
 
 #include <limits>
 

@@ -11,9 +11,9 @@ namespace strata::net {
 // Which job a call's Idempotency-Key started. The server forgets when it stops; the key of a job
 // that succeeded is in the database with what it made, and gets a job that is done. The key of one
 // that a restart ended starts it again. Thread-safe.
-class JobBook {
+class JobIdempotency {
  public:
-  explicit JobBook(jobs::JobQueue& jobs) : jobs_(jobs) {}
+  explicit JobIdempotency(jobs::JobQueue& jobs) : jobs_(jobs) {}
 
   // Nothing: the key is new, or its job is forgotten. 422: it was used with another body.
   Result<std::optional<std::int64_t>> find(const Request& request);

@@ -14,7 +14,7 @@ namespace strata::net {
 // Slows guessing down: tries by an address, tries for a name by an address, and, far above what one
 // address can do, tries for a name by all. Whoever was right from an address is not held up there
 // by what others try from elsewhere. Thread-safe.
-class SignInGate {
+class LoginThrottle {
  public:
   using Clock = TokenBucket::Clock;
   // 429: too many tries. `name` may be empty: a secret of 256 bits is nobody's in particular.

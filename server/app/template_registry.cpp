@@ -1,4 +1,4 @@
-#include "app/template_shelf.h"
+#include "app/template_registry.h"
 
 #include <algorithm>
 #include <fstream>
@@ -108,8 +108,8 @@ Result<protocol::Template> read_template(const std::filesystem::path& file) {
 
 }  // namespace
 
-Result<TemplateShelf> TemplateShelf::load(const std::filesystem::path& folder) {
-  TemplateShelf shelf;
+Result<TemplateRegistry> TemplateRegistry::load(const std::filesystem::path& folder) {
+  TemplateRegistry shelf;
   if (folder.empty()) return shelf;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
@@ -131,7 +131,7 @@ Result<TemplateShelf> TemplateShelf::load(const std::filesystem::path& folder) {
   return shelf;
 }
 
-const protocol::Template* TemplateShelf::find(const std::string& slug) const {
+const protocol::Template* TemplateRegistry::find(const std::string& slug) const {
   for (const protocol::Template& each : templates_)
     if (each.slug == slug) return &each;
   return nullptr;

@@ -1,4 +1,4 @@
-#include "net/auth/kiosk_gate.h"
+#include "net/auth/kiosk_authorization.h"
 
 #include <algorithm>
 #include <limits>
@@ -7,7 +7,7 @@
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
 #include "domain/tables/table.h"
-#include "net/auth/project_gate.h"
+#include "net/auth/project_authorization.h"
 #include "store/content/layers.h"
 #include "store/content/models.h"
 #include "store/content/named_parts.h"

@@ -1,4 +1,4 @@
-#include "app/strokes/editor_book.h"
+#include "app/strokes/record_edit_locks.h"
 
 #include <gtest/gtest.h>
 
@@ -7,19 +7,19 @@
 namespace strata::app {
 namespace {
 
-using Record = EditorBook::Record;
+using Record = RecordEditLocks::Record;
 
 struct Editors : testing::Test {
   // What somebody who hears all of it knows: by project and record, who is there.
-  const EditorBook::Tell tell = [this](std::int64_t project,
-                                       const std::vector<EditorBook::Entry>& entries) {
+  const RecordEditLocks::Tell tell = [this](std::int64_t project,
+                                            const std::vector<RecordEditLocks::Entry>& entries) {
     ++told;
     for (const auto& [record, editor] : entries) {
       known.erase({project, record});
       if (editor) known[{project, record}] = editor->user;
     }
   };
-  bool begin(const Record& record, const EditorBook::Editor& editor, bool take_over = false,
+  bool begin(const Record& record, const RecordEditLocks::Editor& editor, bool take_over = false,
              std::int64_t project = 1) {
     return book.begin(project, record, editor, take_over, tell).has_value();
   }
@@ -27,10 +27,10 @@ struct Editors : testing::Test {
     return known[{project, record}];
   }
 
-  EditorBook book;
+  RecordEditLocks book;
   std::map<std::pair<std::int64_t, Record>, std::string> known;
   int told = 0;
-  const EditorBook::Editor ada{random_uuid(), "ada"}, bea{random_uuid(), "bea"};
+  const RecordEditLocks::Editor ada{random_uuid(), "ada"}, bea{random_uuid(), "bea"};
 };
 
 TEST_F(Editors, the_first_one_has_the_record_until_it_is_left) {
@@ -69,7 +69,7 @@ TEST_F(Editors, who_takes_over_has_it_and_the_end_of_the_other_changes_nothing) 
 
 TEST_F(Editors, two_windows_of_one_person_are_two_editors) {
   begin({4, 7}, ada);
-  const EditorBook::Editor again{random_uuid(), "ada"};
+  const RecordEditLocks::Editor again{random_uuid(), "ada"};
   begin({4, 7}, again);
   book.end({4, 7}, again.session, tell);
   EXPECT_EQ(at({4, 7}), "ada");
@@ -104,7 +104,7 @@ TEST_F(Editors, who_comes_hears_what_there_is_in_the_project) {
 }
 
 TEST_F(Editors, a_connection_has_so_many_records_and_no_more) {
-  const auto most = static_cast<std::int64_t>(EditorBook::kMostOfSession);
+  const auto most = static_cast<std::int64_t>(RecordEditLocks::kMostOfSession);
   for (std::int64_t key = 0; key < most; ++key) EXPECT_TRUE(begin({4, key}, ada));
   EXPECT_TRUE(begin({4, 0}, ada)) << "one that it has is no more";
   const auto refused = book.begin(1, {4, most}, ada, false, tell);

@@ -1,4 +1,4 @@
-#include "room/caches/look_shelf.h"
+#include "room/caches/surface_image_cache.h"
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
@@ -27,21 +27,21 @@ std::vector<LookView> looks_shown(const std::vector<Look>& by_order) {
   return shown;
 }
 
-LookShelf::LookShelf(store::Store& store, render::Renderer& renderer,
-                     boost::asio::thread_pool& workers, MemoryLedger& memory,
-                     std::function<void()> ready)
+SurfaceImageCache::SurfaceImageCache(store::Store& store, render::Renderer& renderer,
+                                     boost::asio::thread_pool& workers, MemoryLedger& memory,
+                                     std::function<void()> ready)
     : store_(store),
       renderer_(renderer),
       workers_(workers),
       memory_(memory),
       ready_(std::move(ready)) {}
 
-void LookShelf::put(const Look& look) {
+void SurfaceImageCache::put(const Look& look) {
   std::lock_guard lock(mutex_);
   slots_[look.id].look = look;
 }
 
-void LookShelf::drop(std::int64_t id) {
+void SurfaceImageCache::drop(std::int64_t id) {
   Slot gone;
   {
     std::lock_guard lock(mutex_);
@@ -55,12 +55,12 @@ void LookShelf::drop(std::int64_t id) {
     loaded(fail(ErrorCode::not_found, "No such look", "The look was deleted."));
 }
 
-std::vector<Look> LookShelf::all() const {
+std::vector<Look> SurfaceImageCache::all() const {
   std::lock_guard lock(mutex_);
   return by_order();
 }
 
-std::vector<Look> LookShelf::by_order() const {
+std::vector<Look> SurfaceImageCache::by_order() const {
   std::vector<Look> looks;
   for (const auto& [id, slot] : slots_) looks.push_back(slot.look);
   std::stable_sort(looks.begin(), looks.end(),
@@ -68,30 +68,31 @@ std::vector<Look> LookShelf::by_order() const {
   return looks;
 }
 
-std::optional<Look> LookShelf::find(const std::string& ref) const {
+std::optional<Look> SurfaceImageCache::find(const std::string& ref) const {
   std::lock_guard lock(mutex_);
   for (const auto& [id, slot] : slots_)
     if (is_all_digits(ref) ? std::to_string(id) == ref : slot.look.slug == ref) return slot.look;
   return std::nullopt;
 }
 
-void LookShelf::set_model(render::ModelHandle model) {
+void SurfaceImageCache::set_model(render::ModelHandle model) {
   std::lock_guard lock(mutex_);
   model_ = model;
   for (auto& [id, slot] : slots_) slot.handle = 0;
 }
 
-void LookShelf::stop() {
+void SurfaceImageCache::stop() {
   std::lock_guard lock(mutex_);
   stopped_ = true;
   for (auto& [id, slot] : slots_) slot.memory.reset();
 }
 
-std::vector<LookView> LookShelf::shown(const std::optional<std::vector<LookView>>& wanted) const {
+std::vector<LookView> SurfaceImageCache::shown(
+    const std::optional<std::vector<LookView>>& wanted) const {
   return wanted ? *wanted : looks_shown(by_order());
 }
 
-std::vector<render::LookStyle> LookShelf::styles(
+std::vector<render::LookStyle> SurfaceImageCache::styles(
     const std::optional<std::vector<LookView>>& wanted) {
   std::vector<render::LookStyle> styles;
   std::vector<std::int64_t> missing;
@@ -110,7 +111,7 @@ std::vector<render::LookStyle> LookShelf::styles(
   return styles;
 }
 
-Result<std::vector<render::LookStyle>> LookShelf::wait(
+Result<std::vector<render::LookStyle>> SurfaceImageCache::wait(
     const std::optional<std::vector<LookView>>& wanted) {
   std::vector<LookView> views;
   {
@@ -127,7 +128,7 @@ Result<std::vector<render::LookStyle>> LookShelf::wait(
   return styles;
 }
 
-void LookShelf::request(std::int64_t id, Loaded loaded) {
+void SurfaceImageCache::request(std::int64_t id, Loaded loaded) {
   std::optional<Result<render::LookHandle>> known;
   {
     std::lock_guard lock(mutex_);
@@ -151,13 +152,13 @@ void LookShelf::request(std::int64_t id, Loaded loaded) {
   load(id, gpu_side > 0 ? std::min(kLargestSide, gpu_side) : kLargestSide);
 }
 
-void LookShelf::load(std::int64_t id, int largest_side) {
+void SurfaceImageCache::load(std::int64_t id, int largest_side) {
   boost::asio::post(workers_, [self = shared_from_this(), id, largest_side] {
     self->add(id, largest_side, self->read(id, largest_side));
   });
 }
 
-Result<LookShelf::Bytes> LookShelf::encoded_bytes(std::int64_t id) {
+Result<SurfaceImageCache::Bytes> SurfaceImageCache::encoded_bytes(std::int64_t id) {
   {
     std::lock_guard lock(mutex_);
     if (const auto found = slots_.find(id); found != slots_.end() && found->second.encoded)
@@ -170,7 +171,7 @@ Result<LookShelf::Bytes> LookShelf::encoded_bytes(std::int64_t id) {
   return encoded;
 }
 
-Result<int> LookShelf::reserve_pixels(std::int64_t id, const PictureInfo& info) {
+Result<int> SurfaceImageCache::reserve_pixels(std::int64_t id, const PictureInfo& info) {
   for (int divisor = 1;; divisor *= 2) {
     // Four bytes a pixel, and a third more for the coarser levels.
     const auto pixels = static_cast<std::uint64_t>(info.width / divisor + 1) *
@@ -187,8 +188,8 @@ Result<int> LookShelf::reserve_pixels(std::int64_t id, const PictureInfo& info) 
   }
 }
 
-Result<std::shared_ptr<const render::LookImage>> LookShelf::read(std::int64_t id,
-                                                                 int largest_side) {
+Result<std::shared_ptr<const render::LookImage>> SurfaceImageCache::read(std::int64_t id,
+                                                                         int largest_side) {
   const auto bytes = STRATA_TRY(encoded_bytes(id));
   const std::vector<std::uint8_t>& encoded = *bytes;
   const auto info = STRATA_TRY(inspect_picture(encoded));
@@ -200,8 +201,8 @@ Result<std::shared_ptr<const render::LookImage>> LookShelf::read(std::int64_t id
       std::move(picture.rgba), picture.width, picture.height, largest_side));
 }
 
-void LookShelf::add(std::int64_t id, int largest_side,
-                    const Result<std::shared_ptr<const render::LookImage>>& image) {
+void SurfaceImageCache::add(std::int64_t id, int largest_side,
+                            const Result<std::shared_ptr<const render::LookImage>>& image) {
   if (!image) return finish(id, tl::unexpected(image.error()));
   render::ModelHandle model;
   {
@@ -216,8 +217,8 @@ void LookShelf::add(std::int64_t id, int largest_side,
       });
 }
 
-void LookShelf::on_added(std::int64_t id, render::ModelHandle model, int largest_side,
-                         const Result<render::LookHandle>& handle) {
+void SurfaceImageCache::on_added(std::int64_t id, render::ModelHandle model, int largest_side,
+                                 const Result<render::LookHandle>& handle) {
   {
     std::lock_guard lock(mutex_);
     if (stopped_) return;
@@ -229,7 +230,7 @@ void LookShelf::on_added(std::int64_t id, render::ModelHandle model, int largest
   finish(id, handle);
 }
 
-void LookShelf::finish(std::int64_t id, const Result<render::LookHandle>& handle) {
+void SurfaceImageCache::finish(std::int64_t id, const Result<render::LookHandle>& handle) {
   std::vector<Loaded> waiting;
   bool kept = false;
   {

@@ -20,9 +20,9 @@ using FindTool = std::function<Result<FoundTool>(const std::string& ref)>;
 
 // The tools of the site as strokes ask for them. Their shapes are kept ready once they were asked
 // for: they never change. Blocks, thread-safe.
-class ToolShelf {
+class BrushShapeCache {
  public:
-  explicit ToolShelf(store::Store& store) : store_(store) {}
+  explicit BrushShapeCache(store::Store& store) : store_(store) {}
   Result<FoundTool> find(const std::string& ref);
 
  private:

@@ -12,9 +12,9 @@ namespace strata::net {
 // Keeps an Idempotency-Key to one edit. The journal gives a repeat its first answer, by the id that
 // follows from the key; here another edit with the key of one that is in the journal, or on its way
 // there, is refused (422). Thread-safe, blocks.
-class EditBook {
+class EditIdempotency {
  public:
-  explicit EditBook(store::Store& store) : store_(store) {}
+  explicit EditIdempotency(store::Store& store) : store_(store) {}
 
   // Then `end` must follow.
   Result<void> begin(std::int64_t model_id, const room::EditRequest& edit);

@@ -1,9 +1,9 @@
-#include "app/strokes/tool_shelf.h"
+#include "app/strokes/brush_shape_cache.h"
 #include "store/content/tools.h"
 
 namespace strata::app {
 
-Result<FoundTool> ToolShelf::find(const std::string& ref) {
+Result<FoundTool> BrushShapeCache::find(const std::string& ref) {
   auto tool = STRATA_TRY(store_.tools().find(ref));
   {
     std::lock_guard lock(mutex_);

@@ -12,9 +12,9 @@ namespace strata::mesh {
 
 // Collects the pictures that the materials of a file name, each once, into TriangleMesh::textures.
 // What was not sent along or cannot be read is noted in `repairs` by its name.
-class TextureShelf {
+class TextureLoader {
  public:
-  TextureShelf(const InputFiles& files, TriangleMesh& mesh, std::vector<Repair>& repairs)
+  TextureLoader(const InputFiles& files, TriangleMesh& mesh, std::vector<Repair>& repairs)
       : files_(files), mesh_(mesh), repairs_(repairs) {}
 
   // The texture of a file as another one refers to it, or −1.
@@ -42,7 +42,7 @@ class UdimTiles {
  public:
   static bool is_pattern(std::string_view reference);
   // `references`: of each material's texture, empty where it has none.
-  static void resolve(TextureShelf& shelf, const std::vector<std::string>& references,
+  static void resolve(TextureLoader& shelf, const std::vector<std::string>& references,
                       TriangleMesh& mesh);
 };
 
