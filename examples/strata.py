@@ -1,0 +1,95 @@
+"""A small client for the HTTP interface of Strata, with nothing but Python's own library.
+
+    from strata import Strata
+
+    site = Strata("http://127.0.0.1:8080", token)
+    model = site.import_model("scan.ply", unit="mm")
+    print(site.get(f"/models/{model['slug']}/layers"))
+
+Paths are those of /docs, without /api/v1. The token is STRATA_OWNER_TOKEN of the server, or one
+that an administrator made for scripts. Copy this file and change it as you need.
+"""
+
+import json
+import pathlib
+import time
+import urllib.error
+import urllib.parse
+import urllib.request
+import uuid
+
+
+class Problem(Exception):
+    """What the server refused, and why (RFC 9457). `type` says which kind of problem it is."""
+
+    def __init__(self, status: int, body: dict):
+        super().__init__(f"{status} {body.get('title', '')}: {body.get('detail', '')}")
+        self.status = status
+        self.type = body.get("type", "about:blank")
+        self.field = body.get("field")
+
+
+class Strata:
+    def __init__(self, address: str, token: str):
+        self.base = address.rstrip("/") + "/api/v1"
+        self.token = token
+
+    def request(self, method: str, path: str, body=None, content_type: str | None = None) -> bytes:
+        """Sends bytes as they are, text as UTF-8, anything else as JSON."""
+        headers = {"Authorization": "Bearer " + self.token}
+        data = None
+        if body is not None:
+            if isinstance(body, bytes):
+                data, kind = body, "application/octet-stream"
+            elif isinstance(body, str):
+                data, kind = body.encode(), "text/plain"
+            else:
+                data, kind = json.dumps(body).encode(), "application/json"
+            headers["Content-Type"] = content_type or kind
+        if method in ("POST", "PATCH", "DELETE"):
+            # A repeat after a broken connection does nothing twice.
+            headers["Idempotency-Key"] = str(uuid.uuid4())
+        asked = urllib.request.Request(self.base + path, data=data, headers=headers, method=method)
+        try:
+            with urllib.request.urlopen(asked, timeout=300) as answer:
+                return answer.read()
+        except urllib.error.HTTPError as refusal:
+            text = refusal.read()
+            try:
+                problem = json.loads(text)
+            except ValueError:
+                problem = {"title": refusal.reason, "detail": text[:200].decode(errors="replace")}
+            raise Problem(refusal.code, problem) from None
+
+    def get(self, path: str):
+        return json.loads(self.request("GET", path))
+
+    def post(self, path: str, body, content_type: str | None = None):
+        return json.loads(self.request("POST", path, body, content_type))
+
+    def all(self, path: str, name: str) -> list:
+        """A whole list, page by page: `name` is its member in the answers."""
+        found: list = []
+        join = "&" if "?" in path else "?"
+        while True:
+            page = self.get(f"{path}{join}limit=500&offset={len(found)}")
+            found += page[name]
+            if not page[name] or len(found) >= page.get("total", len(found)):
+                return found
+
+    def wait_for(self, job: str, every_s: float = 0.2) -> dict:
+        """The job when it has ended. Raises what went wrong in it."""
+        while True:
+            state = self.get(f"/jobs/{job}")
+            if state["state"] == "done":
+                return state
+            if state["state"] in ("failed", "cancelled"):
+                raise Problem(0, state.get("problem", {"title": state["state"]}))
+            time.sleep(every_s)
+
+    def import_model(self, file: str | pathlib.Path, **query) -> dict:
+        """Imports a scan: `name`, `unit` (mm, cm, m), `project` and more, see POST /models."""
+        file = pathlib.Path(file)
+        asked = urllib.parse.urlencode({"filename": file.name, **query})
+        job = self.post(f"/models?{asked}", file.read_bytes())
+        return self.get(f"/models/{self.wait_for(job['id'])['model']}")
