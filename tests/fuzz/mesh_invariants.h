@@ -5,6 +5,7 @@
 
 #include "mesh/io/load.h"
 #include "support/manifold_check.h"
+#include "support/openmesh_oracle.h"
 
 namespace strata::test {
 
@@ -30,6 +31,7 @@ inline void check_loaded(const mesh::LoadedMesh& loaded) {
            static_cast<std::size_t>(material.texture) < mesh.textures.size());
   const ManifoldFaults faults = manifold_faults(mesh);
   demand(faults.crowded_edges == 0 && faults.disagreements == 0 && faults.vertices_of_fans == 0);
+  demand(OpenMeshOracle(mesh).refused.empty());
 }
 
 }  // namespace strata::test

@@ -4,12 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "mesh/surface/adjacency.h"
-
 namespace strata::mesh {
 
 std::vector<glm::vec3> laplacian_smoothed(std::span<const std::uint32_t> triangles,
-                                          std::span<const std::uint32_t> neighbours,
+                                          const Connectivity& connectivity,
                                           std::span<const glm::vec3> positions, int iterations,
                                           std::span<const std::uint8_t> stays) {
   constexpr float kStep = 0.6f, kMostMove = 0.25f;
@@ -17,28 +15,27 @@ std::vector<glm::vec3> laplacian_smoothed(std::span<const std::uint32_t> triangl
   std::vector<glm::vec3> sum(positions.size());
   std::vector<float> weight(positions.size());
   std::vector<bool> is_fixed(positions.size(), false);
-  const auto other = [&](std::size_t corner) {
-    return triangles[corner % 3 == 2 ? corner - 2 : corner + 1];
-  };
-  for (std::size_t c = 0; c < triangles.size(); ++c)
-    if (neighbours[c] == kNoTriangle) is_fixed[triangles[c]] = is_fixed[other(c)] = true;
   for (std::size_t v = 0; v < stays.size(); ++v)
     if (stays[v]) is_fixed[v] = true;
   // A vertex goes no farther than a share of its shortest edge: the long edges of slivers would
   // pull it through its neighbours.
   std::vector<float> shortest(positions.size(), std::numeric_limits<float>::max());
-  for (std::size_t c = 0; c < triangles.size(); ++c) {
-    const std::uint32_t a = triangles[c], b = other(c);
-    const glm::vec3 edge = positions[b] - positions[a];
-    const float squared = glm::dot(edge, edge);
+  for (const auto edge : connectivity.edges()) {
+    const auto side = connectivity.halfedge_handle(edge, 0);
+    const std::uint32_t a = connectivity.from(side), b = connectivity.to(side);
+    if (connectivity.is_boundary(edge)) is_fixed[a] = is_fixed[b] = true;
+    const glm::vec3 along = positions[b] - positions[a];
+    const float squared = glm::dot(along, along);
     shortest[a] = std::min(shortest[a], squared), shortest[b] = std::min(shortest[b], squared);
   }
   for (float& length : shortest) length = kMostMove * std::sqrt(length);
   for (int i = 0; i < iterations; ++i) {
     std::fill(sum.begin(), sum.end(), glm::vec3(0));
     std::fill(weight.begin(), weight.end(), 0.f);
+    // Every edge counts once for each of its triangles, in their order: sums of floats depend on
+    // it, and so would the atlas.
     for (std::size_t c = 0; c < triangles.size(); ++c) {
-      const std::uint32_t a = triangles[c], b = other(c);
+      const std::uint32_t a = triangles[c], b = triangles[c % 3 == 2 ? c - 2 : c + 1];
       if (!is_fixed[a]) sum[a] += smoothed[b], weight[a] += 1;
       if (!is_fixed[b]) sum[b] += smoothed[a], weight[b] += 1;
     }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "mesh/surface/adjacency.h"
+#include "mesh/surface/face_neighbours.h"
 
 namespace strata::mesh {
 namespace {

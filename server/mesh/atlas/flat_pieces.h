@@ -28,7 +28,7 @@ struct FlatPieces {
   }
 };
 
-// The pieces of two faces and more, the largest area first. `neighbours`: as edge_neighbours gives
+// The pieces of two faces and more, the largest area first. `neighbours`: as face_neighbours gives
 // them.
 FlatPieces find_flat_pieces(const UnitMesh& mesh, std::span<const std::uint32_t> neighbours,
                             const FaceFrames& frames);

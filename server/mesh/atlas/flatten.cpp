@@ -5,7 +5,7 @@
 
 #include "mesh/atlas/relax.h"
 #include "mesh/parallel.h"
-#include "mesh/surface/adjacency.h"
+#include "mesh/surface/face_neighbours.h"
 
 namespace strata::mesh {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "mesh/atlas/flatten.h"
-#include "mesh/surface/adjacency.h"
+#include "mesh/surface/face_neighbours.h"
 
 namespace strata::mesh {
 namespace {

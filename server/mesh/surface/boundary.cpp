@@ -3,40 +3,24 @@
 #include <algorithm>
 #include <limits>
 
+#include "mesh/surface/connectivity.h"
+
 namespace strata::mesh {
 
 std::vector<std::array<std::uint32_t, 2>> boundary_edges(const Geometry& geometry) {
-  struct HalfEdge {
-    std::uint32_t low, high;
-    std::size_t corner;
-  };
-  const auto position_at = [&](std::size_t corner) {
-    return geometry.vertices[geometry.indices[corner]].position_index;
-  };
-  std::vector<HalfEdge> half_edges(geometry.indices.size());
-  for (std::size_t c = 0; c < half_edges.size(); ++c) {
-    const auto a = position_at(c), b = position_at(c % 3 == 2 ? c - 2 : c + 1);
-    half_edges[c] = {std::min(a, b), std::max(a, b), c};
-  }
-  std::sort(half_edges.begin(), half_edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    return a.low != b.low     ? a.low < b.low
-           : a.high != b.high ? a.high < b.high
-                              : a.corner < b.corner;
-  });
-  std::vector<HalfEdge> single;
-  for (std::size_t i = 0; i < half_edges.size();) {
-    std::size_t j = i + 1;
-    while (j < half_edges.size() && half_edges[j].low == half_edges[i].low &&
-           half_edges[j].high == half_edges[i].high)
-      ++j;
-    if (j - i == 1 && half_edges[i].low != half_edges[i].high) single.push_back(half_edges[i]);
-    i = j;
-  }
-  std::sort(single.begin(), single.end(),
-            [](const HalfEdge& a, const HalfEdge& b) { return a.corner < b.corner; });
+  const Connectivity connectivity = surface_connectivity(geometry);
   std::vector<std::array<std::uint32_t, 2>> edges;
-  edges.reserve(single.size());
-  for (const HalfEdge& edge : single) edges.push_back({edge.low, edge.high});
+  for (std::uint32_t triangle = 0; triangle < connectivity.n_faces(); ++triangle)
+    for (const auto side : connectivity.sides_of(triangle))
+      if (connectivity.is_open(side)) {
+        const std::uint32_t from = connectivity.from(side), to = connectivity.to(side);
+        edges.push_back({std::min(from, to), std::max(from, to)});
+      }
+  // Open sides of several triangles on one edge: the mesh does not end there.
+  auto sorted = edges;
+  std::ranges::sort(sorted);
+  std::erase_if(
+      edges, [&](const auto& edge) { return std::ranges::equal_range(sorted, edge).size() > 1; });
   return edges;
 }
 

@@ -13,7 +13,7 @@ struct ChartRims {
   std::vector<std::vector<std::uint32_t>> rings;
 };
 
-// Of every chart, in no particular order. Some 12 bytes a triangle's edge while it runs.
+// Of every chart, in the order of their first triangles. See Connectivity for the memory.
 std::vector<ChartRims> find_chart_rims(const Geometry& geometry);
 
 }  // namespace strata::mesh

@@ -7,7 +7,8 @@
 #include <limits>
 
 #include "mesh/parallel.h"
-#include "mesh/surface/adjacency.h"
+#include "mesh/surface/connectivity.h"
+#include "mesh/surface/face_neighbours.h"
 #include "mesh/surface/uv_islands.h"
 #include "mesh/texels/gutter_ring.h"
 #include "mesh/texels/texel_owners.h"
@@ -42,11 +43,8 @@ class Builder {
   Builder(const Geometry& geometry, const SurfaceMap& map, const TexelOwners& owners)
       : geometry_(geometry),
         map_(map),
-        islands_(find_islands(geometry.indices, geometry.vertices.size())) {
-    std::vector<std::uint32_t> positions(geometry.indices.size());
-    for (std::size_t c = 0; c < positions.size(); ++c)
-      positions[c] = geometry.vertices[geometry.indices[c]].position_index;
-    neighbours_ = edge_neighbours(positions, geometry.positions.size());
+        islands_(find_islands(geometry.indices, geometry.vertices.size())),
+        neighbours_(face_neighbours(surface_connectivity(geometry))) {
     island_of_texel_.resize(owners.triangle.size());
     for (std::size_t slot = 0; slot < map.surface_mask.size(); ++slot)
       for (std::uint64_t left = map.surface_mask[slot]; left != 0; left &= left - 1) {
@@ -228,7 +226,7 @@ class Builder {
   const Geometry& geometry_;
   const SurfaceMap& map_;
   const UvIslands islands_;
-  std::vector<std::uint32_t> neighbours_;
+  const std::vector<std::uint32_t> neighbours_;
   std::vector<std::uint32_t> island_of_texel_;
 };
 

@@ -21,8 +21,8 @@ namespace {
 constexpr double kGridOfTexel = 1.0 / 256;  // in which seams meet
 constexpr double kSimplifiedTexels = 0.5;
 constexpr double kSliverTexels = 1.0 / 64;
-constexpr std::size_t kBytesOfCorner = 400;   // that GEOS and the rings take, at most
-constexpr std::size_t kBytesOfTriangle = 60;  // of the rims and the lookup, while they are made
+constexpr std::size_t kBytesOfCorner = 400;    // that GEOS and the rings take, at most
+constexpr std::size_t kBytesOfTriangle = 110;  // of the rims and the lookup, while they are made
 
 // Texels of one class whose surface turns the same side to the plane have a label: what folds over
 // itself in the plane would otherwise have rings that take away what they go round.

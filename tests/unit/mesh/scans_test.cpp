@@ -24,6 +24,7 @@
 #include "mesh/texture/base_color.h"
 #include "strata_dirs.h"
 #include "support/manifold_check.h"
+#include "support/openmesh_oracle.h"
 
 namespace {
 
@@ -77,6 +78,7 @@ json import_in_child(const std::vector<mesh::InputFile>& files) {
     told["faults"] = faults.crowded_edges + faults.disagreements + faults.vertices_of_fans;
     told["boundary"] = faults.boundary_edges;
   }
+  told["refused_by_openmesh"] = test::OpenMeshOracle(loaded->mesh).refused.size();
   auto atlas = mesh::keep_uvs(loaded->mesh, kResolution, progress);
   if (!atlas) atlas = mesh::make_atlas(loaded->mesh, kResolution, progress);
   if (!atlas) return {{"problem", atlas.error().detail}, {"code", name(atlas.error().code)}};
@@ -263,6 +265,7 @@ TEST_F(MeshScans, good_files_have_the_measured_triangles_positions_and_area) {
           fact["distinct_positions"].get<std::uint64_t>());
     }
     EXPECT_EQ(outcome.told.value("faults", 0u), 0u) << "the mesh is a surface now";
+    EXPECT_EQ(outcome.told["refused_by_openmesh"], 0) << "the mesh is a surface now";
     // Draco and quantised files were measured by another decoder.
     const double tolerance = scan.file.ends_with(".glb") ? 1e-5 : 1e-9;
     // Duplicates count twice there, and a fan over the concave pentagon of n09 folds over itself.

@@ -13,7 +13,8 @@
 
 #include "mesh/atlas/atlas.h"
 #include "mesh/demo/demo_pot.h"
-#include "mesh/surface/adjacency.h"
+#include "mesh/surface/connectivity.h"
+#include "mesh/surface/face_neighbours.h"
 #include "mesh/surface/uv_islands.h"
 #include "mesh/texels/texel_owners.h"
 #include "query/conditions/tile_table.h"
@@ -51,10 +52,7 @@ std::vector<std::uint32_t> pieces_of_triangles(const mesh::Geometry& geometry) {
     while (parent[t] != t) t = parent[t] = parent[parent[t]];
     return t;
   };
-  std::vector<std::uint32_t> positions;
-  for (const std::uint32_t v : geometry.indices)
-    positions.push_back(geometry.vertices[v].position_index);
-  const auto neighbours = mesh::edge_neighbours(positions, geometry.positions.size());
+  const auto neighbours = mesh::face_neighbours(mesh::surface_connectivity(geometry));
   for (std::size_t c = 0; c < neighbours.size(); ++c)
     if (neighbours[c] != mesh::kNoTriangle)
       parent[root(static_cast<std::uint32_t>(c / 3))] = root(neighbours[c]);

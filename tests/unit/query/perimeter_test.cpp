@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mesh/surface/adjacency.h"
+#include "mesh/surface/boundary_loops.h"
 #include "query/statistics/statistics.h"
 #include "support/meshes.h"
 #include "support/surfaces.h"
@@ -121,9 +121,8 @@ TEST(Perimeter, seams_are_no_borders_and_nothing_has_none) {
     const Surface surface = test::surface_of(name, mesh, 512);
     EXPECT_EQ(measure(surface, [](glm::vec3) { return 0; }).all, 0);
     const double around = measure(surface, [](glm::vec3) { return 1; }).all;
-    const auto neighbours = mesh::edge_neighbours(mesh.triangles, mesh.positions.size());
-    const bool is_closed =
-        std::find(neighbours.begin(), neighbours.end(), mesh::kNoTriangle) == neighbours.end();
+    const mesh::Connectivity connectivity(mesh.triangles, mesh.positions.size());
+    const bool is_closed = mesh::boundary_loops(connectivity).empty();
     if (is_closed)
       EXPECT_EQ(around, 0);
     else

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace strata::mesh {
+
+class Connectivity;
+
+constexpr std::uint32_t kNoTriangle = 0xffffffffu;
+
+// Across each side (entry 3 * triangle + corner) the neighbouring triangle, or kNoTriangle where
+// the side is open.
+std::vector<std::uint32_t> face_neighbours(const Connectivity& connectivity);
+
+}  // namespace strata::mesh
