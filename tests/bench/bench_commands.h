@@ -10,6 +10,7 @@ Command add_atlas(CLI::App& app);
 Command add_edit(CLI::App& app);
 Command add_import(CLI::App& app);
 Command add_memory(CLI::App& app);
+Command add_nearest(CLI::App& app);
 Command add_query(CLI::App& app);
 Command add_sheet(CLI::App& app);
 Command add_stream(CLI::App& app);
