@@ -1,5 +1,5 @@
 # Headers that nearly every unit reads are compiled once for each kind of target: half of the time of a build was their parsing.
-# The release build does without, so that a file that forgets to name what it uses is found.
+# build/tidy does without (scripts/check_tidy), so that a file that forgets to name what it uses is found.
 # A unit with options of its own does without, too (SKIP_PRECOMPILE_HEADERS): GCC 12 dies of some that differ from the headers'.
 set(STRATA_STANDARD_HEADERS
   <algorithm> <array> <atomic> <bit> <charconv> <chrono> <cmath> <cstdint> <cstring> <deque> <filesystem> <fstream> <functional>

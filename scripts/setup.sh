@@ -1,10 +1,14 @@
 # Sourced by ./run and ./test: installs what is missing on Debian 12 and leaves everything else alone.
-# Sets STRATA_CMAKE_ARGS. Quick when nothing is missing.
+# Sets STRATA_CMAKE_ARGS. Quick when nothing is missing. Callers set pipefail.
 # shellcheck shell=bash
 # shellcheck disable=SC2034  # the lists of packages are for who sources this
 
-say() { printf '\033[1m%s\033[0m\n' "$*" >&2; }
-die() { printf '\033[31m%s\033[0m\n' "$*" >&2; exit 1; }
+# shellcheck source=scripts/progress.sh
+. "$(dirname "${BASH_SOURCE[0]}")/progress.sh"
+
+if [ -t 2 ]; then bold=$'\033[1m' red=$'\033[31m' plain=$'\033[0m'; else bold='' red='' plain=''; fi
+say() { printf '%s%s%s\n' "$bold" "$*" "$plain" >&2; }
+die() { printf '%s%s%s\n' "$red" "$*" "$plain" >&2; exit 1; }
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"
@@ -20,10 +24,11 @@ missing_packages() {
 }
 
 apt_updated=
-apt_get() {
-  export DEBIAN_FRONTEND=noninteractive
-  [ -n "$apt_updated" ] || { as_root apt-get update -qq; apt_updated=1; }
-  as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0 "$@"
+update_package_lists() {
+  [ -z "$apt_updated" ] || return 0
+  in_step "reading what the archive has" as_root apt-get update -qq ||
+    fail_step "The lists of packages could not be read."
+  apt_updated=1
 }
 
 # --no-remove: a package of the user's is never taken away to make room for one of ours.
@@ -31,22 +36,48 @@ install_packages() {
   local missing
   mapfile -t missing < <(missing_packages "$@")
   [ ${#missing[@]} -gt 0 ] || return 0
-  say "Installing: ${missing[*]}"
+  command -v apt-get >/dev/null || die "Strata is built on Debian 12, and there is no apt-get here. docker/README.md tells of containers."
+  [ "$(id -u)" = 0 ] || command -v sudo >/dev/null || die "Packages are missing: ${missing[*]}. Run this as root, or install sudo."
+  begin_step Packages
   # Without this, Debian's PostgreSQL starts a cluster of its own that nobody asked for.
   if [[ " ${missing[*]}" == *" postgresql"* ]] && [ ! -e /etc/postgresql-common/createcluster.conf ]; then
     as_root mkdir -p /etc/postgresql-common
     echo 'create_main_cluster = false' | as_root tee /etc/postgresql-common/createcluster.conf >/dev/null
   fi
-  apt_get install -y --no-install-recommends --no-remove "${missing[@]}" >&2 ||
-    die "Could not install: ${missing[*]}. The lines above say why."
+  update_package_lists
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -o Dpkg::Use-Pty=0 -o APT::Status-Fd=1 \
+    install -y --no-install-recommends --no-remove "${missing[@]}" 2>&1 | show_apt_progress ||
+    fail_step "Could not install: ${missing[*]}."
+  end_step
+}
+
+# Of the packages that conflict with others, those that can be installed here. For the rest there is setup_conflicting.
+installable_conflicting() {
+  # Boost 1.81 conflicts with Debian's 1.74.
+  [ -z "$(missing_packages libboost1.74-dev)" ] || echo libboost1.81-dev
+  # Raptor's headers bring libcurl's, which we use as well, of one flavour, which conflict with those of the others; any will do.
+  if [ -n "$(missing_packages libcurl4-openssl-dev)" ] && [ -n "$(missing_packages libcurl4-nss-dev)" ]; then echo libraptor2-dev
+  else echo libraptor2-0; fi
+}
+
+# Any Node from 18 on will do; Debian's is installed only where there is none.
+node_packages() {
+  if ! command -v node >/dev/null || ! command -v npm >/dev/null; then printf '%s\n' nodejs npm; fi
+}
+
+# packages_to_build: all that the server and the page are built with here, one a line.
+packages_to_build() {
+  printf '%s\n' "${build_packages[@]}"
+  installable_conflicting
+  node_packages
 }
 
 build_packages=(g++ cmake ninja-build pkg-config ccache mold git python3 python3-yaml ca-certificates
   libegl-dev libgl-dev libepoxy-dev libglm-dev libpq-dev nlohmann-json3-dev libvalijson-dev libsimdjson-dev
   libturbojpeg0-dev libjpeg62-turbo-dev libsodium-dev libssl-dev libspdlog-dev libcli11-dev libzstd-dev zlib1g-dev libbrotli-dev libpng-dev libtiff-dev libwebp-dev libstb-dev
-  libembree-dev libmeshoptimizer-dev libopenmesh-dev libqhull-dev libdraco-dev libzip-dev libshp-dev libgeos-dev libsqlite3-dev libxlsxwriter-dev libutf8proc-dev libpango1.0-dev libexpected-dev libgtest-dev libgmock-dev)
+  libembree-dev libmeshoptimizer-dev libopenmesh-dev libqhull-dev libdraco-dev libzip-dev libshp-dev libgeos-dev libsqlite3-dev libxlsxwriter-dev libutf8proc-dev libpango1.0-dev libexpected-dev)
 run_packages=(libegl1 libopengl0 libegl-mesa0 libgl1-mesa-dri postgresql-15 fonts-dejavu-core curl)
-test_packages=(chromium openssl libpcre2-8-0 poppler-utils clang-format-14 clang-tidy-16 black flake8 isort shellcheck xz-utils python3-pandas python3-openpyxl)
+test_packages=(libgtest-dev libgmock-dev chromium openssl libpcre2-8-0 poppler-utils clang-format-14 clang-tidy-16 black flake8 isort shellcheck xz-utils python3-pandas python3-openpyxl)
 fuzz_packages=(clang-14 libclang-rt-14-dev llvm-14)
 
 # A package that had better not be installed: its files are unpacked into build/deps instead. unpack_beside PACKAGE FILE-OF-IT WHY
@@ -55,7 +86,7 @@ unpack_beside() {
   [ ! -e "$deps/$file" ] || return 0
   say "Unpacking $package into build/deps: $why"
   mkdir -p "$deps"
-  [ -n "$apt_updated" ] || { as_root apt-get update -qq; apt_updated=1; }
+  update_package_lists
   (cd "$deps" && apt-get -qq download "$package" && dpkg -x "$package"_*.deb . && rm -f "$package"_*.deb) ||
     die "Could not download $package."
 }
@@ -63,22 +94,13 @@ unpack_beside() {
 # Sets STRATA_CMAKE_ARGS to where the libraries are that are not the system's.
 setup_conflicting() {
   STRATA_CMAKE_ARGS=()
-  # Boost 1.81 conflicts with Debian's 1.74.
   if [ -n "$(missing_packages libboost1.81-dev)" ]; then
-    if [ -n "$(missing_packages libboost1.74-dev)" ]; then install_packages libboost1.81-dev
-    else
-      unpack_beside libboost1.81-dev usr/include/boost/version.hpp "it conflicts with a package that is installed and stays"
-      STRATA_CMAKE_ARGS+=(-DSTRATA_BOOST_INCLUDE="$PWD/build/deps/usr/include")
-    fi
+    unpack_beside libboost1.81-dev usr/include/boost/version.hpp "it conflicts with a package that is installed and stays"
+    STRATA_CMAKE_ARGS+=(-DSTRATA_BOOST_INCLUDE="$PWD/build/deps/usr/include")
   fi
-  # Raptor's headers bring libcurl's, which we use as well, of one flavour, which conflict with those of the others; any will do.
   if [ -n "$(missing_packages libraptor2-dev)" ]; then
-    if [ -n "$(missing_packages libcurl4-openssl-dev)" ] && [ -n "$(missing_packages libcurl4-nss-dev)" ]; then install_packages libraptor2-dev
-    else
-      install_packages libraptor2-0
-      unpack_beside libraptor2-dev usr/include/raptor2/raptor2.h "it conflicts with a package that is installed and stays"
-      STRATA_CMAKE_ARGS+=(-DSTRATA_RAPTOR_INCLUDE="$PWD/build/deps/usr/include/raptor2")
-    fi
+    unpack_beside libraptor2-dev usr/include/raptor2/raptor2.h "it conflicts with a package that is installed and stays"
+    STRATA_CMAKE_ARGS+=(-DSTRATA_RAPTOR_INCLUDE="$PWD/build/deps/usr/include/raptor2")
   fi
 }
 
@@ -87,51 +109,74 @@ setup_nginx() {
   PATH=$PATH:/usr/sbin command -v nginx >/dev/null || unpack_beside nginx usr/sbin/nginx "installed, it would start a server of its own"
 }
 
-# Any Node from 18 on will do; Debian's is installed only where there is none.
-setup_node() {
-  if ! command -v node >/dev/null || ! command -v npm >/dev/null; then install_packages nodejs npm; fi
+require_node() {
   local major
   major=$(node -p 'process.versions.node.split(".")[0]')
   [ "$major" -ge 18 ] || die "Node $major is too old: 18 or newer is needed."
 }
 
-# Rebuilds something only when its inputs changed: stamp FILE COMMAND… with the input paths on standard input.
-when_changed() {
-  local stamp=$1 sum
-  shift
-  sum=$(xargs -d '\n' sha256sum | sha256sum)
-  [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$sum" ] && return 0
-  "$@" || return 1
-  mkdir -p "$(dirname "$stamp")"
-  echo "$sum" > "$stamp"
+# A stamp holds the sum of the files that something was made from: stamp_of FILES on standard input; is_current NAME STAMP.
+stamp_of() { xargs -d '\n' sha256sum | sha256sum; }
+is_current() { [ "$(cat "build/stamps/$1" 2>/dev/null)" = "$2" ]; }
+write_stamp() {
+  mkdir -p build/stamps
+  echo "$2" >"build/stamps/$1"
 }
 
-install_web_modules() {
-  (cd web-client && npm ci --no-audit --no-fund --loglevel=error) >&2 || die "npm ci failed in web-client."
+web_modules_stamp() { printf '%s\n' web-client/package.json web-client/package-lock.json | stamp_of; }
+web_client_stamp() {
+  find web-client/src web-client/public web-client/index.html web-client/*.json web-client/*.ts -type f 2>/dev/null | sort | stamp_of
 }
+web_client_is_current() {
+  [ -d web-client/node_modules ] && [ -f web-client/dist/index.html ] && is_current web-modules "$(web_modules_stamp)" &&
+    is_current web-client "$(web_client_stamp)"
+}
+
 setup_web_modules() {
-  setup_node
-  [ -d web-client/node_modules ] || rm -f build/stamps/web-modules
-  printf '%s\n' web-client/package.json web-client/package-lock.json | when_changed build/stamps/web-modules install_web_modules
-}
-build_web_client() {
-  say "Building the page"
-  (cd web-client && npm run --silent build) >&2 || die "The page did not build."
+  local stamp
+  require_node
+  stamp=$(web_modules_stamp)
+  if [ -d web-client/node_modules ] && is_current web-modules "$stamp"; then return 0; fi
+  in_step "installing its modules" npm --prefix web-client ci --no-audit --no-fund --loglevel=error || fail_step "npm ci failed in web-client."
+  write_stamp web-modules "$stamp"
 }
 setup_web_client() {
+  web_client_is_current && return 0
+  begin_step Page
   setup_web_modules
-  [ -f web-client/dist/index.html ] || rm -f build/stamps/web-client
-  find web-client/src web-client/public web-client/index.html web-client/*.json web-client/*.ts -type f 2>/dev/null | sort |
-    when_changed build/stamps/web-client build_web_client
+  in_step "building" npm --prefix web-client run --silent build || fail_step "The page did not build."
+  write_stamp web-client "$(web_client_stamp)"
+  end_step
+}
+
+# Compilers at once: as many as there are cores, and fewer where memory is short, which a unit may take 1.2 GB of.
+build_jobs() {
+  local cores memory
+  cores=$(nproc) memory=$(awk '/^MemAvailable/ { print int($2 / 1200000) }' /proc/meminfo)
+  if [ "$memory" -lt "$cores" ]; then echo $((memory > 1 ? memory : 1)); else echo "$cores"; fi
+}
+
+# needs_build PRESET [TARGET…]: is there anything to compile?
+needs_build() {
+  local preset=$1
+  shift
+  [ -f "build/$preset/build.ninja" ] || return 0
+  ! ninja -C "build/$preset" -n "$@" 2>/dev/null | grep -q '^ninja: no work to do'
 }
 
 # configure_and_build PRESET [TARGET…]
 configure_and_build() {
-  local preset=$1 targets=()
+  # A unit takes a core three seconds, by experience.
+  local preset=$1 targets=() jobs=${STRATA_BUILD_JOBS:-$(build_jobs)} name=Server unit_ms=3000
   shift
+  needs_build "$preset" "$@" || return 0
+  [ "$preset" = release ] || name="Server and tests ($preset)"
   [ $# = 0 ] || targets=(--target "$@")
+  begin_step "$name"
   if [ ! -f "build/$preset/build.ninja" ]; then
-    cmake --preset "$preset" "${STRATA_CMAKE_ARGS[@]}" >&2 || die "cmake failed."
+    in_step "looking for libraries" cmake --preset "$preset" "${STRATA_CMAKE_ARGS[@]}" || fail_step "cmake failed."
   fi
-  cmake --build "build/$preset" -j "${STRATA_BUILD_JOBS:-$(nproc)}" "${targets[@]}" >&2 || die "The build failed."
+  NINJA_STATUS='[%f/%t] ' cmake --build "build/$preset" -j "$jobs" "${targets[@]}" 2>&1 |
+    show_ninja_progress $((unit_ms / jobs)) || fail_step "The build failed."
+  end_step
 }

@@ -1,0 +1,98 @@
+# Sourced by scripts/setup.sh: shows how far each step is. In a terminal a step is one line that
+# updates; in a log it gets a line now and then. What the tools print goes to $progress_log, of
+# which the end is shown when a step fails.
+# shellcheck shell=bash
+
+progress_log=$PWD/build/setup.log
+progress_log_every=30  # seconds between the lines of a log
+progress_steps=0 progress_step=0 progress_name='' progress_begun=0 progress_shown=''
+if [ -t 2 ] && [ "${TERM:-dumb}" != dumb ]; then progress_terminal=1; else progress_terminal=; fi
+
+# duration SECONDS: "40 s", "3 min".
+duration() {
+  if [ "$1" -lt 90 ]; then echo "$1 s"; else echo "$((($1 + 30) / 60)) min"; fi
+}
+
+# number_steps COUNT: the next COUNT steps are numbered.
+number_steps() { progress_steps=$1 progress_step=0; }
+
+progress_line() {
+  if [ "$progress_steps" -gt 0 ]; then printf '[%d/%d] ' "$progress_step" "$progress_steps"; fi
+  printf '%s: %s' "$progress_name" "$1"
+}
+
+begin_step() {  # NAME
+  progress_name=$1 progress_begun=$SECONDS progress_shown=''
+  progress_step=$((progress_step + 1))
+  mkdir -p "$(dirname "$progress_log")"
+  printf '\n== %s, %s\n' "$progress_name" "$(date '+%F %T')" >>"$progress_log"
+}
+
+# show_progress TEXT: TEXT has one line and at most 60 characters.
+show_progress() {
+  if [ -n "$progress_terminal" ]; then
+    printf '\r\033[K%s' "$(progress_line "$1")" >&2
+  elif [ -z "$progress_shown" ] || [ $((SECONDS - progress_shown)) -ge "$progress_log_every" ]; then
+    printf '%s\n' "$(progress_line "$1")" >&2
+    progress_shown=$SECONDS
+  fi
+}
+
+end_step() {
+  [ -z "$progress_terminal" ] || printf '\r\033[K' >&2
+  printf '%s\n' "$(progress_line "done in $(duration $((SECONDS - progress_begun)))")" >&2
+}
+
+fail_step() {  # WHAT
+  [ -z "$progress_terminal" ] || printf '\r\033[K' >&2
+  # From the first error on when the tool marks it (Ninja); the end otherwise.
+  awk '/^== /      { lines = 0; failed = 0 }
+       /^FAILED: / { if (!failed) { lines = 0; failed = 1 } }
+                   { kept[lines++] = $0 }
+       END         { begin = failed || lines < 40 ? 0 : lines - 40
+                     end = lines < begin + 40 ? lines : begin + 40
+                     for (i = begin; i < end; ++i) print kept[i] }' "$progress_log" >&2
+  die "$1 The lines above say why; all of them are in $progress_log."
+}
+
+# in_step TEXT COMMAND…: runs a part of a step that does not say how far it is.
+in_step() {
+  show_progress "$1"
+  shift
+  "$@" >>"$progress_log" 2>&1
+}
+
+# Shows what apt-get writes to APT::Status-Fd; other lines go to the log.
+show_apt_progress() {
+  local line kind percent
+  while IFS= read -r line; do
+    IFS=: read -r kind _ percent _ <<<"$line"
+    case $kind in
+      dlstatus) show_progress "downloading, ${percent%%.*} %" ;;
+      pmstatus) show_progress "installing, ${percent%%.*} %" ;;
+      *) printf '%s\n' "$line" >>"$progress_log" ;;
+    esac
+  done
+}
+
+# show_ninja_progress MILLISECONDS: reads what Ninja prints with NINJA_STATUS='[%f/%t] '. MILLISECONDS
+# is what a unit takes here by experience, which counts as much as a fifth of the units.
+show_ninja_progress() {
+  local unit_ms=$1 line partial='' finished=0 total=0 begun=$SECONDS known left code
+  while true; do
+    code=0
+    IFS= read -r -t 1 line || code=$?
+    if [ $code -gt 128 ]; then
+      partial+=$line  # a second passed; the rest of the line is to come
+    else
+      [ $code = 0 ] || [ -n "$partial$line" ] || break
+      line=$partial$line partial=''
+      printf '%s\n' "$line" >>"$progress_log"
+      [[ ! $line =~ ^\[([0-9]+)/([0-9]+)\]\  ]] || finished=${BASH_REMATCH[1]} total=${BASH_REMATCH[2]}
+    fi
+    [ "$total" -gt 0 ] || continue
+    known=$((total / 5 + 1))
+    left=$(((known * unit_ms / 1000 + SECONDS - begun) * (total - finished) / (known + finished)))
+    show_progress "$finished of $total units, $((100 * finished / total)) %, about $(duration $(((left + 9) / 10 * 10))) left"
+  done
+}
