@@ -1,0 +1,63 @@
+# `scripts/make_package` makes strata_VERSION_ARCH.deb of what `cmake --install` copies, and of the files that a package adds:
+# the service, its settings, the manual page and the completion. These are a component of their own, so that
+# `cmake --install --prefix` writes nothing outside of the prefix.
+set(debian ${PROJECT_SOURCE_DIR}/packaging/debian)
+set(made ${PROJECT_BINARY_DIR}/packaging)
+
+# What is run as a program or loaded at run time is named once, in scripts/setup.sh; what is linked, dpkg-shlibdeps finds.
+file(STRINGS ${PROJECT_SOURCE_DIR}/scripts/setup.sh run_packages REGEX "^run_packages=")
+string(REGEX REPLACE "^run_packages=\\((.*)\\)$" "\\1" run_packages "${run_packages}")
+separate_arguments(run_packages)
+list(REMOVE_ITEM run_packages curl)  # of the image's health check
+list(APPEND run_packages adduser)
+list(JOIN run_packages ", " depends)
+
+string(TIMESTAMP STRATA_PACKAGE_DATE "%a, %d %b %Y %H:%M:%S +0000" UTC)
+set(STRATA_PACKAGE_CONTACT "The Strata maintainers <maintainers@strata.invalid>" CACHE STRING "Who answers for the package")
+file(READ ${PROJECT_SOURCE_DIR}/LICENSE STRATA_LICENSE)
+string(REGEX REPLACE "^.*\n(Permission is)" "\\1" STRATA_LICENSE "${STRATA_LICENSE}")
+string(STRIP "${STRATA_LICENSE}" STRATA_LICENSE)
+string(REPLACE "\n\n" "\n.\n" STRATA_LICENSE "${STRATA_LICENSE}")
+string(REPLACE "\n" "\n " STRATA_LICENSE " ${STRATA_LICENSE}")
+configure_file(${debian}/changelog.in ${made}/changelog @ONLY)
+configure_file(${debian}/copyright.in ${made}/copyright @ONLY)
+configure_file(${debian}/strata.1.in ${made}/strata.1 @ONLY)
+install(CODE "
+  file(ARCHIVE_CREATE OUTPUT ${made}/changelog.Debian.gz PATHS ${made}/changelog FORMAT raw COMPRESSION GZip)
+  file(ARCHIVE_CREATE OUTPUT ${made}/changelog.gz PATHS ${PROJECT_SOURCE_DIR}/CHANGELOG.md FORMAT raw COMPRESSION GZip)
+  file(ARCHIVE_CREATE OUTPUT ${made}/strata.1.gz PATHS ${made}/strata.1 FORMAT raw COMPRESSION GZip)
+  " COMPONENT debian EXCLUDE_FROM_ALL)
+install(FILES ${debian}/strata.service DESTINATION /lib/systemd/system COMPONENT debian EXCLUDE_FROM_ALL)
+install(FILES ${debian}/strata.default DESTINATION /etc/default RENAME strata COMPONENT debian EXCLUDE_FROM_ALL)
+install(FILES ${made}/strata.1.gz DESTINATION share/man/man1 COMPONENT debian EXCLUDE_FROM_ALL)
+install(FILES ${debian}/strata.bash DESTINATION share/bash-completion/completions RENAME strata
+        COMPONENT debian EXCLUDE_FROM_ALL)
+install(FILES ${made}/copyright ${made}/changelog.gz ${made}/changelog.Debian.gz DESTINATION share/doc/strata
+        COMPONENT debian EXCLUDE_FROM_ALL)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME strata)
+set(CPACK_PACKAGE_VENDOR "The Strata authors")
+set(CPACK_PACKAGE_CONTACT ${STRATA_PACKAGE_CONTACT})
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+"Archaeologists and conservators paint thematic layers onto scans, several at
+once, in a browser: cracks, restorations, pigments, finds. The server draws
+the pictures, with a GPU or without, and keeps every edit in PostgreSQL.")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR};strata;Unspecified;/" "${PROJECT_BINARY_DIR};strata;debian;/")
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+    OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR})
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS ${depends})
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+file(WRITE ${made}/conffiles "/etc/default/strata\n")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA
+    ${debian}/postinst ${debian}/prerm ${debian}/postrm ${made}/conffiles)
+include(CPack)
