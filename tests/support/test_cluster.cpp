@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 #include <libpq-fe.h>
 #include <signal.h>
+#include <spawn.h>
 #include <stdlib.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <fstream>
@@ -20,6 +23,7 @@ namespace {
 struct Shared {
   TemporaryFolder folder;
   std::unique_ptr<store::Cluster> cluster;
+  bool migrated = false;
 };
 std::unique_ptr<Shared> shared;
 
@@ -53,9 +57,26 @@ TemporaryFolder::~TemporaryFolder() {
   std::filesystem::remove_all(path_, ignored);
 }
 
+namespace {
+
+// With owners and modes, which std::filesystem::copy does not keep: PostgreSQL insists on both.
+void copy_folder(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::string program = "cp", archive = "-a", source = from / ".", target = to;
+  std::array<char*, 5> words{program.data(), archive.data(), source.data(), target.data(), nullptr};
+  pid_t copier = 0;
+  int status = -1;
+  if (posix_spawnp(&copier, "cp", nullptr, nullptr, words.data(), environ) != 0 ||
+      waitpid(copier, &status, 0) != copier || status != 0)
+    throw std::runtime_error("not copied: " + from.string());
+}
+
+}  // namespace
+
 store::Cluster& shared_cluster() {
   if (!shared) {
     auto fresh = std::make_unique<Shared>();
+    if (const char* prepared = std::getenv("STRATA_TEST_PREPARED"))
+      copy_folder(std::filesystem::path(prepared) / "empty", fresh->folder.path());
     auto cluster = store::Cluster::start(fresh->folder.path());
     if (!cluster)
       throw std::runtime_error("no PostgreSQL for the tests: " + cluster.error().detail);
@@ -113,16 +134,31 @@ void Hang::kill() {
   stopped_.clear();
 }
 
-std::string fresh_database() {
+namespace {
+
+std::string create_database(const std::string& of_template) {
   static std::atomic<int> count{0};
   const std::string name = "test_" + std::to_string(++count);
   const std::unique_ptr<PGconn, decltype(&PQfinish)> connection(
       PQconnectdb(shared_cluster().dsn("postgres").c_str()), &PQfinish);
   const std::unique_ptr<PGresult, decltype(&PQclear)> made(
-      PQexec(connection.get(), ("CREATE DATABASE " + name).c_str()), &PQclear);
+      PQexec(connection.get(), ("CREATE DATABASE " + name + " TEMPLATE " + of_template).c_str()),
+      &PQclear);
   if (PQresultStatus(made.get()) != PGRES_COMMAND_OK)
     throw std::runtime_error(PQerrorMessage(connection.get()));
   return shared_cluster().dsn(name);
+}
+
+}  // namespace
+
+std::string empty_database() { return create_database("template1"); }
+
+std::string fresh_database() {
+  // No test works in the cluster's own database, so it is the template once it is migrated.
+  const store::Cluster& cluster = shared_cluster();
+  if (!shared->migrated) open_store(cluster.dsn(), 1);
+  shared->migrated = true;
+  return create_database("strata");
 }
 
 std::unique_ptr<store::Store> open_store(const std::string& dsn, int connections) {

@@ -10,7 +10,8 @@
 namespace strata::test {
 
 // One private PostgreSQL for the test binary, started at first use in a temporary folder and
-// removed at the end. Compile tests/support/test_cluster.cpp into the test.
+// removed at the end: a copy of what tests/support/prepare made, where STRATA_TEST_PREPARED names
+// it, else a new one. Link strata_cluster_support.
 store::Cluster& shared_cluster();
 
 // kill -9 of the postmaster; returns once it is dead, so that `ensure_running` sees it.
@@ -30,10 +31,13 @@ class Hang {
   std::vector<int> stopped_;
 };
 
-// A fresh, empty database of the shared cluster: its connection string.
+// A fresh database of the shared cluster, with all migrations: its connection string. It is a copy
+// of one that was migrated once, since 34 migrations take longer than most tests.
 std::string fresh_database();
+// Without any table, for tests of the migrations themselves.
+std::string empty_database();
 
-// A store on a fresh database, migrated.
+// A store on a fresh database.
 std::unique_ptr<store::Store> fresh_store(int connections = 4);
 std::unique_ptr<store::Store> open_store(const std::string& dsn, int connections = 4);
 

@@ -39,7 +39,7 @@ void copy_migrations(const fs::path& folder) {
 }
 
 TEST(Migrations, applying_them_twice_is_harmless) {
-  const auto dsn = test::fresh_database();
+  const auto dsn = test::empty_database();
   const auto first = test::open_store(dsn)->info().value();
   const auto second = test::open_store(dsn)->info().value();
   EXPECT_GE(first.schema_version, 3);
@@ -49,7 +49,7 @@ TEST(Migrations, applying_them_twice_is_harmless) {
 }
 
 TEST(Migrations, twenty_servers_starting_at_once_are_harmless) {
-  const auto dsn = test::fresh_database();
+  const auto dsn = test::empty_database();
   std::atomic<int> opened{0};
   std::vector<std::thread> servers;
   for (int i = 0; i < 20; ++i)
@@ -65,7 +65,7 @@ TEST(Migrations, twenty_servers_starting_at_once_are_harmless) {
 }
 
 TEST(Migrations, a_newer_schema_is_refused) {
-  const auto dsn = test::fresh_database();
+  const auto dsn = test::empty_database();
   test::open_store(dsn);
   ASSERT_TRUE(connect(dsn).script("INSERT INTO schema_migrations VALUES ('999999')"));
   auto store = Store::open({dsn, 1}, STRATA_MIGRATIONS_DIR);
@@ -77,7 +77,7 @@ TEST(Migrations, a_newer_schema_is_refused) {
 TEST(Migrations, an_applied_file_that_was_edited_is_refused) {
   test::TemporaryFolder folder;
   copy_migrations(folder.path());
-  const auto dsn = test::fresh_database();
+  const auto dsn = test::empty_database();
   ASSERT_TRUE(Store::open({dsn, 1}, folder.path()));
   const auto file = folder.path() / "000001_projects_and_models.sql";
   write(file, read(file) + "-- a word more\n");
@@ -89,7 +89,7 @@ TEST(Migrations, an_applied_file_that_was_edited_is_refused) {
 TEST(Migrations, a_failing_file_leaves_nothing_behind_and_works_once_mended) {
   test::TemporaryFolder folder;
   copy_migrations(folder.path());
-  const auto dsn = test::fresh_database();
+  const auto dsn = test::empty_database();
   write(
       folder.path() / "900000_more.sql",
       "-- migrate:up\nCREATE TABLE more (n int);\nSELECT 1/0;\n-- migrate:down\nDROP TABLE more;\n");
@@ -108,7 +108,7 @@ TEST(Migrations, a_failing_file_leaves_nothing_behind_and_works_once_mended) {
 }
 
 TEST(Migrations, a_database_that_dbmate_migrated_is_taken_over) {
-  const auto dsn = test::fresh_database();
+  const auto dsn = test::empty_database();
   auto connection = connect(dsn);
   ASSERT_TRUE(connection.script(
       "CREATE TABLE schema_migrations (version character varying(128) PRIMARY KEY)"));
@@ -138,7 +138,7 @@ TEST(Migrations, a_folder_without_or_with_bad_files_is_refused) {
 }
 
 TEST(Migrations, the_schema_file_is_what_a_fresh_database_has) {
-  const auto dsn = test::fresh_database();
+  const auto dsn = test::empty_database();
   test::open_store(dsn);
   const std::string command =
       std::string(STRATA_SOURCE_DIR) + "/tests/db/dump_schema.sh \"" + dsn + "\"";
@@ -154,7 +154,7 @@ TEST(Migrations, the_schema_file_is_what_a_fresh_database_has) {
 }
 
 TEST(Migrations, looking_at_a_database_does_not_change_it) {
-  const auto dsn = test::fresh_database();
+  const auto dsn = test::empty_database();
   const auto tables = [&] {
     return connect(dsn)
         .query("SELECT count(*) FROM pg_class WHERE relnamespace = 'public'::regnamespace")

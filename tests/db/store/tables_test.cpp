@@ -478,7 +478,7 @@ TEST_F(Tables, layers_of_several_models_share_a_table) {
 }
 
 TEST(TablesMigration, database_layers_get_tables_with_the_keys_that_they_hold) {
-  const auto dsn = test::fresh_database();
+  const auto dsn = test::empty_database();
   auto connection = std::move(PgConnection::connect(dsn).value());
   auto all = read_migrations(STRATA_MIGRATIONS_DIR).value();
   const std::vector<Migration> old(all.begin(), all.begin() + 7);
