@@ -16,7 +16,6 @@ import json
 import math
 import os
 import queue
-import random
 import sys
 import threading
 import time
@@ -377,7 +376,7 @@ def arguments():
     parser.add_argument(
         "--seed",
         type=int,
-        default=int(os.environ.get("STRATA_SEED", random.SystemRandom().randrange(10**6))),
+        default=int(os.environ.get("STRATA_SEED", "1")),
     )
     parser.add_argument("--people", type=int, default=8)
     parser.add_argument(

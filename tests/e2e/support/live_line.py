@@ -17,6 +17,7 @@ class Line:
 
     def __init__(self, live, hears, fault, number=0):
         self.live, self.hears, self.fault, self.number = live, hears, fault, number
+        self.random = random.Random(number)
         self.sending = threading.Lock()
         self.frames, self.shown = [], -1  # (time, newest sequence) of whole frames
         self.opened, self.ended, self.given_up = time.monotonic(), None, False
@@ -30,7 +31,7 @@ class Line:
     def send_half(self, message):
         whole = LiveClient.framed(1, json.dumps(message).encode())
         with self.sending:
-            self.live.socket.sendall(whole[: random.randint(1, len(whole) - 1)])
+            self.live.socket.sendall(whole[: self.random.randint(1, len(whole) - 1)])
 
     def _read(self):
         try:
