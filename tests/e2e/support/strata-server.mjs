@@ -2,11 +2,30 @@
 // the same.
 import { execFileSync, spawn } from "node:child_process";
 import { randomBytes } from "node:crypto";
-import { chmodSync, existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import {
+  chmodSync,
+  existsSync,
+  mkdtempSync,
+  readdirSync,
+  readFileSync,
+  rmSync,
+  statfsSync,
+} from "node:fs";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 
 export const kLong_ms = 120_000;
+
+const kInMemory = "/dev/shm";
+const kRoom_bytes = 8 * 2 ** 30; // for several tests at once, of which one writes gigabytes
+
+/** In memory where there is room, since a disk is slow for a database. */
+function place_of_data() {
+  if (process.env.STRATA_TEST_TMP) return process.env.STRATA_TEST_TMP;
+  if (!existsSync(kInMemory)) return "/tmp";
+  const { bavail, bsize } = statfsSync(kInMemory);
+  return bavail * bsize > kRoom_bytes ? kInMemory : "/tmp";
+}
 
 export async function wait_for(condition, what, every_ms = 50) {
   const end = Date.now() + kLong_ms;
@@ -23,21 +42,32 @@ export class StrataServer {
     this.binary = process.env.STRATA_BINARY;
     if (!this.binary) throw new Error("STRATA_BINARY names the server");
     this.token = randomBytes(24).toString("hex");
-    // Under /tmp and open to all: PostgreSQL does not run as root, so its user must reach the
-    // folder.
-    this.data = mkdtempSync("/tmp/strata-e2e-");
+    // Open to all: PostgreSQL does not run as root, so its user must reach the folder.
+    this.data = mkdtempSync(join(place_of_data(), "strata-e2e-"));
     chmodSync(this.data, 0o755);
     this.log = [];
     this.port = 0;
     process.on("exit", () => this.process?.kill("SIGKILL"));
-    if (demo)
+    this.demo = demo;
+  }
+
+  /** Copies what tests/support/prepare made, or makes it where that did not run. */
+  #fill() {
+    if (readdirSync(this.data).length > 0) return; // it starts again
+    const prepared = process.env.STRATA_TEST_PREPARED;
+    if (prepared) {
+      // With owners and modes: PostgreSQL insists on both.
+      execFileSync("cp", ["-a", `${prepared}/${this.demo ? "demo" : "empty"}/.`, this.data]);
+    } else if (this.demo) {
       execFileSync(this.binary, ["demo", "--data", this.data], {
         stdio: ["ignore", "ignore", "pipe"],
       });
+    }
   }
 
   /** Starts it (again, on the port that it had) and returns once it listens. */
   async start() {
+    this.#fill();
     this.process = spawn(
       this.binary,
       ["serve", "--data", this.data, "--listen", `127.0.0.1:${this.port}`],

@@ -19,10 +19,21 @@ import urllib.parse
 from .contract import Contract
 
 LONG_S = 180
+IN_MEMORY = "/dev/shm"
+ROOM_BYTES = 8 << 30  # for several tests at once, of which one writes gigabytes
 
 # Calls that tokens for scripts may not make, the owner's among them once an administrator has a
 # password.
 OF_ACCOUNTS = re.compile(r"/(users|groups|me/)|/projects/[^/]+/(members|groups)(/|$)|.*/kiosks$")
+
+
+def _place_of_data():
+    """In memory where there is room, since a disk is slow for a database; open to all in any case."""
+    wanted = os.environ.get("STRATA_TEST_TMP")
+    if wanted:
+        return wanted
+    roomy = os.access(IN_MEMORY, os.W_OK) and shutil.disk_usage(IN_MEMORY).free > ROOM_BYTES
+    return IN_MEMORY if roomy else "/tmp"
 
 
 def wait_for(condition, what, limit_s=LONG_S, every_s=0.02):
@@ -60,9 +71,8 @@ class StrataServer:
         self.binary = os.environ["STRATA_BINARY"]
         self.token = secrets.token_hex(24)
         self.options = list(options)  # of `serve`
-        # Under /tmp and open to all: PostgreSQL does not run as root, so its user must reach the
-        # folder.
-        self.data = tempfile.mkdtemp(prefix="strata-e2e-", dir="/tmp")
+        # Open to all: PostgreSQL does not run as root, so its user must reach the folder.
+        self.data = tempfile.mkdtemp(prefix="strata-e2e-", dir=_place_of_data())
         os.chmod(self.data, 0o755)
         self.process = None
         self.session = None  # of the owner, for calls on accounts
@@ -71,7 +81,18 @@ class StrataServer:
         self.host, self.port, self.link = "127.0.0.1", None, None
         self.log = []
         self.changed = threading.Condition()
-        if demo:
+        self.demo = demo
+
+    def _fill(self):
+        """Copies what tests/support/prepare made, or makes it where that did not run. What a test has put into the folder stays."""
+        if os.listdir(self.data):
+            return
+        prepared = os.environ.get("STRATA_TEST_PREPARED")
+        if prepared:
+            kind = "demo" if self.demo else "empty"
+            # With owners and modes: PostgreSQL insists on both.
+            subprocess.run(["cp", "-a", os.path.join(prepared, kind, "."), self.data], check=True)
+        elif self.demo:
             done = subprocess.run(
                 [self.binary, "demo", "--data", self.data],
                 capture_output=True,
@@ -109,6 +130,7 @@ class StrataServer:
 
     def start(self):
         """Starts it (again) and returns once it listens."""
+        self._fill()
         self.process = subprocess.Popen(
             [self.binary, "serve", "--data", self.data, "--listen", "127.0.0.1:0", *self.options],
             stdout=subprocess.PIPE,
