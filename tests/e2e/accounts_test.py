@@ -1,12 +1,9 @@
-#!/usr/bin/env python3
 """Accounts over HTTP and from the command line: who comes in, what each role may do, what ends when, and that guessing is slow."""
-import os
 import re
 import socket
 import subprocess
-import sys
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.browsers import PASSWORD, Browser, join, secret_of, uncoloured
 from support.live_client import LiveClient, Refused
 from support.meshes import folded_grid
@@ -17,8 +14,22 @@ OTHER = "no herons any more, a pity"
 FILL = {"op": "fill", "mode": "where", "where": "true", "value": 1}
 
 
-def owner_link(server):
-    """Each start prints a link until the owner has a password; it is the only one, and good until then."""
+@pytest.fixture(scope="module")
+def fresh_server():
+    with StrataServer() as server:
+        yield server
+
+
+@pytest.fixture(scope="module")
+def server(server):
+    server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
+    server.ok("POST", M + "/layers", {"name": "Marks", "type": "u8", "resolution": 2048})
+    return server
+
+
+def test_each_start_prints_a_link_until_the_owner_has_a_password(fresh_server):
+    """It is the only one, and good until then."""
+    server = fresh_server
     earlier = server.link
     assert server.stop() == 0
     server.start()
@@ -52,9 +63,10 @@ def owner_link(server):
     assert server.link == server.url + "/", server.link
     assert Browser(server).sign_in("owner", PASSWORD).status == 200
     server.sign_in_owner({"user": "owner", "password": PASSWORD})
+    server.assert_clean_log()
 
 
-def invitations(server):
+def test_invitations(server, story):
     """A link is good once, for a week, for one person, and is no token."""
     made = server.ok("POST", "/users", {"user": "Ada", "full_name": "Ada L.", "role": "annotator"})
     invitation, secret = made.json(), secret_of(made.json())
@@ -126,11 +138,12 @@ def invitations(server):
         Browser(server).sign_in("ada", PASSWORD).status == 401
         and Browser(server).sign_in("ADA", OTHER).status == 200
     )
-    return other
+    story.ada = other
 
 
-def roles(server, ada):
+def test_roles(server, story):
     """What each role may do, and that a change of it counts at once, for open connections too."""
+    ada = story.ada
     vera = join(server, server.ok("POST", "/users", {"user": "vera"}).json())
     assert vera.ok("GET", "/me").json()["role"] == "viewer"
     carl = join(server, server.ok("POST", "/users", {"user": "carl", "role": "curator"}).json())
@@ -204,10 +217,10 @@ def roles(server, ada):
     anne.ok("PATCH", "/users/ada", {"disabled": False})
     assert ada.request("GET", "/me").status == 401, "the sessions of before stay ended"
     assert ada.sign_in("Ada", OTHER).status == 200
-    return vera, anne
+    story.vera, story.anne = vera, anne
 
 
-def slow_body(server):
+def test_who_is_shut_out_meanwhile_does_nothing(server):
     """Who is shut out while their request is under way does nothing with it."""
     boss = join(
         server, server.ok("POST", "/users", {"user": "boss", "role": "administrator"}).json()
@@ -225,7 +238,8 @@ def slow_body(server):
     assert server.get("/users/mole").status == 404
 
 
-def sessions(server, ada):
+def test_sessions(server, story):
+    ada = story.ada
     phone = Browser(server, "Mozilla/5.0 (Android 15) Chrome/130")
     assert phone.sign_in("ada", OTHER).status == 200
     listed = phone.ok("GET", "/me/sessions").json()["sessions"]
@@ -264,8 +278,10 @@ def sessions(server, ada):
     assert ada.sign_in("ada", PASSWORD).status == 200
 
 
-def tokens(server, ada, anne):
+def test_tokens(server, story):
     """A script's token does what both it and its person may, and opens no session."""
+    ada = story.ada
+    anne = story.anne
     made = ada.ok("POST", "/me/tokens", {"name": "nightly", "role": "viewer", "days": 3}).json()
     secret = made["secret"]
     assert (
@@ -363,8 +379,9 @@ def tokens(server, ada, anne):
     assert server.post(L + "/edits", FILL, token=painting["secret"]).status == 200
 
 
-def deletion(server, anne):
+def test_deletion(server, story):
     """Who is deleted cannot be told from the history any more, and nobody gets their name."""
+    anne = story.anne
     before = server.ok("GET", L + "/edits").json()["edits"]
     mine = [edit["sequence"] for edit in before if edit["user"] == "Ada"]
     number = server.ok("GET", "/users/ada").json()["id"]
@@ -382,35 +399,7 @@ def deletion(server, anne):
     assert server.post("/users", {"user": f"former-{number}"}).status == 409
 
 
-def guessing(server, vera):
-    """Guesses are slowed down for a name wherever they come from; whoever is in stays in."""
-    statuses = [Browser(server).sign_in("vera", f"guess number {i}").status for i in range(14)]
-    assert set(statuses) == {401, 429} and statuses[0] == 401 and statuses[-1] == 429, statuses
-    refused = Browser(server).sign_in("vera", PASSWORD)
-    assert refused.status == 429 and refused.headers["Retry-After"], refused
-    assert vera.request("GET", "/me").status == 200
-    # Others come in meanwhile, from another address.
-    anne = Browser(server)
-    assert (
-        anne.request(
-            "POST",
-            "/login",
-            {"user": "anne", "password": PASSWORD},
-            **{"X-Forwarded-For": "10.9.8.7"},
-        ).status
-        == 200
-    )
-    for body in (
-        {"user": "vera"},
-        {"password": "x"},
-        {"user": "vera", "password": "x", "token": "y"},
-        {},
-        {"user": ["vera"], "password": {}},
-    ):
-        assert Browser(server).request("POST", "/login", body).status == 422, body
-
-
-def commands(server):
+def test_commands(server):
     """The same from the server's own machine, while it runs."""
 
     def strata(*words, entered=None, code=0):
@@ -516,7 +505,40 @@ def commands(server):
     assert server.get("/users/max").status == 404
 
 
-def reach(server):
+def test_guessing_is_slow(server, story):
+    """Guesses are slowed down for a name wherever they come from; whoever is in stays in."""
+    vera = story.vera
+    statuses = [Browser(server).sign_in("vera", f"guess number {i}").status for i in range(14)]
+    assert set(statuses) == {401, 429} and statuses[0] == 401 and statuses[-1] == 429, statuses
+    refused = Browser(server).sign_in("vera", PASSWORD)
+    assert refused.status == 429 and refused.headers["Retry-After"], refused
+    assert vera.request("GET", "/me").status == 200
+    # Others come in meanwhile, from another address.
+    anne = Browser(server)
+    assert (
+        anne.request(
+            "POST",
+            "/login",
+            {"user": "anne", "password": PASSWORD},
+            **{"X-Forwarded-For": "10.9.8.7"},
+        ).status
+        == 200
+    )
+    for body in (
+        {"user": "vera"},
+        {"password": "x"},
+        {"user": "vera", "password": "x", "token": "y"},
+        {},
+        {"user": ["vera"], "password": {}},
+    ):
+        assert Browser(server).request("POST", "/login", body).status == 422, body
+
+
+def test_the_log_is_clean(server):
+    server.assert_clean_log()
+
+
+def test_reach(server):
     """A server that others can reach needs somebody who can let them in."""
     assert server.stop() == 0
 
@@ -542,27 +564,3 @@ def reach(server):
         )
     started, said = serve()
     assert not started and "strata user add" in said, (started, said)
-
-
-def main():
-    with StrataServer() as server:
-        owner_link(server)
-        server.assert_clean_log()
-    with StrataServer() as server:
-        server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
-        server.ok("POST", M + "/layers", {"name": "Marks", "type": "u8", "resolution": 2048})
-        ada = invitations(server)
-        vera, anne = roles(server, ada)
-        slow_body(server)
-        sessions(server, ada)
-        tokens(server, ada, anne)
-        deletion(server, anne)
-        commands(server)
-        guessing(server, vera)
-        server.assert_clean_log()
-        reach(server)
-    print("accounts: invitations, roles, sessions, tokens, deletion, commands, guessing")
-
-
-if __name__ == "__main__":
-    main()

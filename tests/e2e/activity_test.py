@@ -1,14 +1,10 @@
-#!/usr/bin/env python3
 """What was done in a project over HTTP: every kind of thing, by whom, in pages; who sees it; what is left of who is deleted."""
-import os
-import sys
 import urllib.parse
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.browsers import join
 from support.cameras import camera_from
 from support.meshes import folded_grid
-from support.strata_server import StrataServer
 
 M = "/models/sheet"
 FEED = "/projects/default/activity"
@@ -37,7 +33,12 @@ class Site:
         ]
 
 
-def everything(site):
+@pytest.fixture(scope="module")
+def site(server):
+    return Site(server)
+
+
+def test_whatever_people_do_has_its_line(site):
     """Whatever people do has its line, the newest first."""
     site.server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
     site.ok(
@@ -152,7 +153,7 @@ def everything(site):
     assert "layer" not in feed[0] and feed[0]["model"] == model, "it is not there any more"
 
 
-def pages(site):
+def test_pages(site):
     """Together, pages of any size are the whole list; nonsense is refused."""
     whole = site.feed(limit=1000)
     assert "next" not in whole
@@ -190,7 +191,7 @@ def pages(site):
     )
 
 
-def members(site):
+def test_members(site):
     """Roles are told to curators; guests see the activity of their projects alone."""
     gus = join(
         site.server, site.server.ok("POST", "/users", {"user": "gus", "role": "guest"}).json()
@@ -210,7 +211,7 @@ def members(site):
     assert all(line["kind"] != "member" for line in site.feed("vera", limit=1000)["activity"])
 
 
-def deleted_people(site):
+def test_deleted_people(site):
     """What they did stays, under a name that tells nothing."""
     before = site.feed("carl", limit=1000)["activity"]
     for name in ("ada", "gus"):
@@ -223,15 +224,6 @@ def deleted_people(site):
     ), names
 
 
-def main():
-    with StrataServer() as server:
-        site = Site(server)
-        for check in (everything, pages, members, deleted_people):
-            check(site)
-            print(f"ok: {check.__doc__}", flush=True)
-        assert server.stop() == 0
-        server.assert_clean_log()
-
-
-if __name__ == "__main__":
-    main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

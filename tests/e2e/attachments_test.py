@@ -1,17 +1,15 @@
-#!/usr/bin/env python3
 """Files of records over HTTP: photos and documents in and out, small pictures, ranges, undo and the past, a gigabyte in little memory, a full disk, and a folder
 of photos that is matched to records."""
 import hashlib
 import http.client
 import os
 import subprocess
-import sys
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.live_client import LiveClient
 from support.meshes import folded_grid
 from support.pictures import png
-from support.strata_server import StrataServer, wait_for
+from support.strata_server import wait_for
 
 T = "/tables/units"
 PHOTO = png(640, 480, lambda x, y: (x % 256, y % 256, 90))
@@ -50,7 +48,26 @@ def make_table(server):
     )
 
 
-def in_and_out(server, live):
+@pytest.fixture(scope="module")
+def server(server):
+    server.import_model(folded_grid(), "trench.ply", unit="mm", name="Trench")
+    make_table(server)
+    server.ok(
+        "POST",
+        "/models/trench/layers",
+        {"name": "Units", "kind": "database", "type": "u16", "table": "units"},
+    )
+    return server
+
+
+@pytest.fixture
+def live(server):
+    with LiveClient(server, "trench") as live:
+        live.hello()
+        yield live
+
+
+def test_in_and_out(server, live, story):
     keyed = {"Idempotency-Key": "north"}
     made = attach(server, 1, PHOTO, "?name=../../etc/SU%201%20north.png", keyed)
     assert made.status == 201 and made.json()["total"] == 1, made
@@ -96,10 +113,12 @@ def in_and_out(server, live):
         server, 2, PAPER, headers={"Content-Disposition": 'attachment; filename="report.pdf"'}
     ).json()
     assert by_header["attachments"][0]["name"] == "report.pdf"
-    return photo, papers
+    story.photo, story.papers = photo, papers
 
 
-def reading(server, photo, papers):
+def test_reading(server, story):
+    photo = story.photo
+    papers = story.papers
     path = f"/attachments/{photo['id']}"
     whole = server.ok("GET", path)
     assert whole.body == PHOTO and whole.headers["Content-Type"] == "image/png"
@@ -146,7 +165,8 @@ def reading(server, photo, papers):
     assert server.request("GET", path, token=False).status == 401
 
 
-def undo_and_past(server, photo):
+def test_undo_and_past(server, story):
+    photo = story.photo
     before = server.ok("GET", T).json()["sequence"]
     server.ok("DELETE", f"/attachments/{photo['id']}", headers={"Idempotency-Key": "out"})
     server.ok("DELETE", f"/attachments/{photo['id']}", headers={"Idempotency-Key": "out"})
@@ -170,7 +190,7 @@ def undo_and_past(server, photo):
     assert same["unchanged"] == 3 and same["changed"] == 0, same
 
 
-def folder_of_photos(server):
+def test_folder_of_photos(server):
     asked = {
         "pattern": "{code}_{view}_{n}.jpg",
         "column": "code",
@@ -235,7 +255,8 @@ def folder_of_photos(server):
         assert refused.status in (400, 422) and refused.json()["field"] == field, refused
 
 
-def refusals(server, photo):
+def test_refusals(server, story):
+    photo = story.photo
     for what, status, field, answer in [
         ("no such record", 404, None, attach(server, 99, PHOTO)),
         ("nothing", 400, "body", attach(server, 1, b"")),
@@ -290,7 +311,49 @@ def refusals(server, photo):
             assert answer.json()["field"] == field, f"{what}: {answer}"
 
 
-def a_gigabyte(server):
+def test_broken_off(server):
+    uploads = os.path.join(server.data, "uploads")
+    attach(server, 3, PAPER, "?name=before.pdf")
+    count = len(cell(server, 3, "papers"))
+    link = server.connect()
+    link.putrequest("POST", f"/api/v1{T}/records/3/attachments")
+    link.putheader("Authorization", "Bearer " + server.token)
+    link.putheader("Content-Length", 1000000)
+    link.endheaders(b"half")
+    wait_for(lambda: os.listdir(uploads), "the upload to begin")
+    link.close()
+    wait_for(lambda: not os.listdir(uploads), "what was sent to go")
+    assert len(cell(server, 3, "papers")) == count
+
+
+def test_a_full_disk(server):
+    uploads = os.path.join(server.data, "uploads")
+    mounted = subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", "size=1m,mode=777", "tmpfs", uploads],
+        capture_output=True,
+        check=False,
+    )
+    if mounted.returncode != 0:
+        pytest.skip("no right to mount a small disk")
+    try:
+        count = len(cell(server, 3, "papers"))
+        answer = attach(server, 3, b"%PDF-" + bytes(3 << 20))
+        assert answer.status == 507 and answer.json()["title"] == "Disk full", answer
+        form = (
+            b'--X\r\nContent-Disposition: form-data; name="f"; filename="a"\r\n\r\n'
+            + bytes(700 << 10)
+            + b"\r\n--X--\r\n"
+        )
+        answer = attach(
+            server, 3, form, headers={"Content-Type": "multipart/form-data; boundary=X"}
+        )
+        assert answer.status == 507, answer
+        assert not os.listdir(uploads) and len(cell(server, 3, "papers")) == count
+    finally:
+        subprocess.run(["umount", uploads], check=True)
+
+
+def test_a_gigabyte_in_little_memory(server):
     """Streamed in, as a body and in a form, and out again: the server's memory hardly grows."""
     pieces = [hashlib.sha256(bytes([n])).digest() * (PIECE // 32) for n in range(256)]
     wanted = hashlib.sha256()
@@ -356,75 +419,12 @@ def a_gigabyte(server):
     print(f"a gigabyte twice in and once out: the server grew by {grown >> 20} MiB")
 
 
-def broken_off(server):
-    uploads = os.path.join(server.data, "uploads")
-    attach(server, 3, PAPER, "?name=before.pdf")
-    count = len(cell(server, 3, "papers"))
-    link = server.connect()
-    link.putrequest("POST", f"/api/v1{T}/records/3/attachments")
-    link.putheader("Authorization", "Bearer " + server.token)
-    link.putheader("Content-Length", 1000000)
-    link.endheaders(b"half")
-    wait_for(lambda: os.listdir(uploads), "the upload to begin")
-    link.close()
-    wait_for(lambda: not os.listdir(uploads), "what was sent to go")
-    assert len(cell(server, 3, "papers")) == count
+def test_all_of_it_is_durable(server, story):
+    assert server.stop() == 0
+    server.start()
+    assert server.ok("GET", f"/attachments/{story.photo['id']}").body == PHOTO
 
 
-def full_disk(server):
-    uploads = os.path.join(server.data, "uploads")
-    mounted = subprocess.run(
-        ["mount", "-t", "tmpfs", "-o", "size=1m,mode=777", "tmpfs", uploads],
-        capture_output=True,
-        check=False,
-    )
-    if mounted.returncode != 0:
-        print("SKIPPED: the full disk (no right to mount one)")
-        return
-    try:
-        count = len(cell(server, 3, "papers"))
-        answer = attach(server, 3, b"%PDF-" + bytes(3 << 20))
-        assert answer.status == 507 and answer.json()["title"] == "Disk full", answer
-        form = (
-            b'--X\r\nContent-Disposition: form-data; name="f"; filename="a"\r\n\r\n'
-            + bytes(700 << 10)
-            + b"\r\n--X--\r\n"
-        )
-        answer = attach(
-            server, 3, form, headers={"Content-Type": "multipart/form-data; boundary=X"}
-        )
-        assert answer.status == 507, answer
-        assert not os.listdir(uploads) and len(cell(server, 3, "papers")) == count
-    finally:
-        subprocess.run(["umount", uploads], check=True)
-
-
-def main():
-    with StrataServer() as server:
-        server.import_model(folded_grid(), "trench.ply", unit="mm", name="Trench")
-        make_table(server)
-        server.ok(
-            "POST",
-            "/models/trench/layers",
-            {"name": "Units", "kind": "database", "type": "u16", "table": "units"},
-        )
-        with LiveClient(server, "trench") as live:
-            live.hello()
-            photo, papers = in_and_out(server, live)
-        reading(server, photo, papers)
-        undo_and_past(server, photo)
-        folder_of_photos(server)
-        refusals(server, photo)
-        broken_off(server)
-        full_disk(server)
-        a_gigabyte(server)
-        assert server.stop() == 0
-        server.start()
-        assert server.ok("GET", f"/attachments/{photo['id']}").body == PHOTO, "all of it is durable"
-        assert server.stop() == 0
-        server.assert_clean_log()
-    print("files of records, in and out, small and large: good")
-
-
-if __name__ == "__main__":
-    main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

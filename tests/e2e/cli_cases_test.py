@@ -1,13 +1,11 @@
-#!/usr/bin/env python3
 """The commands: exit codes, what `doctor` looks at without touching it, and servers that are none."""
 import http.server
 import os
 import subprocess
-import sys
 import tempfile
 import threading
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.meshes import folded_grid
 from support.strata_server import LONG_S, StrataServer
 
@@ -25,7 +23,13 @@ def strata(*words, **environment):
     )
 
 
-def check_usage(folder):
+@pytest.fixture
+def folder():
+    with tempfile.TemporaryDirectory(prefix="strata-cli-") as folder:
+        yield folder
+
+
+def test_wrong_usage_ends_with_a_reason(folder):
     data = os.path.join(folder, "unused")
     for words, environment in (
         (("serve", "--listen", "nonsense"), {}),
@@ -54,7 +58,7 @@ def check_usage(folder):
     assert done.returncode == 1 and "strata user add" in done.stderr and not done.stdout, done
 
 
-def check_other_servers(folder):
+def test_what_answers_an_import_is_no_strata_server(folder):
     """What answers an import is no Strata server: a reason and exit code 1."""
     scan = os.path.join(folder, "grid.ply")
     with open(scan, "wb") as file:
@@ -111,7 +115,7 @@ def listing(folder):
     )
 
 
-def check_doctor(folder):
+def test_the_doctor_changes_nothing(folder):
     data = os.path.join(folder, "nothing here")
     done = strata("doctor", "--data", data)
     assert done.returncode == 0 and "made at the first start" in done.stdout, done
@@ -130,14 +134,3 @@ def check_doctor(folder):
         assert done.returncode == 0 and "not running" in done.stdout, done
         assert listing(server.data) == before, "doctor changed the data folder"
         server.assert_clean_log()
-
-
-def main():
-    with tempfile.TemporaryDirectory(prefix="strata-cli-") as folder:
-        check_usage(folder)
-        check_other_servers(folder)
-        check_doctor(folder)
-    print("usage, other servers, doctor")
-
-
-main()

@@ -1,15 +1,11 @@
-#!/usr/bin/env python3
 """Comments on a model over HTTP: who may write, change and delete, where they lie, repeats and races, and what is left of who is deleted."""
 import json
-import os
-import sys
 import urllib.parse
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.browsers import uncoloured
 from support.live_client import LiveClient
 from support.meshes import folded_grid
-from support.strata_server import StrataServer
 
 M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
 ALL = M + "/comments"
@@ -66,7 +62,12 @@ def told(of, *, status, field=None):
     return problem
 
 
-def writing(site):
+@pytest.fixture(scope="module")
+def site(server):
+    return Site(server)
+
+
+def test_writing(site):
     """A thread lies on the surface, with what it is about; everybody reads it."""
     made = site.ok(
         "Ada.L", "POST", ALL, {"text": "Is this\nthe crack? δ <b>&amp;", "position": [50, 40, 3]}
@@ -121,7 +122,7 @@ def writing(site):
     assert read.status == 304, read
 
 
-def malformed(site):
+def test_malformed(site):
     """What is no comment, or no place, is refused with the field, and nothing is written."""
     before = site.ok("bob", "GET", ALL).json()["total"]
     here = [50, 50, 0]
@@ -203,7 +204,7 @@ def malformed(site):
     assert site.ok("bob", "GET", ALL).json()["total"] == before + 4
 
 
-def roles(site):
+def test_roles(site):
     """Viewers read, annotators write and change their own, curators delete others'; everybody who writes resolves."""
     thread = site.begin("Ada.L")
     path = f"/comments/{thread['id']}"
@@ -241,7 +242,7 @@ def roles(site):
     told(site.request("carl", "DELETE", path), status=404)
 
 
-def deleting(site):
+def test_deleting(site):
     """A first comment with replies leaves its place; it goes with the last of them."""
     thread = site.begin("bob", "A slip of the pen")
     path = f"/comments/{thread['id']}"
@@ -264,7 +265,7 @@ def deleting(site):
     told(site.request("vera", "GET", path), status=404)
 
 
-def repeats_and_races(site):
+def test_repeats_and_races(site):
     """A repeat writes nothing twice; who has not read the newest changes nothing."""
     key = {"Idempotency-Key": "9b2d0e7a-7c1a-4c3e-9a57-0e7d3c1d2f10"}
     before = site.ok("bob", "GET", ALL).json()["total"]
@@ -301,7 +302,7 @@ def repeats_and_races(site):
     site.ok("bob", "DELETE", path, headers={"If-Match": '"v2"'})
 
 
-def lists(site):
+def test_lists(site):
     """By state and time, in pages."""
     for comment in site.ok("carl", "GET", ALL + "?limit=1000").json()["comments"]:
         site.request("carl", "DELETE", f"/comments/{comment['id']}")
@@ -328,7 +329,7 @@ def lists(site):
     assert ids("?limit=4") + ids("?limit=4&offset=4") == ids("")
 
 
-def live(site):
+def test_live(site):
     """Who is on the model hears of every change, and who is on another does not."""
     site.server.import_model(folded_grid(fold=0.001), "other.ply", name="Other", unit="mm")
     with LiveClient(site.server, "sheet", token=site.tokens["vera"]) as here, LiveClient(
@@ -375,7 +376,7 @@ def live(site):
         ), "the first that is heard there"
 
 
-def names(site):
+def test_names(site):
     """Whom one may name: who may sign in and sees the project."""
     people = "/projects/default/people"
     told(site.request("vera", "GET", people), status=403)
@@ -404,7 +405,7 @@ def names(site):
         site.server.ok("DELETE", f"/users/{user}")
 
 
-def people_and_models(site):
+def test_people_and_models(site):
     """Of who is deleted the name goes, in what others say to them, too; a model's comments go with it."""
     person = next(
         user for user in site.server.ok("GET", "/users").json()["users"] if user["user"] == "Ada.L"
@@ -432,25 +433,6 @@ def people_and_models(site):
     told(site.request("bob", "GET", f"/comments/{about['id']}"), status=404)
 
 
-def main():
-    with StrataServer() as server:
-        site = Site(server)
-        for test in (
-            writing,
-            malformed,
-            roles,
-            deleting,
-            repeats_and_races,
-            lists,
-            live,
-            names,
-            people_and_models,
-        ):
-            test(site)
-            print(f"ok: {test.__doc__}", flush=True)
-        assert server.stop() == 0
-        server.assert_clean_log()
-
-
-if __name__ == "__main__":
-    main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

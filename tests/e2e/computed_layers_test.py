@@ -1,13 +1,10 @@
-#!/usr/bin/env python3
 """Records in questions, over HTTP: filters of tables, columns in conditions, and layers that are computed from others, from records and from the surface."""
 import math
-import os
-import sys
 import urllib.parse
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.meshes import folded_grid
-from support.strata_server import StrataServer, wait_for
+from support.strata_server import wait_for
 
 M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
 
@@ -35,7 +32,51 @@ def value(server, layer, x, y):
     return server.get(f"{M}/position?{point}").json()["values"][layer]
 
 
-def check_filters(server):
+@pytest.fixture(scope="module")
+def server(server):
+    server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
+    columns = [
+        {"name": "Name"},
+        {"name": "Thickness", "kind": "numeric", "unit": "mm"},
+        {"name": "State", "kind": "enumeration", "choices": ["loose", "firm"]},
+        {"name": "Period", "kind": "period"},
+    ]
+    server.ok(
+        "POST",
+        M + "/layers",
+        {
+            "name": "Pieces",
+            "kind": "database",
+            "type": "u16",
+            "resolution": 2048,
+            "columns": columns,
+        },
+    )
+    server.ok("POST", M + "/layers", {"name": "Wet", "type": "f32", "resolution": 2048})
+    for values in (
+        {"name": "Head", "thickness": 4, "state": "loose", "period": "1560~"},
+        {"name": "Foot", "thickness": 8, "state": "firm"},
+        {"name": "Hand", "thickness": 2, "period": "1700/.."},
+    ):
+        server.ok("POST", "/tables/pieces/records", {"values": values})
+    dab(server, "pieces", 1, 30, 30, 10)
+    dab(server, "pieces", 2, 70, 30, 6)
+    dab(server, "pieces", 3, 70, 70, 6)
+    dab(server, "wet", 0.75, 35, 30, 20)
+    dab(server, "wet", 0.25, 25, 22, 20)
+    dab(server, "wet", 0.75, 30, 30, 5)
+    return server
+
+
+def fill_wet(server, value):
+    server.ok(
+        "POST",
+        M + "/layers/wet/edits",
+        {"op": "fill", "mode": "where", "where": "valid(wet)", "value": value},
+    )
+
+
+def test_filters(server):
     def keys(text, path="/tables/pieces", **more):
         query = urllib.parse.urlencode({"filter": text, **more})
         answer = server.ok("GET", f"{path}/records?{query}").json()
@@ -68,7 +109,9 @@ def check_filters(server):
         ), problem
 
 
-def check_conditions(server):
+def test_conditions(server):
+    fill_wet(server, 0.25)
+    dab(server, "wet", 0.75, 30, 30, 5)
     near(select(server, "pieces.thickness > 3"), (100 + 36) * math.pi * 1e-6, 0.03)
     near(select(server, "pieces.state = 'loose' and wet > 0.5"), 25 * math.pi * 1e-6, 0.03)
     near(select(server, "x < 50 and y < 50 and z < 1"), 2500e-6, 0.01)
@@ -89,7 +132,8 @@ def compute(server, name, expression, expect=201, **more):
     ).json()
 
 
-def check_computing(server):
+def test_computing(server):
+    fill_wet(server, 0.75)
     risk = compute(server, "Risk", "if(pieces.state = 'loose', 10, 1) * wet")
     assert (
         risk["expression"].startswith("if(")
@@ -181,7 +225,7 @@ def check_computing(server):
     ), "nothing is left of a layer that cannot be computed"
 
 
-def check_automatic(server):
+def test_they_are_computed_anew_by_themselves(server):
     """One that follows, through another that follows."""
     for name in ("risk", "mask"):
         assert (
@@ -210,7 +254,7 @@ def check_automatic(server):
     assert server.get(M + "/layers/twice").json()["stale"] is True
 
 
-def check_transfer(server):
+def test_transfer(server):
     """Its values come over to another scan; what they were computed from need not be there."""
     server.import_model(folded_grid(fold=0.001), "again.ply", name="Again", unit="mm")
     job = server.wait_for_job(
@@ -228,57 +272,6 @@ def check_transfer(server):
     assert here["max"] == there["max"], (here, there)
 
 
-def main():
-    with StrataServer() as server:
-        server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
-        columns = [
-            {"name": "Name"},
-            {"name": "Thickness", "kind": "numeric", "unit": "mm"},
-            {"name": "State", "kind": "enumeration", "choices": ["loose", "firm"]},
-            {"name": "Period", "kind": "period"},
-        ]
-        server.ok(
-            "POST",
-            M + "/layers",
-            {
-                "name": "Pieces",
-                "kind": "database",
-                "type": "u16",
-                "resolution": 2048,
-                "columns": columns,
-            },
-        )
-        server.ok("POST", M + "/layers", {"name": "Wet", "type": "f32", "resolution": 2048})
-        for values in (
-            {"name": "Head", "thickness": 4, "state": "loose", "period": "1560~"},
-            {"name": "Foot", "thickness": 8, "state": "firm"},
-            {"name": "Hand", "thickness": 2, "period": "1700/.."},
-        ):
-            server.ok("POST", "/tables/pieces/records", {"values": values})
-        dab(server, "pieces", 1, 30, 30, 10)
-        dab(server, "pieces", 2, 70, 30, 6)
-        dab(server, "pieces", 3, 70, 70, 6)
-        dab(server, "wet", 0.75, 35, 30, 20)
-        dab(server, "wet", 0.25, 25, 22, 20)
-        dab(server, "wet", 0.75, 30, 30, 5)
-        check_filters(server)
-        server.ok(
-            "POST",
-            M + "/layers/wet/edits",
-            {"op": "fill", "mode": "where", "where": "valid(wet)", "value": 0.25},
-        )
-        dab(server, "wet", 0.75, 30, 30, 5)
-        check_conditions(server)
-        server.ok(
-            "POST",
-            M + "/layers/wet/edits",
-            {"op": "fill", "mode": "where", "where": "valid(wet)", "value": 0.75},
-        )
-        check_computing(server)
-        check_automatic(server)
-        check_transfer(server)
-        assert server.stop() == 0
-        server.assert_clean_log()
-
-
-main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

@@ -1,20 +1,16 @@
-#!/usr/bin/env python3
 """A conservator's day over HTTP, with nothing but Python's own library, to be read as an example: two walls of a chapel, a list of terms, places with photos
 across both, strokes, questions, a risk that is computed, and quantities for the report. Every figure is checked against what was painted.
 
-`server.ok(method, path, body)` sends a request to /api/v1 with the token; a dict goes as JSON."""
+`server.ok(method, path, body)` sends a request to /api/v1 with the token; a dict goes as JSON;
+`story` has what an earlier step made."""
 import csv
 import io
 import math
-import os
-import sys
 import urllib.parse
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support.cameras import camera_from
 from support.meshes import folded_grid
 from support.pictures import png
-from support.strata_server import StrataServer
 from support.workbook import Workbook
 
 NORTH, SOUTH = "/models/north-wall", "/models/south-wall"  # nearly flat, x and y from 0 to 100 mm
@@ -50,7 +46,7 @@ def rows_of(text):
     return list(csv.DictReader(io.StringIO(text.decode("utf-8-sig"))))
 
 
-def set_up(server):
+def test_the_site_is_set_up(server, story):
     """Nine o'clock: the scans, the words, the tables."""
     server.ok("POST", "/projects", {"name": "Chapel"})
     for name in ("North wall", "South wall"):
@@ -121,11 +117,12 @@ def set_up(server):
             model + "/layers",
             {"name": "Moisture", "type": "f32", "unit": "%", "resolution": 2048},
         )
-    return keys
+    story.keys = keys
 
 
-def look_and_paint(server, keys):
+def test_look_and_paint(server, story):
     """Until noon, at the walls."""
+    keys = story.keys
     paint(server, NORTH, "damage", keys["flaking"], 30, 30, 12)
     paint(server, NORTH, "damage", keys["salts"], 70, 70, 10)
     paint(server, SOUTH, "damage", keys["flaking"], 50, 50, 20)
@@ -177,7 +174,7 @@ def look_and_paint(server, keys):
         paint(server, NORTH, "moisture", percent, x, y, radius)
 
 
-def add_photos(server):
+def test_add_photos(server):
     """A folder of photos finds its places by the names."""
     names = ["apse_before_1.png", "door_before_1.png", "crypt_before_1.png"]
     match = server.ok(
@@ -207,8 +204,9 @@ def add_photos(server):
     )
 
 
-def ask(server, keys):
+def test_ask(server, story):
     """In the afternoon: which, where, how much."""
+    keys = story.keys
 
     def found(text, path="/tables/places"):
         answer = server.ok(
@@ -246,7 +244,7 @@ def ask(server, keys):
     assert cross["area_m2"][flaking][door] == 0, cross
 
 
-def weigh(server, keys):
+def test_weigh(server):
     """A risk is computed, and follows what is seen."""
     expression = "if(places.urgency = 'now', 2, 1) * reclass(moisture, 0, 30, 1, 60, 2)"
     risk = server.ok(
@@ -311,8 +309,9 @@ def weigh(server, keys):
     assert pictures[0] != pictures[1] and all(each.startswith(b"\x89PNG") for each in pictures)
 
 
-def report(server, keys):
+def test_report(server, story):
     """Before six: the figures, as they go into the report."""
+    keys = story.keys
     answer = server.ok("GET", NORTH + "/layers/damage/quantities").json()
     by_class = {each["key"]: each for each in answer["quantities"]}
     near(by_class[keys["flaking"]]["area_m2"], disc(12))
@@ -355,24 +354,14 @@ def report(server, keys):
     near(sum(float(each["area_m2"]) for each in texels), disc(6), 0.03)
 
 
-def main():
-    with StrataServer() as server:
-        keys = set_up(server)
-        look_and_paint(server, keys)
-        add_photos(server)
-        ask(server, keys)
-        weigh(server, keys)
-        report(server, keys)
-        before = server.ok("GET", "/tables/places/quantities").json()
-        assert server.stop() == 0
-        server.start()
-        assert (
-            server.ok("GET", "/tables/places/quantities").json() == before
-        ), "tomorrow all of it is there"
-        report(server, keys)
-        assert server.stop() == 0
-        server.assert_clean_log()
-    print("a day at the walls: good")
+def test_tomorrow_all_of_it_is_there(server, story):
+    before = server.ok("GET", "/tables/places/quantities").json()
+    assert server.stop() == 0
+    server.start()
+    assert server.ok("GET", "/tables/places/quantities").json() == before
+    test_report(server, story)
 
 
-main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

@@ -1,15 +1,12 @@
-#!/usr/bin/env python3
 """The README's tour with curl, word for word, and whether its figures agree with one another."""
 import json
 import os
 import re
 import subprocess
-import sys
 import tempfile
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.meshes import bumpy_ball
-from support.strata_server import StrataServer
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
@@ -39,51 +36,45 @@ def json_values(text):
     return found
 
 
-def main():
-    with StrataServer() as server, tempfile.TemporaryDirectory() as folder:
-        with open(os.path.join(folder, "scan.ply"), "wb") as file:
-            file.write(bumpy_ball())
-        os.symlink(os.path.join(ROOT, "scripts"), os.path.join(folder, "scripts"))
-        done = subprocess.run(
-            ["bash", "-c", tour_of_readme()],
-            cwd=folder,
-            capture_output=True,
-            text=True,
-            check=False,
-            env={**server.environment(), "STRATA_URL": server.url},
-        )
-        assert (
-            done.returncode == 0
-        ), f"the tour ended with {done.returncode}:\n{done.stdout}\n{done.stderr}"
-        model, layer, edit, point, statistics = json_values(done.stdout)
+@pytest.fixture(scope="module")
+def folder():
+    with tempfile.TemporaryDirectory() as folder:
+        yield folder
 
-        assert (model["slug"], model["unit"], model["unit_assumed"]) == ("scan", "mm", False), model
-        assert (layer["slug"], layer["type"], layer["resolution"]) == ("cracks", "u8", 4096), layer
-        assert edit["sequence"] == 1 and edit["texels_changed"] > 1000, edit
-        assert point["hit"] and point["values"]["cracks"] == {"valid": True, "value": 7}, point
-        assert abs(statistics["area_m2"] - edit["area_m2"]) <= 0.02 * edit["area_m2"], (
-            statistics["area_m2"],
-            edit,
-        )
-        assert statistics["texels"] == edit["texels_changed"], (statistics["texels"], edit)
-        assert [key["key"] for key in statistics["keys"]] == [7] and statistics[
-            "mean"
-        ] == 7, statistics
-        # 80 pixels of path with a radius of 20 are 4457 pixels of 0.21 mm, on a surface that faces
-        # the camera.
-        assert 1.8e-4 < edit["area_m2"] < 2.2e-4, edit
 
-        check_files(folder, server)
-        history = server.get("/models/scan/layers/cracks/edits").json()["edits"]
-        assert [edit["op"] for edit in history] == ["import", "stroke"], history
-        assert server.stop() == 0
-        server.assert_clean_log()
-    print(
-        f"the tour painted {edit['area_m2'] * 1e6:.0f} mm²; the statistics say {statistics['area_m2'] * 1e6:.0f} mm²"
+def test_its_figures_agree_with_one_another(server, folder):
+    with open(os.path.join(folder, "scan.ply"), "wb") as file:
+        file.write(bumpy_ball())
+    os.symlink(os.path.join(ROOT, "scripts"), os.path.join(folder, "scripts"))
+    done = subprocess.run(
+        ["bash", "-c", tour_of_readme()],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**server.environment(), "STRATA_URL": server.url},
     )
+    assert (
+        done.returncode == 0
+    ), f"the tour ended with {done.returncode}:\n{done.stdout}\n{done.stderr}"
+    model, layer, edit, point, statistics = json_values(done.stdout)
+
+    assert (model["slug"], model["unit"], model["unit_assumed"]) == ("scan", "mm", False), model
+    assert (layer["slug"], layer["type"], layer["resolution"]) == ("cracks", "u8", 4096), layer
+    assert edit["sequence"] == 1 and edit["texels_changed"] > 1000, edit
+    assert point["hit"] and point["values"]["cracks"] == {"valid": True, "value": 7}, point
+    assert abs(statistics["area_m2"] - edit["area_m2"]) <= 0.02 * edit["area_m2"], (
+        statistics["area_m2"],
+        edit,
+    )
+    assert statistics["texels"] == edit["texels_changed"], (statistics["texels"], edit)
+    assert [key["key"] for key in statistics["keys"]] == [7] and statistics["mean"] == 7, statistics
+    # 80 pixels of path with a radius of 20 are 4457 pixels of 0.21 mm, on a surface that faces
+    # the camera.
+    assert 1.8e-4 < edit["area_m2"] < 2.2e-4, edit
 
 
-def check_files(folder, server):
+def test_its_files_are_what_they_say(folder, server):
     with open(os.path.join(folder, "picture.png"), "rb") as file:
         picture = file.read()
     assert picture.startswith(b"\x89PNG\r\n") and len(picture) > 10000, picture[:20]
@@ -104,4 +95,11 @@ def check_files(folder, server):
     ), "what was exported changes nothing when it is imported"
 
 
-main()
+def test_its_history_has_what_it_did(server):
+    history = server.get("/models/scan/layers/cracks/edits").json()["edits"]
+    assert [edit["op"] for edit in history] == ["import", "stroke"], history
+
+
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

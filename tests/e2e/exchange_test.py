@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """What a project gives to reports, spreadsheets and other programs: quantities, texels as lines, workbooks, vertices."""
 import csv
 import datetime
@@ -6,13 +5,12 @@ import io
 import math
 import os
 import socket
-import sys
 import urllib.parse
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.meshes import folded_grid
 from support.ply import read_ply
-from support.strata_server import StrataServer, wait_for
+from support.strata_server import wait_for
 from support.workbook import Workbook
 
 XLSX = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
@@ -46,7 +44,13 @@ def new_layer(server, body, model=M):
     )
 
 
-def check_quantities_of_records(server):
+@pytest.fixture(scope="module")
+def server(server):
+    server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
+    return server
+
+
+def test_quantities_of_records(server, story):
     server.ok(
         "POST",
         "/projects/default/tables",
@@ -105,10 +109,10 @@ def check_quantities_of_records(server):
     ):
         answer = server.get(f"{pieces}/quantities?{query}")
         assert (answer.status, answer.json()["field"]) == (status, field), answer
-    return pieces
+    story.pieces = pieces
 
 
-def check_quantities_of_numbers(server):
+def test_quantities_of_numbers(server):
     palette = {"mode": "categorical", "points": [{"at": 3, "color": "#ff0000", "label": "Salt"}]}
     salt = new_layer(server, {"name": "Salt", "type": "i8", "palette": palette})
     assert server.get(salt + "/quantities").json()["quantities"] == []
@@ -167,42 +171,8 @@ def check_quantities_of_numbers(server):
     ], rows
 
 
-def check_quantities_of_a_table(server, pieces):
-    """One record on two models adds up."""
-    other = server.import_model(
-        folded_grid(fold=0.001, size=50.0), "small.ply", name="Small", unit="mm"
-    )
-    there = new_layer(
-        server,
-        {"name": "Pieces", "kind": "database", "type": "u8", "table": "pieces"},
-        model=f"/models/{other['slug']}",
-    )
-    dab(server, there, 2, 20, 20, 4)
-    dab(server, there, 3, 40, 40, 4)
-    here = {q["key"]: q for q in server.get(pieces + "/quantities").json()["quantities"]}
-    away = {q["key"]: q for q in server.get(there + "/quantities").json()["quantities"]}
-    table = server.get("/tables/pieces/quantities").json()
-    assert [q["key"] for q in table["quantities"]] == [1, 2, 3] and table["total"] == 3, table
-    both = table["quantities"][1]
-    near(both["area_m2"], here[2]["area_m2"] + away[2]["area_m2"], 1e-12)
-    assert both["pieces"] == 3 and len(both["layers"]) == 2 and both["has_record"], both
-    near(
-        table["sum"]["area_m2"], sum(q["area_m2"] for q in [*here.values(), *away.values()]), 1e-12
-    )
-    areas = {a["key"]: a["area_m2"] for a in server.get("/tables/pieces/areas").json()["areas"]}
-    assert set(areas) == {1, 2, 3}
-    for quantity in table["quantities"]:
-        near(quantity["area_m2"], areas[quantity["key"]], 1e-9)
-    rows = rows_of(server.get("/tables/pieces/quantities?f=csv"))
-    assert (
-        rows[1]["sheet/pieces area_m2"]
-        and rows[1]["small/pieces area_m2"]
-        and rows[0]["small/pieces area_m2"] == ""
-    ), rows
-    near(float(rows[3]["small/pieces area_m2"]), sum(q["area_m2"] for q in away.values()), 1e-12)
-
-
-def check_workbooks(server, pieces):
+def test_workbooks(server, story):
+    pieces = story.pieces
     columns = [
         {"name": "Code", "required": True, "unique": True},
         {"name": "Depth", "kind": "numeric"},
@@ -367,7 +337,8 @@ def aggregated(rows, edge, keys):
     }
 
 
-def check_texel_lines(server, pieces):
+def test_texel_lines(server, story):
+    pieces = story.pieces
     moisture = M + "/layers/moisture"
     rows = lines_of(server, moisture)
     statistics = server.get(moisture + "/statistics").json()
@@ -470,7 +441,7 @@ def check_texel_lines(server, pieces):
     assert b"chunked" not in head and body == first, head
 
 
-def check_vertices(server):
+def test_vertices(server):
     answer = server.get(M + "/vertices.ply?layers=moisture,salt,pieces")
     assert answer.headers["Content-Disposition"].endswith("sheet.ply") and int(
         answer.headers["Content-Length"]
@@ -530,17 +501,42 @@ def check_vertices(server):
         assert (answer.status, answer.json()["field"]) == (status, field), (query, answer)
 
 
-def main():
-    with StrataServer() as server:
-        server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
-        pieces = check_quantities_of_records(server)
-        check_quantities_of_numbers(server)
-        check_workbooks(server, pieces)
-        check_texel_lines(server, pieces)
-        check_vertices(server)
-        check_quantities_of_a_table(server, pieces)
-        assert server.stop() == 0
-        server.assert_clean_log()
+def test_quantities_of_a_table(server, story):
+    """One record on two models adds up."""
+    pieces = story.pieces
+    other = server.import_model(
+        folded_grid(fold=0.001, size=50.0), "small.ply", name="Small", unit="mm"
+    )
+    there = new_layer(
+        server,
+        {"name": "Pieces", "kind": "database", "type": "u8", "table": "pieces"},
+        model=f"/models/{other['slug']}",
+    )
+    dab(server, there, 2, 20, 20, 4)
+    dab(server, there, 3, 40, 40, 4)
+    here = {q["key"]: q for q in server.get(pieces + "/quantities").json()["quantities"]}
+    away = {q["key"]: q for q in server.get(there + "/quantities").json()["quantities"]}
+    table = server.get("/tables/pieces/quantities").json()
+    assert [q["key"] for q in table["quantities"]] == [1, 2, 3] and table["total"] == 3, table
+    both = table["quantities"][1]
+    near(both["area_m2"], here[2]["area_m2"] + away[2]["area_m2"], 1e-12)
+    assert both["pieces"] == 3 and len(both["layers"]) == 2 and both["has_record"], both
+    near(
+        table["sum"]["area_m2"], sum(q["area_m2"] for q in [*here.values(), *away.values()]), 1e-12
+    )
+    areas = {a["key"]: a["area_m2"] for a in server.get("/tables/pieces/areas").json()["areas"]}
+    assert set(areas) == {1, 2, 3}
+    for quantity in table["quantities"]:
+        near(quantity["area_m2"], areas[quantity["key"]], 1e-9)
+    rows = rows_of(server.get("/tables/pieces/quantities?f=csv"))
+    assert (
+        rows[1]["sheet/pieces area_m2"]
+        and rows[1]["small/pieces area_m2"]
+        and rows[0]["small/pieces area_m2"] == ""
+    ), rows
+    near(float(rows[3]["small/pieces area_m2"]), sum(q["area_m2"] for q in away.values()), 1e-12)
 
 
-main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

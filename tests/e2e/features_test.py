@@ -1,16 +1,13 @@
-#!/usr/bin/env python3
 """Outlines of classes, and lines and points of records, as GeoJSON and GeoPackage, read as other programs read them."""
 import contextlib
 import os
 import sqlite3
 import struct
-import sys
 import tempfile
 import urllib.parse
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.meshes import folded_grid
-from support.strata_server import StrataServer
 
 M, T = "/models/sheet", "/tables/damage"  # nearly flat, x and y from 0 to 100 mm
 TEXEL = 100 / 2048  # mm, at least
@@ -138,7 +135,13 @@ def features(server, layer, query=""):
     return answer.json()
 
 
-def check_classes(server):
+@pytest.fixture(scope="module")
+def server(server):
+    make(server)
+    return server
+
+
+def test_classes(server):
     made = features(server, "units")
     assert (made["type"], made["name"], made["unit"], made["axes"]) == (
         "FeatureCollection",
@@ -192,7 +195,7 @@ def check_classes(server):
     ) == 1
 
 
-def check_records(server):
+def test_records(server):
     made = features(server, "damage")["features"]
     kinds = [(feature["properties"]["kind"], feature["geometry"]["type"]) for feature in made]
     assert kinds == [
@@ -228,6 +231,22 @@ def check_records(server):
         0,
         80,
     ]
+
+
+def test_a_package_without_a_reference_system(server):
+    check_package(server, None)
+
+
+def test_a_reference_system_counts_in_its_unit(server):
+    server.ok("PATCH", M, {"crs": "EPSG:25832"})
+    assert "crs" not in features(server, "units"), "its coordinates are metres"
+    server.ok("PATCH", M, {"unit": "m"})
+    assert features(server, "units")["crs"] == {
+        "type": "name",
+        "properties": {"name": "urn:ogc:def:crs:EPSG::25832"},
+    }
+    assert "crs" not in features(server, "units", "along=-x"), "x and y alone are in it"
+    check_package(server, 25832, 1)
 
 
 def read_blob(blob, srs):
@@ -341,7 +360,7 @@ def check_package(server, epsg, metres=0.001):
         ) == [(80, 20, 80, 20)]
 
 
-def check_refusals(server):
+def test_refusals(server):
     L = M + "/layers/units/features"
     for query, status, field in (
         ("f=shp", 406, "f"),
@@ -362,7 +381,7 @@ def check_refusals(server):
         assert database.execute("SELECT count(*) FROM areas").fetchall() == [(0,)]
 
 
-def check_who_sees_what(server):
+def test_who_sees_what(server):
     vera = server.add_person("vera", "viewer")
     mine = features(server, "damage")["features"][0]["properties"]
     hers = server.get(M + "/layers/damage/features", token=vera).json()["features"][0]["properties"]
@@ -376,25 +395,6 @@ def check_who_sees_what(server):
     assert server.get(M + "/layers/damage/features", token=vera).status == 404
 
 
-def main():
-    with StrataServer() as server:
-        make(server)
-        check_classes(server)
-        check_records(server)
-        check_package(server, None)
-        server.ok("PATCH", M, {"crs": "EPSG:25832"})
-        assert "crs" not in features(server, "units"), "its coordinates are metres"
-        server.ok("PATCH", M, {"unit": "m"})
-        assert features(server, "units")["crs"] == {
-            "type": "name",
-            "properties": {"name": "urn:ogc:def:crs:EPSG::25832"},
-        }
-        assert "crs" not in features(server, "units", "along=-x"), "x and y alone are in it"
-        check_package(server, 25832, 1)
-        check_refusals(server)
-        check_who_sees_what(server)
-        assert server.stop() == 0
-        server.assert_clean_log()
-
-
-main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

@@ -1,14 +1,10 @@
-#!/usr/bin/env python3
 """Groups of people: each role that a project gives one, the highest that counts, what ends at once when it ends, and what is refused."""
-import os
-import sys
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.browsers import Browser, join, uncoloured
 from support.event_reader import EventReader
 from support.live_client import LiveClient, Refused
 from support.project_sites import Someone, make_sites, nothing_is_seen
-from support.strata_server import LONG_S, StrataServer
+from support.strata_server import LONG_S
 
 FILL = {"op": "fill", "mode": "where", "where": "true", "value": 1}
 
@@ -28,7 +24,19 @@ def projects_of(person):
     }
 
 
-def making(server):
+@pytest.fixture(scope="module")
+def villa(server):
+    return make_sites(server)["villa"]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def gus(server, villa):
+    gus = Someone(server, "Gus", "guest")
+    Someone(server, "Vera", "viewer")
+    return gus
+
+
+def test_making(server, story):
     """Made, read, renamed, filled and emptied; what is wrong is told, and changes nothing."""
     made = server.ok("POST", "/groups", {"name": "Students", "members": ["gus", "Vera", "GUS"]})
     students = made.json()
@@ -134,11 +142,12 @@ def making(server):
     server.ok("DELETE", f"/groups/{other['id']}")
     assert server.request("DELETE", f"/groups/{other['id']}").status == 404
     server.ok("PATCH", path, {"name": "Students"})
-    return students["id"]
+    story.group = students["id"]
 
 
-def foreign(server, group):
+def test_foreign(server, story):
     """Who is no administrator reads and changes nothing of it; nor do scripts change anything."""
+    group = story.group
     calls = [
         ("GET", "/groups", None),
         ("POST", "/groups", {"name": "Mine"}),
@@ -173,8 +182,9 @@ def foreign(server, group):
     anne.ok("DELETE", f"/groups/{made}")
 
 
-def ladder(server, gus, villa, group):
+def test_ladder(server, gus, villa, story):
     """By a group a guest may do in the villa what the role says, in turn from nothing to curator and back, and nothing in the forum."""
+    group = story.group
     model = "/models/" + villa["model"]["slug"]
     tries = (
         ("GET", model, None),
@@ -218,8 +228,13 @@ def ladder(server, gus, villa, group):
     assert server.get(model, token=token).status == 404
 
 
-def highest(server, gus, group):
+def test_nothing_is_seen_without_a_role(server, gus, villa):
+    nothing_is_seen(server, gus, villa)
+
+
+def test_the_highest_role_counts(server, gus, story):
     """Of one's own role and those of one's groups, and where it comes from is told."""
+    group = story.group
     diggers = server.ok("POST", "/groups", {"name": "Diggers", "members": ["Gus"]}).json()["id"]
     give(server, "villa", group, "annotator")
     give(server, "villa", diggers, "annotator")
@@ -269,8 +284,9 @@ def highest(server, gus, group):
     give(server, "villa", group, None)
 
 
-def ends_at_once(server, gus, villa, group):
+def test_ends_at_once(server, gus, villa, story):
     """Open connections and readers of events end with what a group gave, by whichever of its ends; who may still come in does so with the role they have now."""
+    group = story.group
     model = villa["model"]["slug"]
 
     def look():
@@ -310,7 +326,7 @@ def ends_at_once(server, gus, villa, group):
     assert projects_of(gus) == {}
 
 
-def coming_and_going(server):
+def test_coming_and_going(server):
     """The invited come with groups; the deleted leave them; what was done is told, in each project."""
     group = server.ok("POST", "/groups", {"name": "Season"}).json()["id"]
     give(server, "forum", group, "annotator")
@@ -352,24 +368,5 @@ def coming_and_going(server):
     ) and "person" not in last, last
 
 
-def main():
-    with StrataServer() as server:
-        sites = make_sites(server)
-        villa = sites["villa"]
-        gus = Someone(server, "Gus", "guest")
-        Someone(server, "Vera", "viewer")
-        group = making(server)
-        foreign(server, group)
-        ladder(server, gus, villa, group)
-        doors_tried = nothing_is_seen(server, gus, villa)
-        highest(server, gus, group)
-        ends_at_once(server, gus, villa, group)
-        coming_and_going(server)
-        server.assert_clean_log()
-    print(
-        f"groups: roles by groups, the highest counts, and ends at once; {doors_tried} doors closed afterwards"
-    )
-
-
-if __name__ == "__main__":
-    main()
+def test_the_log_is_clean(server):
+    server.assert_clean_log()

@@ -1,14 +1,10 @@
-#!/usr/bin/env python3
 """Hostile texts, names and files in every place of tables, records and attachments that takes them: refused, or kept as the text that they are."""
 import json
-import os
 import struct
-import sys
 import urllib.parse
 import zlib
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from support.strata_server import StrataServer
+import pytest
 
 TEXTS = [
     "'; DROP TABLE projects; --",
@@ -86,7 +82,18 @@ class Site:
         assert kept["values"]["note"] == "stays", f"{what}: {kept}"
 
 
-def texts_as_names(server, site):
+@pytest.fixture(scope="module", autouse=True)
+def site(server):
+    server.ok(
+        "POST",
+        "/projects/default/tables",
+        {"name": "Kept", "columns": [{"name": "Note"}, {"name": "Files", "kind": "document"}]},
+    )
+    server.ok("POST", "/tables/kept/records", {"values": {"note": "stays"}})
+    return Site(server)
+
+
+def test_texts_as_names(server, site):
     """As names of things they are names; what they name is found by its slug, which is made of letters."""
     for text in TEXTS:
         made = server.request(
@@ -131,7 +138,7 @@ def texts_as_names(server, site):
         site.check(repr(text))
 
 
-def texts_in_addresses(server, site):
+def test_texts_in_addresses(server, site):
     for text in TEXTS:
         q = quoted(text)
         for method, path in [
@@ -179,7 +186,7 @@ def texts_in_addresses(server, site):
         ), f"{path}: {answer}"
 
 
-def texts_in_bodies(server, site):
+def test_texts_in_bodies(server, site):
     for text in TEXTS:
         for body in [
             {"values": {text: "x"}},
@@ -211,7 +218,7 @@ def texts_in_bodies(server, site):
         site.check(repr(text))
 
 
-def names_of_files(server):
+def test_names_of_files(server):
     for text in TEXTS:
         made = server.request(
             "POST", f"/tables/kept/records/1/attachments?name={quoted(text)}", b"plain text"
@@ -261,7 +268,7 @@ def png_head(width, height):
     )
 
 
-def hostile_files(server):
+def test_hostile_files(server):
     """None is shown in our origin as anything that runs, whatever it is called and whatever type the sender says."""
     for name, body, media_type in [
         ("photo.jpg", b"<html><script>fetch('/api/v1/projects')</script>", "text/html"),
@@ -308,27 +315,10 @@ def hostile_files(server):
         assert server.get(path + "?thumbnail=256").status in (415, 422), name
 
 
-def main():
-    with StrataServer() as server:
-        server.ok(
-            "POST",
-            "/projects/default/tables",
-            {"name": "Kept", "columns": [{"name": "Note"}, {"name": "Files", "kind": "document"}]},
-        )
-        server.ok("POST", "/tables/kept/records", {"values": {"note": "stays"}})
-        site = Site(server)
-        texts_as_names(server, site)
-        texts_in_addresses(server, site)
-        texts_in_bodies(server, site)
-        names_of_files(server)
-        hostile_files(server)
-        site.check("all of it")
-        assert server.stop() == 0
-        server.assert_clean_log()
-    print(
-        f"{len(TEXTS)} hostile texts in every place, and hostile names and files: refused or harmless"
-    )
+def test_all_else_is_as_it_was(site):
+    site.check("all of it")
 
 
-if __name__ == "__main__":
-    main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

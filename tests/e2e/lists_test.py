@@ -1,19 +1,15 @@
-#!/usr/bin/env python3
 """Lists in pages: while others add and delete, a walk along `next` tells what is there all the time exactly once."""
 import base64
 import itertools
 import json
-import os
 import re
-import sys
 import threading
 import urllib.parse
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.meshes import folded_grid
 from support.pictures import png
-from support.strata_server import StrataServer
 
 M, T = "/models/sheet", "/tables/units"
 KEPT = 7  # entries of each list that are there all the time
@@ -102,7 +98,12 @@ def make_site(server):
     return camera_from(model, (0, 0, 1), up=(0, 1, 0))
 
 
-def records(server):
+@pytest.fixture(scope="module", autouse=True)
+def camera(server):
+    return make_site(server)
+
+
+def test_records(server):
     """Sorted by a column of each kind, both ways, with equal values and with none."""
     values = []
     for n in range(KEPT * 2):
@@ -176,7 +177,12 @@ def records(server):
     whole = [each["key"] for each in server.ok("GET", asked).json()["records"]]
     assert whole[0] == kept[3]
     check_walks(server, asked, "records", lambda entry: entry["key"], whole, churn)
-    return kept
+
+
+def test_lists_that_others_write(server, camera):
+    lists = lists_that_others_write(server, camera)
+    for (asked, member), (make, remove, name_of) in lists.items():
+        check_list(server, asked, member, make, remove, name_of)
 
 
 def lists_that_others_write(server, camera):
@@ -336,7 +342,7 @@ def check_list(server, asked, member, make, remove, name_of):
     ] and 'rel="prev"' in page.headers["Link"], asked
 
 
-def edits(server):
+def test_edits(server):
     """Newest first, while others paint: the journal grows at its head."""
     layer = M + "/layers/marks"
     server.ok("POST", M + "/layers", {"name": "Marks", "type": "u8"})
@@ -374,7 +380,7 @@ def edits(server):
     )
 
 
-def jobs(server):
+def test_jobs(server):
     """Newest first."""
     for _ in range(4):
         server.wait_for_job(
@@ -405,7 +411,7 @@ def encoded(value):
     return base64.urlsafe_b64encode(text).decode().rstrip("=")
 
 
-def nonsense(server):
+def test_nonsense(server):
     """What is no place in the list is refused, whatever it is."""
     cursor = next_of(server.ok("GET", T + "/records?limit=1")).partition("after=")[2]
     values = json.loads(base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)))
@@ -475,19 +481,6 @@ def nonsense(server):
             assert answer.status == 422 and answer.json()["field"] == "after", (path, wrong, answer)
 
 
-def main():
-    with StrataServer() as server:
-        camera = make_site(server)
-        records(server)
-        for (asked, member), (make, remove, name_of) in lists_that_others_write(
-            server, camera
-        ).items():
-            check_list(server, asked, member, make, remove, name_of)
-        edits(server)
-        jobs(server)
-        nonsense(server)
-        assert server.stop() == 0
-        server.assert_clean_log()
-
-
-main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

@@ -1,20 +1,18 @@
-#!/usr/bin/env python3
 """The live connection: who is here, bad clients, slow clients, and the server's orderly end."""
 import glob
 import json
 import os
 import signal
-import sys
 import threading
 import uuid
 from contextlib import ExitStack
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.live_client import LAST_RECTANGLE, Closed, LiveClient, Refused
 from support.meshes import folded_grid
 from support.process_memory import resident_mb
-from support.strata_server import StrataServer, wait_for
+from support.strata_server import wait_for
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 M, L = "/models/grid", "/models/grid/layers/marks"
@@ -25,7 +23,53 @@ def new_id():
     return str(uuid.uuid4())
 
 
-def check_upgrade(server):
+@pytest.fixture(scope="module")
+def server(server):
+    server.import_model(folded_grid(), "grid.ply", unit="mm", name="Grid")
+    for name in ("Marks", "Other"):
+        server.ok("POST", M + "/layers", {"name": name, "type": "u8"})
+    return server
+
+
+def wait_for_picture(live, seq):
+    while True:
+        frame = live.receive_until("frame")
+        if frame["flags"] & LAST_RECTANGLE and frame["camera_seq"] >= seq:
+            return
+
+
+def test_leaving(server):
+    """What the views of many took the system has again when they have left."""
+    model = server.get(M).json()
+    with ExitStack() as people:
+
+        def come(number):
+            live = people.enter_context(LiveClient(server, "grid"))
+            live.hello()
+            live.send(
+                {
+                    "op": "camera",
+                    "seq": 1,
+                    "moving": False,
+                    **camera_from(model, (0.3, number / VIEWERS, 1), 1280, 720),
+                }
+            )
+            wait_for_picture(live, 1)
+
+        come(0)
+        alone = resident_mb(server)
+        for number in range(1, VIEWERS):
+            come(number)
+        most = resident_mb(server)
+        assert (
+            most > alone + 8 * VIEWERS
+        ), f"{VIEWERS} views at rest take only {most - alone:.0f} MB: this test shows nothing"
+    wait_for(
+        lambda: resident_mb(server) < alone + (most - alone) / 2, "the memory of those who left"
+    )
+
+
+def test_upgrade(server):
     for what, model, more, status in (
         ("no token", "grid", {"token": ""}, 401),
         ("unknown token", "grid", {"token": "x" * 48}, 401),
@@ -46,7 +90,7 @@ def check_upgrade(server):
         assert live.hello()["model"]["slug"] == "grid"
 
 
-def check_sign_out(server):
+def test_sign_out(server):
     """Who signs out is out everywhere: the connections of the session end, those of others live on."""
 
     def sign_in():
@@ -86,7 +130,7 @@ def check_sign_out(server):
         raise AssertionError("a session that ended came in again")
 
 
-def check_bad_messages(server):
+def test_bad_messages(server):
     """Every invalid fixture of the protocol gets a problem that names the field, and the connection lives on."""
     fixtures = sorted(glob.glob(os.path.join(ROOT, "protocol", "fixtures", "invalid", "*.json")))
     with LiveClient(server, "grid") as live:
@@ -175,7 +219,7 @@ def check_bad_messages(server):
     assert server.get(L).json()["sequence"] == 0, "a refused message painted"
 
 
-def check_presence(server):
+def test_presence(server):
     """Who is here: names, colours, pointers with the brush in hand; whom somebody follows, and of cameras only theirs."""
     with LiveClient(server, "grid") as one, LiveClient(server, "grid") as two, LiveClient(
         server, "grid"
@@ -245,7 +289,7 @@ def check_presence(server):
         ), users
 
 
-def check_colors(server):
+def test_colors(server):
     """Who looks at one model is told apart by colour, as long as there are colours; somebody at two browsers has one."""
     tokens = [server.add_person(f"guest{i}", "viewer") for i in range(5)]
     lives = [LiveClient(server, "grid", token=token) for token in [*tokens, tokens[0]]]
@@ -262,14 +306,7 @@ def check_colors(server):
             live.socket.close()
 
 
-def wait_for_picture(live, seq):
-    while True:
-        frame = live.receive_until("frame")
-        if frame["flags"] & LAST_RECTANGLE and frame["camera_seq"] >= seq:
-            return
-
-
-def check_slow_client(server):
+def test_slow_client(server):
     """Two people who never read do not hold up a third: pictures and saved edits go on."""
     model = server.get(M).json()
     cameras = [
@@ -311,38 +348,7 @@ def check_slow_client(server):
     assert server.get("//livez").status == 200
 
 
-def check_leaving(server):
-    """What the views of many took the system has again when they have left."""
-    model = server.get(M).json()
-    with ExitStack() as people:
-
-        def come(number):
-            live = people.enter_context(LiveClient(server, "grid"))
-            live.hello()
-            live.send(
-                {
-                    "op": "camera",
-                    "seq": 1,
-                    "moving": False,
-                    **camera_from(model, (0.3, number / VIEWERS, 1), 1280, 720),
-                }
-            )
-            wait_for_picture(live, 1)
-
-        come(0)
-        alone = resident_mb(server)
-        for number in range(1, VIEWERS):
-            come(number)
-        most = resident_mb(server)
-        assert (
-            most > alone + 8 * VIEWERS
-        ), f"{VIEWERS} views at rest take only {most - alone:.0f} MB: this test shows nothing"
-    wait_for(
-        lambda: resident_mb(server) < alone + (most - alone) / 2, "the memory of those who left"
-    )
-
-
-def check_end(server):
+def test_what_was_answered_before_the_end_is_kept(server, story):
     """SIGTERM in mid-load: what was answered is kept, what is refused is not there, and the exit status is 0."""
     answered, refused = [], []
     go_on = threading.Event()
@@ -397,27 +403,9 @@ def check_end(server):
         row["sequence"] for row in server.get(M + "/layers/other/edits?limit=1000").json()["edits"]
     }
     assert set(answered) <= kept, sorted(set(answered) - kept)
-    return len(answered)
+    story.answered = len(answered)
 
 
-def main():
-    with StrataServer() as server:
-        server.import_model(folded_grid(), "grid.ply", unit="mm", name="Grid")
-        for name in ("Marks", "Other"):
-            server.ok("POST", M + "/layers", {"name": name, "type": "u8"})
-        check_leaving(server)  # first: others' leftovers would be used again
-        check_upgrade(server)
-        check_sign_out(server)
-        check_bad_messages(server)
-        check_presence(server)
-        check_colors(server)
-        check_slow_client(server)
-        answered = check_end(server)
-        assert server.stop() == 0
-        server.assert_clean_log()
-    print(
-        f"upgrades, messages, slow clients; {answered} edits were answered before the end and are kept"
-    )
-
-
-main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

@@ -1,17 +1,14 @@
-#!/usr/bin/env python3
 """Locked layers, over HTTP and live: every way by which texels change is shut to annotators, and open to curators."""
 import hashlib
-import os
-import sys
 import urllib.parse
 import uuid
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.live_client import LiveClient
 from support.maps import square, tiff
 from support.meshes import folded_grid
-from support.strata_server import StrataServer, wait_for
+from support.strata_server import wait_for
 
 M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
 L = M + "/layers/cracks"
@@ -63,7 +60,53 @@ def is_refused(answer, name):
     assert problem["title"] == "Layer locked" and problem["field"] == "layer", answer
 
 
-def check_doors(server, annotator, curator, camera):
+@pytest.fixture(scope="module")
+def server(server):
+    server.import_model(
+        folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048
+    )
+    legend = {"mode": "categorical", "points": [{"at": 5, "color": "#112233", "label": "Moss"}]}
+    server.ok("POST", M + "/layers", {"name": "Cracks", "type": "u8"})
+    server.ok(
+        "POST",
+        M + "/layers",
+        {"name": "Units", "kind": "database", "type": "u16", "palette": legend},
+    )
+    server.ok(
+        "POST",
+        M + "/layers",
+        {"name": "Open units", "kind": "database", "type": "u16", "table": "units"},
+    )
+    for name in ("First", "Second"):
+        server.ok("POST", "/tables/units/records", {"values": {"name": name}})
+    return server
+
+
+@pytest.fixture(scope="module")
+def camera(server):
+    return camera_from(server.get(M).json(), (0, 0, 1), up=(0, 1, 0))
+
+
+def token_of(server, role):
+    return server.ok("POST", "/me/tokens", {"name": role, "role": role}).json()["secret"]
+
+
+@pytest.fixture(scope="module")
+def viewer(server):
+    return token_of(server, "viewer")
+
+
+@pytest.fixture(scope="module")
+def annotator(server):
+    return token_of(server, "annotator")
+
+
+@pytest.fixture(scope="module")
+def curator(server):
+    return token_of(server, "curator")
+
+
+def test_doors(server, annotator, curator, camera):
     """Over HTTP. Each of them changes something when a curator comes in."""
     seen = {"camera": camera}
     stroke = {"op": "stroke", "value": 11, **seen, "radius_px": 8, "path": [[300, 200], [340, 220]]}
@@ -159,7 +202,7 @@ def check_doors(server, annotator, curator, camera):
     print("doors: ok", flush=True)
 
 
-def check_settings(server, annotator, viewer):
+def test_settings(server, annotator, viewer):
     """What a layer is stays a curator's affair, locked or not."""
     for locked in (False, True):
         lock(server, "cracks", locked)
@@ -207,103 +250,11 @@ def check_settings(server, annotator, viewer):
     print("settings: ok", flush=True)
 
 
-def check_records(server, annotator, curator):
-    """A record that is painted on a locked layer keeps its texels, on every layer."""
-    for layer in ("units", "open-units"):
-        server.ok(
-            "POST",
-            query(f"{M}/layers/{layer}/polygons", value=1),
-            geojson(1, 10, 10, 20),
-            headers={"Content-Type": "application/geo+json"},
-        )
-    lock(server, "units")
-    before = state(server)
-    for texels_go in ("texels=clear", "texels=reassign&to=2"):
-        for path in ("/tables/units/records/1?", M + "/layers/open-units/records/1?"):
-            is_refused(server.request("DELETE", path + texels_go, token=annotator), "Units")
-            assert state(server) == before, texels_go
-    # It was not retired: it is painted, and changed, as before.
-    server.ok(
-        "POST",
-        M + "/layers/open-units/edits",
-        {"op": "fill", "mode": "where", "where": '"open-units" = 1', "value": 1},
-        token=annotator,
-    )
-    server.ok("PATCH", "/tables/units/records/1", {"values": {"name": "One"}}, token=annotator)
-    # Nor makes a map records for a layer that it may not paint.
-    body, headers = geojson(5, 60, 60, 20), {"Content-Type": "application/geo+json"}
-    before = state(server)
-    is_refused(
-        server.request(
-            "POST",
-            query(M + "/layers/units/polygons", attribute="value"),
-            body,
-            headers=headers,
-            token=annotator,
-        ),
-        "Units",
-    )
-    assert state(server) == before
-    server.ok(
-        "POST",
-        query(M + "/layers/units/polygons", attribute="value"),
-        body,
-        headers=headers,
-        token=curator,
-    )
-    assert server.get("/tables/units/records/5").json()["values"]["name"] == "Moss"
-    then = texels(server, "units")
-    server.ok("DELETE", "/tables/units/records/1?texels=reassign&to=2", token=curator)
-    assert texels(server, "units") != then and server.get("/tables/units/records/1").status == 404
-    then = texels(server, "units")
-    server.ok("DELETE", "/tables/units/records/2?texels=clear", token=curator)
-    assert texels(server, "units") != then
-    print("records: ok", flush=True)
-
-
-def check_computed(server, annotator, curator):
-    server.ok("POST", M + "/layers", {"name": "Twice", "expression": "cracks * 2"})
-    assert server.get(M + "/layers/twice").json()["locked"] is True, "what was computed is locked"
-    change = lambda value: server.ok(
-        "POST",
-        query(L + "/readings", radius_mm=4),
-        f"x,y,z,value\n80,80,0,{value}\n",
-        headers={"Content-Type": "text/csv"},
-    )
-    change(30)
-    then = texels(server, "twice")
-    is_refused(server.post(M + "/layers/twice/compute", token=annotator), "Twice")
-    assert (
-        texels(server, "twice") == then and server.get(M + "/layers/twice").json()["stale"] is True
-    )
-    server.ok("POST", M + "/layers/twice/compute", token=curator)
-    then = texels(server, "twice")
-    # The server itself follows what the layer is computed from: the lock is for people.
-    server.ok("PATCH", M + "/layers/twice", {"recompute": "automatic"})
-    change(31)
-    wait_for(lambda: texels(server, "twice") != then, "a locked automatic layer to follow")
-    assert server.get(M + "/layers/twice").json()["locked"] is True
-    # Who copies layers to another scan goes on there.
-    server.import_model(folded_grid(fold=0.001), "again.ply", name="Again", unit="mm")
-    job = server.wait_for_job(
-        server.ok(
-            "POST",
-            "/models/again/transfer",
-            {"from": "sheet", "layers": ["twice"], "tolerance_mm": 1},
-        ).json()["id"]
-    )
-    assert (
-        job["state"] == "done"
-        and server.get(f"/models/again/layers/{job['layers'][0]}").json()["locked"] is False
-    ), job
-    print("computed: ok", flush=True)
-
-
 def new():
     return str(uuid.uuid4())
 
 
-def check_live(server, annotator, curator, camera):
+def test_live(server, annotator, curator, camera):
     lock(server, "cracks", False)
     with LiveClient(server, "sheet", token=annotator) as ada, LiveClient(
         server, "sheet", token=curator
@@ -396,7 +347,99 @@ def check_live(server, annotator, curator, camera):
     print("live: ok", flush=True)
 
 
-def check_repeats(server, annotator):
+def test_records(server, annotator, curator):
+    """A record that is painted on a locked layer keeps its texels, on every layer."""
+    for layer in ("units", "open-units"):
+        server.ok(
+            "POST",
+            query(f"{M}/layers/{layer}/polygons", value=1),
+            geojson(1, 10, 10, 20),
+            headers={"Content-Type": "application/geo+json"},
+        )
+    lock(server, "units")
+    before = state(server)
+    for texels_go in ("texels=clear", "texels=reassign&to=2"):
+        for path in ("/tables/units/records/1?", M + "/layers/open-units/records/1?"):
+            is_refused(server.request("DELETE", path + texels_go, token=annotator), "Units")
+            assert state(server) == before, texels_go
+    # It was not retired: it is painted, and changed, as before.
+    server.ok(
+        "POST",
+        M + "/layers/open-units/edits",
+        {"op": "fill", "mode": "where", "where": '"open-units" = 1', "value": 1},
+        token=annotator,
+    )
+    server.ok("PATCH", "/tables/units/records/1", {"values": {"name": "One"}}, token=annotator)
+    # Nor makes a map records for a layer that it may not paint.
+    body, headers = geojson(5, 60, 60, 20), {"Content-Type": "application/geo+json"}
+    before = state(server)
+    is_refused(
+        server.request(
+            "POST",
+            query(M + "/layers/units/polygons", attribute="value"),
+            body,
+            headers=headers,
+            token=annotator,
+        ),
+        "Units",
+    )
+    assert state(server) == before
+    server.ok(
+        "POST",
+        query(M + "/layers/units/polygons", attribute="value"),
+        body,
+        headers=headers,
+        token=curator,
+    )
+    assert server.get("/tables/units/records/5").json()["values"]["name"] == "Moss"
+    then = texels(server, "units")
+    server.ok("DELETE", "/tables/units/records/1?texels=reassign&to=2", token=curator)
+    assert texels(server, "units") != then and server.get("/tables/units/records/1").status == 404
+    then = texels(server, "units")
+    server.ok("DELETE", "/tables/units/records/2?texels=clear", token=curator)
+    assert texels(server, "units") != then
+    print("records: ok", flush=True)
+
+
+def test_computed(server, annotator, curator):
+    server.ok("POST", M + "/layers", {"name": "Twice", "expression": "cracks * 2"})
+    assert server.get(M + "/layers/twice").json()["locked"] is True, "what was computed is locked"
+    change = lambda value: server.ok(
+        "POST",
+        query(L + "/readings", radius_mm=4),
+        f"x,y,z,value\n80,80,0,{value}\n",
+        headers={"Content-Type": "text/csv"},
+    )
+    change(30)
+    then = texels(server, "twice")
+    is_refused(server.post(M + "/layers/twice/compute", token=annotator), "Twice")
+    assert (
+        texels(server, "twice") == then and server.get(M + "/layers/twice").json()["stale"] is True
+    )
+    server.ok("POST", M + "/layers/twice/compute", token=curator)
+    then = texels(server, "twice")
+    # The server itself follows what the layer is computed from: the lock is for people.
+    server.ok("PATCH", M + "/layers/twice", {"recompute": "automatic"})
+    change(31)
+    wait_for(lambda: texels(server, "twice") != then, "a locked automatic layer to follow")
+    assert server.get(M + "/layers/twice").json()["locked"] is True
+    # Who copies layers to another scan goes on there.
+    server.import_model(folded_grid(fold=0.001), "again.ply", name="Again", unit="mm")
+    job = server.wait_for_job(
+        server.ok(
+            "POST",
+            "/models/again/transfer",
+            {"from": "sheet", "layers": ["twice"], "tolerance_mm": 1},
+        ).json()["id"]
+    )
+    assert (
+        job["state"] == "done"
+        and server.get(f"/models/again/layers/{job['layers'][0]}").json()["locked"] is False
+    ), job
+    print("computed: ok", flush=True)
+
+
+def test_repeats(server, annotator):
     """What was saved before the lock fell is told again, also after a restart."""
     edit = {"op": "fill", "mode": "where", "where": "cracks > 0", "value": 50}
     send = lambda: server.post(
@@ -415,38 +458,6 @@ def check_repeats(server, annotator):
     print("repeats: ok", flush=True)
 
 
-def main():
-    with StrataServer() as server:
-        model = server.import_model(
-            folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048
-        )
-        camera = camera_from(model, (0, 0, 1), up=(0, 1, 0))
-        legend = {"mode": "categorical", "points": [{"at": 5, "color": "#112233", "label": "Moss"}]}
-        server.ok("POST", M + "/layers", {"name": "Cracks", "type": "u8"})
-        server.ok(
-            "POST",
-            M + "/layers",
-            {"name": "Units", "kind": "database", "type": "u16", "palette": legend},
-        )
-        server.ok(
-            "POST",
-            M + "/layers",
-            {"name": "Open units", "kind": "database", "type": "u16", "table": "units"},
-        )
-        for name in ("First", "Second"):
-            server.ok("POST", "/tables/units/records", {"values": {"name": name}})
-        viewer, annotator, curator = (
-            server.ok("POST", "/me/tokens", {"name": role, "role": role}).json()["secret"]
-            for role in ("viewer", "annotator", "curator")
-        )
-        check_doors(server, annotator, curator, camera)
-        check_settings(server, annotator, viewer)
-        check_live(server, annotator, curator, camera)
-        check_records(server, annotator, curator)
-        check_computed(server, annotator, curator)
-        check_repeats(server, annotator)
-        assert server.stop() == 0
-        server.assert_clean_log()
-
-
-main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

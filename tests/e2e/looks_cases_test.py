@@ -1,16 +1,14 @@
-#!/usr/bin/env python3
 """Looks, light, sections and scans of several files, over HTTP and from the command line."""
 import os
 import subprocess
-import sys
 import tempfile
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.maps import tiff
 from support.meshes import bumpy_ball
 from support.pictures import bmp, pixels, png, tga
-from support.strata_server import LONG_S, StrataServer
+from support.strata_server import LONG_S
 
 M = "/models/ball"
 
@@ -23,7 +21,19 @@ def frame(server, **request):
 RED = {"Content-Type": "image/png"}
 
 
-def check_looks(server, camera):
+@pytest.fixture(scope="module", autouse=True)
+def camera(server):
+    model = server.import_model(bumpy_ball(), "ball.ply", unit="mm", name="Ball")
+    return camera_from(model, (0, -1, 0))
+
+
+@pytest.fixture
+def folder():
+    with tempfile.TemporaryDirectory() as folder:
+        yield folder
+
+
+def test_looks(server, camera):
     picture = png(64, 32, lambda x, y: (255, 0, 0))
     assert server.get(M + "/looks").json() == {"looks": [], "total": 0}
     made = server.ok(
@@ -199,7 +209,7 @@ def check_looks(server, camera):
     assert center(frame(server, camera=camera, light={"mode": "unlit"})) == plain
 
 
-def check_raking(server, camera):
+def test_raking(server, camera):
     left, right = (
         frame(server, camera=camera, light={"mode": "raking", "direction": [x, 0, 0.3]})
         for x in (-1, 1)
@@ -209,7 +219,7 @@ def check_raking(server, camera):
     assert at(left, 0.42) > at(left, 0.58) + 60 and at(right, 0.58) > at(right, 0.42) + 60
 
 
-def check_section(server, camera):
+def test_section(server, camera):
     """A stroke's record holds its section: what is cut away takes no paint, and the answer is the same after a repeat."""
     server.ok("POST", M + "/layers", {"name": "Inside", "type": "u8", "resolution": 2048})
     # keeps y above 0: the half that is away from the eye
@@ -238,7 +248,7 @@ OBJ = b"mtllib scan.mtl\nv 0 0 0\nv 90 0 0\nv 0 90 0\nv 0 0 90\nvt 0 0\nvt 1 0\n
 MTL = b"newmtl a\nmap_Kd color.png\n"
 
 
-def check_several_files(server, folder):
+def test_several_files(server, folder):
     texture = png(16, 16, lambda x, y: (0, 200, 0))
     files = {"scan.obj": OBJ, "scan.mtl": MTL, "color.png": texture}
     form = (
@@ -299,18 +309,6 @@ def check_several_files(server, folder):
     assert not os.listdir(os.path.join(server.data, "uploads"))
 
 
-def main():
-    with StrataServer() as server, tempfile.TemporaryDirectory() as folder:
-        model = server.import_model(bumpy_ball(), "ball.ply", unit="mm", name="Ball")
-        camera = camera_from(model, (0, -1, 0))
-        check_looks(server, camera)
-        check_raking(server, camera)
-        check_section(server, camera)
-        check_several_files(server, folder)
-        assert server.stop() == 0
-        server.assert_clean_log()
-    print("looks, light, sections and scans of several files: good")
-
-
-if __name__ == "__main__":
-    main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

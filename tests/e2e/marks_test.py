@@ -1,18 +1,14 @@
-#!/usr/bin/env python3
 """Lines and points that records have on the surface: cracks by the metre, samples by number; over HTTP, in pictures, in tables, and on another version of the scan."""
 import csv
 import io
 import math
-import os
-import sys
 import urllib.parse
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.live_client import LiveClient
 from support.meshes import folded_grid
 from support.pictures import pixels
-from support.strata_server import StrataServer
 
 M, T = "/models/sheet", "/tables/damage"  # nearly flat, x and y from 0 to 100 mm
 L = M + "/layers/damage"
@@ -61,7 +57,17 @@ def make(server):
     return model
 
 
-def write(server, model):
+@pytest.fixture(scope="module", autouse=True)
+def model(server):
+    return make(server)
+
+
+@pytest.fixture
+def camera(server):
+    return camera_from(server.get(M).json(), (0, 0, 1), up=(0, 1, 0))
+
+
+def test_write(server, model):
     crack = [
         line(model, (20, 50, 0), (50, 50, 0), (50, 90, 0)),
         line(model, (10, 10, 0), (10, 20, 0)),
@@ -127,7 +133,7 @@ def write(server, model):
     )
 
 
-def tables(server):
+def test_tables(server):
     """What spreadsheets and reports get, and what comes back from them."""
     text = server.ok("GET", T + "/records?f=csv").body.decode("utf-8-sig")
     rows = list(csv.DictReader(io.StringIO(text)))
@@ -171,7 +177,7 @@ def tables(server):
     server.ok("PATCH", M, {"unit": "mm"}, headers={"If-Match": etag})
 
 
-def extents(server):
+def test_extents(server):
     """Where records lie that have lines and points, and nothing painted."""
     extent = server.ok("POST", L + "/extent", {"keys": [1]}).json()
     assert (extent["records"], extent["painted"], extent["marked"], extent["area_m2"]) == (
@@ -210,7 +216,7 @@ def count(rows, color):
     return sum(all(abs(a - b) <= 30 for a, b in zip(pixel, color)) for row in rows for pixel in row)
 
 
-def pictures(server, camera):
+def test_pictures(server, camera):
     def shown(**more):
         rows = pixels(
             server.ok(
@@ -238,7 +244,7 @@ def pictures(server, camera):
     assert count(behind, RED) > 0, "the sheet is thin: both sides show what lies on it"
 
 
-def live(server, model):
+def test_live(server, model):
     """Who is on the model hears of a line that somebody else writes."""
     with LiveClient(server, "sheet") as viewer:
         viewer.hello(dpr=1, accept=["jpeg"])
@@ -252,7 +258,7 @@ def live(server, model):
     server.ok("POST", T + "/undo")
 
 
-def history(server):
+def test_history(server):
     before = server.ok("GET", T + "/records/1").json()
     sequence = int(server.get(T + "/records").headers["Strata-Sequence"])
     server.ok("PATCH", T + "/records/1", {"values": {"crack": None}})
@@ -267,7 +273,7 @@ def history(server):
     near(server.ok("GET", T + "/records/1").json()["length_m"], 0.080)
 
 
-def past_pictures(server, camera):
+def test_past_pictures(server, camera):
     """A picture of the past shows the lines of when its edit was made."""
 
     def dab(x):
@@ -298,7 +304,7 @@ def past_pictures(server, camera):
     assert shown() == before
 
 
-def transfer(server):
+def test_transfer(server):
     """A second scan of the same wall, half as large: what lies on its half comes over, snapped to its surface."""
     half = folded_grid(size=60.0, fold=0.001)
     server.import_model(half, "half.ply", name="Half", unit="mm")
@@ -334,21 +340,6 @@ def transfer(server):
     assert math.isclose(server.ok("GET", L + "/records/1").json()["length_m"], 0.080)
 
 
-def main():
-    with StrataServer() as server:
-        model = make(server)
-        write(server, model)
-        tables(server)
-        extents(server)
-        camera = camera_from(server.get(M).json(), (0, 0, 1), up=(0, 1, 0))
-        pictures(server, camera)
-        live(server, model)
-        history(server)
-        past_pictures(server, camera)
-        transfer(server)
-        assert server.stop() == 0
-        server.assert_clean_log()
-
-
-if __name__ == "__main__":
-    main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

@@ -1,19 +1,38 @@
-#!/usr/bin/env python3
 """Roles in one project: what a guest sees of the others (nothing, through every door of the contract), and what each role does in its own."""
-import os
-import sys
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.browsers import uncoloured
 from support.live_client import LiveClient, Refused
 from support.meshes import folded_grid
 from support.project_sites import Someone, make_sites, nothing_is_seen
-from support.strata_server import StrataServer
 
 FILL = {"op": "fill", "mode": "where", "where": "true", "value": 1}
 
 
-def ladder(server, guest, villa, forum):
+@pytest.fixture(scope="module")
+def sites(server):
+    return make_sites(server)
+
+
+@pytest.fixture(scope="module")
+def villa(sites):
+    return sites["villa"]
+
+
+@pytest.fixture(scope="module")
+def forum(sites):
+    return sites["forum"]
+
+
+@pytest.fixture(scope="module")
+def guest(server, sites):
+    return Someone(server, "Gus", "guest")
+
+
+def test_nothing_is_seen_without_a_role(server, guest, villa):
+    nothing_is_seen(server, guest, villa)
+
+
+def test_ladder(server, guest, villa, forum):
     """In the villa, from nothing to curator and back."""
     model, table = "/models/" + villa["model"]["slug"], f"/tables/{villa['table']['id']}"
     tries = (
@@ -81,7 +100,11 @@ def ladder(server, guest, villa, forum):
     ].replace(forum["model"]["slug"], "ghost") == refused[1].json()["detail"], refused
 
 
-def scripts(server, guest, villa):
+def test_nothing_is_seen_of_another_project(server, guest, forum):
+    nothing_is_seen(server, guest, forum)
+
+
+def test_scripts(server, guest, villa):
     """A token does no more than its own role, in every project."""
 
     def token(**asked):
@@ -107,7 +130,7 @@ def scripts(server, guest, villa):
     ), "scripts change nobody's role"
 
 
-def both(server, villa, forum):
+def test_both(server, villa, forum):
     """Who may look everywhere does more where they have a role, and no less elsewhere."""
     vera = Someone(server, "Vera", "viewer")
     vera.now("villa", "curator")
@@ -139,7 +162,7 @@ def both(server, villa, forum):
     assert "Vera" not in str(server.ok("GET", "/projects/villa/members").json())
 
 
-def live(server, guest, villa):
+def test_live(server, guest, villa):
     """An open connection ends with the role, and another one has the new role."""
 
     def look():
@@ -159,23 +182,9 @@ def live(server, guest, villa):
         assert refused.status == 404, refused
 
 
-def main():
-    with StrataServer() as server:
-        sites = make_sites(server)
-        villa, forum = sites["villa"], sites["forum"]
-        guest = Someone(server, "Gus", "guest")
-        doors_tried = nothing_is_seen(server, guest, villa)
-        ladder(server, guest, villa, forum)
-        nothing_is_seen(server, guest, forum)
-        scripts(server, guest, villa)
-        both(server, villa, forum)
-        live(server, guest, villa)
-        nothing_is_seen(server, guest, villa)
-        server.assert_clean_log()
-    print(
-        f"project roles: {doors_tried} doors closed to a guest; roles, tokens and connections follow the project"
-    )
+def test_nothing_is_seen_afterwards(server, guest, villa):
+    nothing_is_seen(server, guest, villa)
 
 
-if __name__ == "__main__":
-    main()
+def test_the_log_is_clean(server):
+    server.assert_clean_log()

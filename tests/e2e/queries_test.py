@@ -1,14 +1,10 @@
-#!/usr/bin/env python3
 """Questions over HTTP: statistics with their parts, of the past, where a condition holds; selections, cross-tables, refusals."""
 import math
-import os
-import sys
 import urllib.parse
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.meshes import folded_grid
-from support.strata_server import StrataServer
 
 M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
 
@@ -37,7 +33,24 @@ def near(a, b, share):
     assert abs(a - b) <= share * abs(b), (a, b)
 
 
-def check_statistics(server, marks):
+@pytest.fixture(scope="module")
+def server(server):
+    server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
+    layer(server, "Depth", "f32")
+    return server
+
+
+@pytest.fixture(scope="module")
+def marks(server):
+    return layer(server, "Marks")
+
+
+@pytest.fixture(scope="module")
+def risk(server):
+    return layer(server, "Risk")
+
+
+def test_statistics(server, marks):
     first = dab(server, marks, 3, 30, 30, 10)
     told = server.get(marks + "/edits").json()["edits"][0]["time"]
     dab(server, marks, 5, 70, 30, 5)
@@ -92,7 +105,7 @@ def check_statistics(server, marks):
     )
 
 
-def check_selections(server, marks, risk):
+def test_selections(server, marks, risk):
     body = {"where": "marks = 5", "layers": ["marks"], "include": ["pieces", "perimeter"]}
     selected = server.ok("POST", M + "/select", body).json()
     near(selected["area_m2"], 50 * math.pi * 1e-6, 0.03)
@@ -150,7 +163,7 @@ def check_selections(server, marks, risk):
         )
 
 
-def check_cross_table(server, marks):
+def test_cross_table(server, marks):
     units = layer(server, "Units", "u16")
     dab(server, units, 1000, 30, 30, 20)
     dab(server, units, 1001, 70, 30, 20)
@@ -177,7 +190,7 @@ def check_cross_table(server, marks):
     )
 
 
-def check_profile(server, marks):
+def test_profile(server, marks):
     asked = {"places": [[10, 30, 5], [50, 30, 5]], "step_mm": 0.1, "layers": ["marks"]}
     profile = server.ok("POST", M + "/profile", asked).json()
     near(profile["length_mm"], 40, 0.01)
@@ -215,17 +228,6 @@ def check_profile(server, marks):
         )
 
 
-def main():
-    with StrataServer() as server:
-        server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
-        marks, risk = layer(server, "Marks"), layer(server, "Risk")
-        layer(server, "Depth", "f32")
-        check_statistics(server, marks)
-        check_selections(server, marks, risk)
-        check_cross_table(server, marks)
-        check_profile(server, marks)
-        assert server.stop() == 0
-        server.assert_clean_log()
-
-
-main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

@@ -1,16 +1,12 @@
-#!/usr/bin/env python3
 """Edits that wait for review, over HTTP and live: who decides, what is told to whom, and what is refused."""
 import hashlib
-import os
-import sys
 import uuid
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.browsers import uncoloured
 from support.cameras import camera_from
 from support.live_client import LiveClient
 from support.meshes import folded_grid
-from support.strata_server import StrataServer
 
 M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
 L = M + "/layers/cracks"
@@ -71,7 +67,26 @@ class Site:
         )
 
 
-def check_life(site, camera):
+@pytest.fixture(scope="module")
+def server(server):
+    server.import_model(
+        folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048
+    )
+    server.ok("POST", M + "/layers", {"name": "Cracks", "type": "u8"})
+    return server
+
+
+@pytest.fixture(scope="module")
+def camera(server):
+    return camera_from(server.get(M).json(), (0, 0, 1), up=(0, 1, 0))
+
+
+@pytest.fixture(scope="module")
+def site(server):
+    return Site(server)
+
+
+def test_an_edit_waits_and_is_decided(site, camera):
     server = site.server
     clear = texels(server)
     before = server.ok("GET", L).json()
@@ -146,7 +161,7 @@ def check_life(site, camera):
     print("life: ok", flush=True)
 
 
-def check_refusals(site):
+def test_refusals(site):
     server = site.server
     then, count = texels(server), waiting(server)["total"]
     for body, field in (
@@ -211,7 +226,7 @@ def check_refusals(site):
     print("refusals: ok", flush=True)
 
 
-def check_live(site, camera):
+def test_live(site, camera):
     server = site.server
     with LiveClient(server, "sheet", token=site.anna) as anna, LiveClient(
         server, "sheet", token=site.ben
@@ -265,7 +280,7 @@ def check_live(site, camera):
     print("live: ok", flush=True)
 
 
-def check_restart(site, camera):
+def test_restart(site, camera):
     server = site.server
     made = site.dab(camera, 360, site.anna)
     picture = lambda: hashlib.sha256(
@@ -278,22 +293,3 @@ def check_restart(site, camera):
     assert site.decide("accept", site.cleo, edits=[made["sequence"]]).status == 200
     assert picture() != marked
     print("restart: ok", flush=True)
-
-
-def main():
-    with StrataServer() as server:
-        model = server.import_model(
-            folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048
-        )
-        camera = camera_from(model, (0, 0, 1), up=(0, 1, 0))
-        server.ok("POST", M + "/layers", {"name": "Cracks", "type": "u8"})
-        site = Site(server)
-        check_life(site, camera)
-        check_refusals(site)
-        check_live(site, camera)
-        check_restart(site, camera)
-    print("review: ok")
-
-
-if __name__ == "__main__":
-    main()

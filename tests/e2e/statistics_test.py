@@ -1,9 +1,7 @@
-#!/usr/bin/env python3
 """A layer that is filled everywhere has the model's area, on generated and on real scans."""
 import os
-import sys
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.strata_server import StrataServer
 
 DATA = os.environ.get("STRATA_TEST_DATA", "")
@@ -41,28 +39,39 @@ def read(name):
         return file.read()
 
 
-def main():
-    has_scans = os.path.isdir(DATA)
+needs_scans = pytest.mark.skipif(
+    not os.path.isdir(DATA), reason=f"there is no folder {DATA or '(STRATA_TEST_DATA is not set)'}"
+)
+
+
+@pytest.fixture(scope="module")
+def server():
     with StrataServer(demo=True) as server:
-        check(server, server.get("/models/demo-pot").json())
-        if has_scans:
-            check(
-                server,
-                server.import_model(
-                    read("statue_nefertiti_70k.ply"), "statue_nefertiti_70k.ply", unit="mm"
-                ),
-            )
-            mask = server.import_model(read("mask_bali/mask.obj"), "mask.obj", unit="m")
-            # its own texture coordinates are kept
-            assert mask["atlas"]["source"] == "file", mask["atlas"]
-            assert 0 <= mask["atlas"]["overlap"] < 0.005, mask["atlas"]
-            check(server, mask)
-        assert server.stop() == 0
-        server.assert_clean_log()
-    if not has_scans:
-        print(
-            f"SKIPPED the real scans: there is no folder {DATA or '(STRATA_TEST_DATA is not set)'}"
-        )
+        yield server
 
 
-main()
+def test_of_the_demo(server):
+    check(server, server.get("/models/demo-pot").json())
+
+
+@needs_scans
+def test_of_a_scan(server):
+    check(
+        server,
+        server.import_model(
+            read("statue_nefertiti_70k.ply"), "statue_nefertiti_70k.ply", unit="mm"
+        ),
+    )
+
+
+@needs_scans
+def test_of_a_scan_with_texture_coordinates_of_its_own(server):
+    mask = server.import_model(read("mask_bali/mask.obj"), "mask.obj", unit="m")
+    assert mask["atlas"]["source"] == "file", mask["atlas"]
+    assert 0 <= mask["atlas"]["overlap"] < 0.005, mask["atlas"]
+    check(server, mask)
+
+
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

@@ -1,14 +1,9 @@
-#!/usr/bin/env python3
 """Lists of terms over HTTP: as CSV and SKOS in and out, as a tree that is searched, painted in their own colours; what hostile files get; and templates, which make
 tables and layers at once."""
-import os
-import sys
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.live_client import LiveClient
 from support.meshes import folded_grid
-from support.strata_server import StrataServer
 
 CSV, TURTLE, XML = (
     {"Content-Type": kind}
@@ -35,7 +30,13 @@ def tree(server, query=""):
     ]
 
 
-def import_csv(server):
+@pytest.fixture(scope="module", autouse=True)
+def camera(server):
+    model = server.import_model(folded_grid(), "wall.ply", unit="mm", name="Wall")
+    return camera_from(model, (0, 0, 1), up=(0, 1, 0))
+
+
+def test_import_csv(server):
     dry = server.ok(
         "POST", PROJECT + "/terms?name=Stone&dry_run=true", STONE.encode(), headers=CSV
     ).json()
@@ -88,7 +89,7 @@ def import_csv(server):
     ), worn
 
 
-def import_again(server):
+def test_import_again(server):
     """A second import changes by code, keeps keys, brings a language, and is one step of undo."""
     text = (
         "code,label,label-de,parent\nsalt,Salt crystals,Salze,deposit\npitted,Pitted,Narbig,loss\n"
@@ -133,7 +134,7 @@ def import_again(server):
     server.ok("POST", LIST + "/undo")
 
 
-def skos(server):
+def test_skos(server):
     turtle = server.ok("GET", LIST + "/terms?f=turtle")
     assert (
         turtle.headers["Content-Type"].startswith("text/turtle") and b"skos:broader" in turtle.body
@@ -172,7 +173,7 @@ def skos(server):
     ], terms
 
 
-def hostile(server):
+def test_hostile(server):
     name = PROJECT + "/terms?name=Bad"
     entity = '<!DOCTYPE r [<!ENTITY a "%s">%s]>' % (
         "a" * 1000,
@@ -257,7 +258,7 @@ def hostile(server):
     assert "Bad" not in names, names
 
 
-def colours(server, camera):
+def test_colours(server, camera):
     """A layer of terms has their colours while it has no palette of its own, and follows them."""
     layer = server.ok(
         "POST",
@@ -315,7 +316,7 @@ def colours(server, camera):
     )
 
 
-def templates(server):
+def test_templates(server):
     known = server.ok("GET", "/templates").json()
     assert [each["slug"] for each in known["templates"]] == [
         "excavation-units",
@@ -395,19 +396,6 @@ def templates(server):
     server.ok("POST", "/tables/units/records", {"values": {"code": "SU 1", "kind": 1}})
 
 
-def main():
-    with StrataServer() as server:
-        model = server.import_model(folded_grid(), "wall.ply", unit="mm", name="Wall")
-        import_csv(server)
-        import_again(server)
-        skos(server)
-        hostile(server)
-        colours(server, camera_from(model, (0, 0, 1), up=(0, 1, 0)))
-        templates(server)
-        assert server.stop() == 0
-        server.assert_clean_log()
-    print("lists of terms, their colours and templates: good")
-
-
-if __name__ == "__main__":
-    main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

@@ -1,16 +1,12 @@
-#!/usr/bin/env python3
 """Tools of the site: made of pictures, painted with over HTTP and WebSocket, renamed, deleted while they are in use, and all that
 after a restart."""
-import os
-import sys
 import uuid
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.live_client import LiveClient
 from support.meshes import bumpy_ball
 from support.pictures import pixels, png
-from support.strata_server import StrataServer
 
 M, L = "/models/ball", "/models/ball/layers/marks"
 PNG = {"Content-Type": "image/png"}
@@ -26,7 +22,14 @@ def new_id():
     return str(uuid.uuid4())
 
 
-def check_making(server):
+@pytest.fixture(scope="module", autouse=True)
+def camera(server):
+    model = server.import_model(bumpy_ball(), "ball.ply", unit="mm", name="Ball")
+    server.ok("POST", M + "/layers", {"name": "Marks", "type": "u8", "resolution": 2048})
+    return camera_from(model, (0, -1, 0))
+
+
+def test_making(server, story):
     assert server.get("/tools").json() == {"tools": [], "total": 0}
     key = {**PNG, "Idempotency-Key": "left"}
     made = server.ok("POST", "/tools?name=Left+half", left_half(64), headers=key)
@@ -95,10 +98,12 @@ def check_making(server):
         assert field is None or answer.json()["field"] == field, f"{what}: {answer}"
     assert server.request("POST", "/tools?name=x", picture, headers=PNG, token=False).status == 401
     assert server.get("/tools").json()["total"] == 3
-    return tool, dark
+    story.tool, story.dark = tool, dark
 
 
-def check_strokes(server, camera, tool, dark):
+def test_strokes(server, camera, story):
+    tool = story.tool
+    dark = story.dark
     stroke = {"op": "stroke", "value": 1, "camera": camera, "radius_px": 60, "path": [[320, 240]]}
     paint = lambda **more: server.ok("POST", L + "/edits", {**stroke, **more}).json()[
         "texels_changed"
@@ -138,8 +143,9 @@ def check_strokes(server, camera, tool, dark):
         assert answer.status == 422 and answer.json()["field"] == field, f"{what}: {answer}"
 
 
-def check_deletion_in_use(server, camera, tool):
+def test_deletion_in_use(server, camera, story):
     """One paints with a tool while another deletes it: the stroke goes on, all hear of it, and what was painted stays."""
+    tool = story.tool
     with LiveClient(server, "ball") as painter, LiveClient(server, "ball") as other:
         painter.hello()
         other.hello()
@@ -223,8 +229,9 @@ def raster(server, at=None):
     return server.ok("GET", L + "/texels.npy" + (f"?at={at}" if at else "")).body
 
 
-def check_history(server, camera, dark):
+def test_history(server, camera, story):
     """Undo, redo and old states of strokes with a tool, before and after kill -9."""
+    dark = story.dark
     before = raster(server)
     stroke = {
         "op": "stroke",
@@ -267,19 +274,6 @@ def check_history(server, camera, dark):
     assert one == two
 
 
-def main():
-    with StrataServer() as server:
-        model = server.import_model(bumpy_ball(), "ball.ply", unit="mm", name="Ball")
-        camera = camera_from(model, (0, -1, 0))
-        server.ok("POST", M + "/layers", {"name": "Marks", "type": "u8", "resolution": 2048})
-        tool, dark = check_making(server)
-        check_strokes(server, camera, tool, dark)
-        check_deletion_in_use(server, camera, tool)
-        check_history(server, camera, dark)
-        assert server.stop() == 0
-        server.assert_clean_log()
-    print("tools of the site: good")
-
-
-if __name__ == "__main__":
-    main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

@@ -1,19 +1,21 @@
-#!/usr/bin/env python3
 """How answers travel: codings of the page and of the API, their ETags, and what is told about rates and policies."""
 import gzip
-import os
 import re
-import sys
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.meshes import folded_grid
 from support.raw_http import raw_request
-from support.strata_server import StrataServer
 
 T = "/tables/finds"
 
 
-def check_page(server):
+@pytest.fixture(scope="module")
+def server(server):
+    server.import_model(folded_grid(5), "grid.ply", name="Grid", unit="mm")
+    return server
+
+
+def test_the_page_travels_well(server):
     """Files of the build come as the build has coded them."""
     page = server.get("//", token=False, headers={"Accept-Encoding": "gzip, br"})
     script = re.search(rb'src="(/assets/[^"]+\.js)"', page.body)[1].decode()
@@ -50,7 +52,7 @@ def check_page(server):
     assert "Content-Encoding: br\r\n" in head and head.endswith("\r\n\r\n"), head
 
 
-def check_api(server):
+def test_answers_of_the_api_travel_well(server):
     server.ok("POST", "/projects/default/tables", {"name": "Finds", "columns": [{"name": "Note"}]})
     for i in range(60):
         server.ok(
@@ -94,7 +96,7 @@ def check_api(server):
         )
 
 
-def check_headers(server):
+def test_headers(server):
     answer = server.get("/models")
     policy = re.fullmatch(r'"connection";q=(\d+);w=(\d+)', answer.headers["RateLimit-Policy"])
     left = re.fullmatch(r'"connection";r=(\d+);t=(\d+)', answer.headers["RateLimit"])
@@ -107,16 +109,6 @@ def check_headers(server):
     assert behind.headers["Strict-Transport-Security"] == "max-age=31536000", behind.headers
 
 
-def main():
-    with StrataServer() as server:
-        server.import_model(folded_grid(5), "grid.ply", name="Grid", unit="mm")
-        check_page(server)
-        check_api(server)
-        check_headers(server)
-        assert server.stop() == 0
-        server.assert_clean_log()
-    print("answers travel well")
-
-
-if __name__ == "__main__":
-    main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

@@ -67,6 +67,8 @@ class Answer:
 
 
 class StrataServer:
+    running = []  # those in a `with`, whose logs a failure shows
+
     def __init__(self, demo=False, options=()):
         self.binary = os.environ["STRATA_BINARY"]
         self.token = secrets.token_hex(24)
@@ -104,12 +106,15 @@ class StrataServer:
 
     def __enter__(self):
         try:
-            return self.start()
+            self.start()
         except BaseException:
             self.remove()
             raise
+        self.running.append(self)
+        return self
 
     def __exit__(self, *failure):
+        self.running.remove(self)
         ended = self.process and self.process.poll()
         if self.process and ended is None:
             self.kill()
@@ -117,8 +122,11 @@ class StrataServer:
             print(
                 "the server " + (f"had ended with {ended}" if ended is not None else "was running")
             )
-            print("--- log of the server\n" + "\n".join(self.log[-200:]), flush=True)
+            print("--- log of the server\n" + self.end_of_log(), flush=True)
         self.remove()
+
+    def end_of_log(self):
+        return "\n".join(self.log[-200:])
 
     def remove(self):
         # The kernel ends PostgreSQL with its server; it writes until then.
@@ -132,7 +140,15 @@ class StrataServer:
         """Starts it (again) and returns once it listens."""
         self._fill()
         self.process = subprocess.Popen(
-            [self.binary, "serve", "--data", self.data, "--listen", "127.0.0.1:0", *self.options],
+            [
+                self.binary,
+                "serve",
+                "--data",
+                self.data,
+                "--listen",
+                "127.0.0.1:0",
+                *self.options,
+            ],
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
