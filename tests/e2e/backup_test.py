@@ -1,16 +1,14 @@
-#!/usr/bin/env python3
 """Backup of a site on which people paint, restored elsewhere: everything of one moment is there, and work goes on. Damaged backups are refused."""
 import json
 import os
 import shutil
 import signal
 import subprocess
-import sys
 import tempfile
 import threading
 import uuid
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.meshes import folded_grid
 from support.strata_server import StrataServer, wait_for
@@ -240,7 +238,44 @@ def check_killed_restore(whole, data):
     ), "it was quicker than its end: make the site larger"
 
 
-def check_full_disk(server, folder):
+@pytest.fixture(scope="module")
+def folder():
+    with tempfile.TemporaryDirectory(prefix="strata-backup-", dir="/tmp") as folder:
+        os.chmod(folder, 0o755)
+        yield folder
+
+
+@pytest.fixture(scope="module")
+def whole(folder):
+    return os.path.join(folder, "busy")
+
+
+@pytest.fixture(scope="module")
+def second():
+    """A server that is not started yet, on an empty folder."""
+    second = StrataServer()
+    yield second
+    second.remove()
+
+
+def test_a_backup_is_made_while_people_paint(server, whole, story):
+    story.camera = make_site(server)
+    painters = Painters(server, story.camera)
+    story.before = painters.wait_for(30)
+    done = strata("backup", whole, "--data", server.data)
+    painters.wait_for(len(painters.acknowledged) + 10)  # they were not held up for good
+    painters.end()
+    assert done.returncode == 0 and "backed up 1 model, 2 layers" in done.stdout, done
+    assert os.stat(whole).st_mode & 0o077 == 0  # it holds hashes of passwords
+    assert "whole: 1 model" in strata("restore", whole, "--check").stdout
+
+
+def test_what_is_there_is_not_written_over(server, whole):
+    refused("backup", whole, "--data", server.data, told="Already there")
+    refused("restore", whole, "--data", server.data, told="holds a site already")
+
+
+def test_a_full_disk_is_no_backup(server, folder):
     """No room for the dump: refused, and no folder that looks like a backup."""
     small = os.path.join(folder, "small")
     os.mkdir(small)
@@ -252,8 +287,7 @@ def check_full_disk(server, folder):
         ).returncode
         != 0
     ):
-        print("SKIPPED: a full disk (no right to mount)")
-        return
+        pytest.skip("no right to mount a small disk")
     try:
         done = strata("backup", os.path.join(small, "site"), "--data", server.data)
         assert done.returncode == 1 and "Disk full" in done.stderr, done
@@ -262,7 +296,7 @@ def check_full_disk(server, folder):
         subprocess.run(["umount", small], check=True)
 
 
-def check_other_database(server, whole):
+def test_another_database(server, whole):
     """--database: into an empty one, with a password that no list of processes shows."""
     socket_folder = os.path.join(server.data, "postgres")
     server.sql("CREATE DATABASE copy")
@@ -281,72 +315,50 @@ def check_other_database(server, whole):
     assert sorted(os.listdir(whole + "-copy")) == ["database.dump", "manifest.json"]
 
 
-def main():
-    folder = tempfile.mkdtemp(prefix="strata-backup-", dir="/tmp")
-    os.chmod(folder, 0o755)
-    whole, quiet = os.path.join(folder, "busy"), os.path.join(folder, "quiet")
-    try:
-        with StrataServer() as first:
-            camera = make_site(first)
-            painters = Painters(first, camera)
-            before = painters.wait_for(30)
-            done = strata("backup", whole, "--data", first.data)
-            painters.wait_for(len(painters.acknowledged) + 10)  # they were not held up for good
-            painters.end()
-            assert done.returncode == 0 and "backed up 1 model, 2 layers" in done.stdout, done
-            assert os.stat(whole).st_mode & 0o077 == 0  # it holds hashes of passwords
-            refused("backup", whole, "--data", first.data, told="Already there")
-            refused("restore", whole, "--data", first.data, told="holds a site already")
-            assert "whole: 1 model" in strata("restore", whole, "--check").stdout
-            check_full_disk(first, folder)
-            check_other_database(first, whole)
+def test_damaged_backups_are_refused(whole, second, folder):
+    check_bad_backups(whole, second.data, folder)
 
-            second = StrataServer()  # not started yet
-            try:
-                check_bad_backups(whole, second.data, folder)
-                check_killed_restore(whole, second.data)
-                done = wait_for(
-                    lambda: (lambda done: done if done.returncode == 0 else None)(
-                        strata("restore", whole, "--data", second.data)
-                    ),
-                    "the second try to restore",
-                )
-                assert "every table is what was backed up" in done.stdout, done
-                with second:
-                    newest = max(
-                        edit["sequence"]
-                        for layer in ("moisture", "cracks")
-                        for edit in second.ok("GET", f"{M}/layers/{layer}/edits?limit=1000").json()[
-                            "edits"
-                        ]
-                    )
-                    assert newest >= max(
-                        before
-                    ), "an edit that was acknowledged before the backup is missing"
-                    assert contents(second, newest) == contents(first, newest)
-                    check_goes_on(second, camera, newest)
-                    assert second.stop() == 0
-                    second.assert_clean_log()
-            finally:
-                second.remove()
 
-            # Of a server that does not run.
-            assert first.stop() == 0
-            done = strata("backup", quiet, "--data", first.data)
-            assert done.returncode == 0, done
-            first.assert_clean_log()
-        refused(
-            "backup",
-            os.path.join(folder, "none"),
-            "--data",
-            os.path.join(folder, "nothing"),
-            told="No database",
+def test_a_restore_that_is_cut_short_leaves_nothing(whole, second):
+    check_killed_restore(whole, second.data)
+
+
+def test_a_backup_is_restored_elsewhere_and_work_goes_on(server, whole, second, story):
+    done = wait_for(
+        lambda: (lambda done: done if done.returncode == 0 else None)(
+            strata("restore", whole, "--data", second.data)
+        ),
+        "the second try to restore",
+    )
+    assert "every table is what was backed up" in done.stdout, done
+    with second:
+        newest = max(
+            edit["sequence"]
+            for layer in ("moisture", "cracks")
+            for edit in second.ok("GET", f"{M}/layers/{layer}/edits?limit=1000").json()["edits"]
         )
-        assert strata("backup").returncode == 2
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
-    print("backup and restore")
+        assert newest >= max(
+            story.before
+        ), "an edit that was acknowledged before the backup is missing"
+        assert contents(second, newest) == contents(server, newest)
+        check_goes_on(second, story.camera, newest)
+        assert second.stop() == 0
+        second.assert_clean_log()
 
 
-if __name__ == "__main__":
-    main()
+def test_a_server_that_does_not_run_is_backed_up(server, folder):
+    assert server.stop() == 0
+    done = strata("backup", os.path.join(folder, "quiet"), "--data", server.data)
+    assert done.returncode == 0, done
+    server.assert_clean_log()
+
+
+def test_nothing_is_backed_up_where_there_is_no_database(folder):
+    refused(
+        "backup",
+        os.path.join(folder, "none"),
+        "--data",
+        os.path.join(folder, "nothing"),
+        told="No database",
+    )
+    assert strata("backup").returncode == 2

@@ -1,17 +1,15 @@
-#!/usr/bin/env python3
 """What the HTTP interface answers to everything but good requests: one table, then the cases that need several steps."""
 import concurrent.futures
 import json
 import os
 import subprocess
-import sys
 import uuid
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.meshes import bumpy_ball, folded_grid
 from support.raw_http import raw_request
-from support.strata_server import StrataServer, wait_for
+from support.strata_server import wait_for
 
 M, L = "/models/grid", "/models/grid/layers/marks"
 FILL = {"op": "fill", "mode": "where", "where": "true", "value": 1}
@@ -591,7 +589,16 @@ def table(camera):
     ]
 
 
-def check_table(server, camera):
+@pytest.fixture(scope="module", autouse=True)
+def camera(server):
+    model = server.import_model(folded_grid(), "grid.ply", unit="mm", name="Grid")
+    assert model["slug"] == "grid"
+    for name in ("Marks", "Other"):
+        server.ok("POST", M + "/layers", {"name": name, "type": "u8"})
+    return camera_from(model, [0, 0, 1], up=(0, 1, 0))
+
+
+def test_each_bad_request_is_refused(server, camera):
     failures = []
     for what, method, path, body, headers, status, field in table(camera):
         answer = server.request(method, path, body, headers)
@@ -614,7 +621,7 @@ def check_table(server, camera):
     assert server.get(L).json()["sequence"] == 0, "a refused edit painted"
 
 
-def check_sign_in(server):
+def test_sign_in(server):
     for token in (False, "x" * 48, "x" * 5000):
         for method, path in (
             ("GET", "/models"),
@@ -673,7 +680,7 @@ def check_sign_in(server):
     assert server.post("/login", {"token": "wrong"}, token=False).status == 401
 
 
-def check_paths(server):
+def test_paths(server):
     """No address leads out of the page's folder, however it is written."""
     secret = os.path.join(server.data, "secret.txt")
     with open(secret, "w", encoding="ascii") as file:
@@ -716,7 +723,7 @@ def check_paths(server):
     assert server.get("//livez").status == 200
 
 
-def check_sizes(server):
+def test_sizes(server):
     """A raster may be as large as its layer; what is larger is refused before it travels."""
     for size, is_refused in (
         (2 * 2048 * 2048 + 128, False),
@@ -741,7 +748,7 @@ def check_sizes(server):
     assert answer.startswith(b"HTTP/1.1 413"), answer[:300]
 
 
-def check_repeats(server, camera):
+def test_repeats(server, camera):
     """An edit with a key is done once; the key belongs to its address."""
     stroke = {"op": "stroke", "value": 9, "camera": camera, "radius_px": 30, "path": [[320, 240]]}
     key = {"Idempotency-Key": str(uuid.uuid4())}
@@ -790,7 +797,7 @@ def check_repeats(server, camera):
         ), repeated
 
 
-def check_import_repeats(server):
+def test_import_repeats(server):
     """An import with a key is done once, also for those who ask again after the server was restarted."""
     scan = folded_grid()
 
@@ -834,7 +841,7 @@ def check_import_repeats(server):
         server.ok("DELETE", f"/models/{model}")
 
 
-def check_versions(server):
+def test_versions(server):
     model = server.get(M)
     tag = {"If-Match": model.headers["ETag"]}
     changed = server.ok("PATCH", M, {"unit": "cm", "scale_verified": True}, headers=tag)
@@ -861,7 +868,7 @@ def things(server):
     )
 
 
-def check_bad_files(server):
+def test_bad_files(server):
     """A file that cannot be used leaves nothing behind."""
     before = things(server)
     good = folded_grid()
@@ -897,7 +904,7 @@ def check_bad_files(server):
     assert things(server) == before, (before, things(server))
 
 
-def check_cancel(server):
+def test_cancel(server):
     """Imports are cancelled while they wait and while they run; nothing is left of them."""
     before = things(server)
     large = bumpy_ball(300, 600)
@@ -914,28 +921,7 @@ def check_cancel(server):
     wait_for(lambda: things(server) == before, f"the uploads to go: {before} {things(server)}")
 
 
-def main():
-    with StrataServer() as server:
-        model = server.import_model(folded_grid(), "grid.ply", unit="mm", name="Grid")
-        assert model["slug"] == "grid"
-        for name in ("Marks", "Other"):
-            server.ok("POST", M + "/layers", {"name": name, "type": "u8"})
-        camera = camera_from(model, [0, 0, 1], up=(0, 1, 0))
-        check_table(server, camera)
-        check_sign_in(server)
-        check_paths(server)
-        check_sizes(server)
-        check_repeats(server, camera)
-        check_import_repeats(server)
-        check_versions(server)
-        check_bad_files(server)
-        check_cancel(server)
-        assert json.loads(server.get("//readyz").body)["ready"] is True
-        assert server.stop() == 0
-        server.assert_clean_log()
-    print(
-        f"{len(table(camera))} refusals, and sign-in, paths, repeats, versions, bad files and cancelled jobs"
-    )
-
-
-main()
+def test_the_server_is_ready_and_ends_with_a_clean_log(server):
+    assert json.loads(server.get("//readyz").body)["ready"] is True
+    assert server.stop() == 0
+    server.assert_clean_log()

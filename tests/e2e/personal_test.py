@@ -1,15 +1,11 @@
-#!/usr/bin/env python3
 """What belongs to one person, over HTTP and live: how they show the layers of a model, and the name and colour that they have everywhere. And layers that were computed, which
 are locked until somebody unlocks them to edit them by hand."""
-import os
-import sys
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.live_client import LiveClient
 from support.meshes import folded_grid
 from support.pictures import pixels
-from support.strata_server import StrataServer, wait_for
+from support.strata_server import wait_for
 from support.workbook import Workbook
 
 M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
@@ -30,7 +26,13 @@ def shown(server, token, path=V):
     return server.ok("GET", path, token=token).json()["layers"]
 
 
-def check_personal_views(server):
+@pytest.fixture(scope="module")
+def server(server):
+    server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
+    return server
+
+
+def test_personal_views(server):
     ada, vera, carl = (
         server.add_person(*each)
         for each in (("ada", "annotator"), ("vera", "viewer"), ("carl", "curator"))
@@ -127,7 +129,7 @@ def check_personal_views(server):
     print("personal views: ok", flush=True)
 
 
-def check_order_in_pictures(server):
+def test_order_in_pictures(server):
     """Somebody's own order is drawn for them: of two layers that cover all the other one is seen."""
     for name, color in (("under", "#ff0000"), ("over", "#0000ff")):
         server.ok(
@@ -160,7 +162,7 @@ def check_order_in_pictures(server):
     print("order: ok", flush=True)
 
 
-def check_computed(server):
+def test_computed(server):
     ada, carl = server.add_person("adam", "annotator"), server.add_person("cleo", "curator")
     server.ok("POST", M + "/layers", {"name": "Wet", "type": "f32", "resolution": 2048})
     lowest = min(each["order"] for each in server.get(M + "/layers").json()["layers"])
@@ -282,7 +284,7 @@ def check_computed(server):
     print("computed layers: ok", flush=True)
 
 
-def check_people(server):
+def test_people(server):
     """One colour and one name, wherever somebody is named."""
     ida, rob = server.add_person("ida", "curator"), server.add_person("rob", "annotator")
     server.ok("PATCH", "/users/ida", {"full_name": "Ida Roe"})
@@ -358,7 +360,7 @@ c-other,y-deposit,Other,Sonstiges
 """
 
 
-def check_words(server):
+def test_words(server):
     server.ok("POST", "/projects/default/terms?name=Stone", STONE.encode(), headers=CSV)
     terms = {
         each["code"]: each["key"]
@@ -484,16 +486,6 @@ def check_words(server):
     print("words and titles: ok", flush=True)
 
 
-def main():
-    with StrataServer() as server:
-        server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
-        check_personal_views(server)
-        check_order_in_pictures(server)
-        check_computed(server)
-        check_people(server)
-        check_words(server)
-        assert server.stop() == 0
-        server.assert_clean_log()
-
-
-main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

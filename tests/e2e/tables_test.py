@@ -1,17 +1,13 @@
-#!/usr/bin/env python3
 """A day's work with the tables of a project, over HTTP: two trenches share their units, records come by hand and as CSV, keys are painted, changed, undone,
 read as they were, deleted with what is painted; and what bad input gets."""
 import csv
 import io
-import os
-import sys
 from concurrent.futures import ThreadPoolExecutor
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.live_client import LiveClient
 from support.meshes import bumpy_ball, folded_grid
-from support.strata_server import StrataServer
 
 CSV = {"Content-Type": "text/csv"}
 T = "/tables/units"
@@ -76,7 +72,30 @@ def make_tables(server):
     return table
 
 
-def share_layers(server, table):
+@pytest.fixture(scope="module")
+def cameras(server):
+    models = {
+        "north": server.import_model(folded_grid(), "north.ply", unit="mm", name="North"),
+        "south": server.import_model(bumpy_ball(), "south.ply", unit="mm", name="South"),
+    }
+    server.ok("POST", "/models/north/layers", {"name": "wet"})
+    return {name: camera_from(model, (0, 0, 1), up=(0, 1, 0)) for name, model in models.items()}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def table(server, cameras):
+    return make_tables(server)
+
+
+@pytest.fixture
+def live(server):
+    with LiveClient(server, "south") as live:
+        live.send({"op": "hello", "client": "test", "dpr": 1, "accept": ["jpeg"]})
+        live.receive_until("welcome")
+        yield live
+
+
+def test_layers_of_two_models_share_a_table(server, table):
     """Layers of two models name one table; what a layer is made with of its own is a table of its name."""
     for model in ("north", "south"):
         layer = server.ok(
@@ -103,7 +122,7 @@ def share_layers(server, table):
     ]
 
 
-def write_records(server, live):
+def test_write_records(server, live):
     first = server.ok(
         "POST",
         T + "/records",
@@ -155,7 +174,7 @@ def write_records(server, live):
     assert 'rel="next"' in page.headers["Link"] and page.json()["total"] == 3
 
 
-def paint(server, cameras):
+def test_paint(server, cameras):
     refused = server.post(
         NORTH + "/edits", {"op": "fill", "mode": "where", "where": "true", "value": 9}
     )
@@ -184,7 +203,8 @@ def paint(server, cameras):
     )
 
 
-def paint_live(server, camera):
+def test_paint_live(server, cameras):
+    camera = cameras["north"]
     with LiveClient(server, "north") as live:
         live.send({"op": "hello", "client": "test", "dpr": 1, "accept": ["jpeg"]})
         live.receive_until("welcome")
@@ -203,52 +223,7 @@ def paint_live(server, camera):
         assert saved["op"] == "saved", saved
 
 
-def delete_under_a_stroke(server, camera):
-    """Who began to paint while there was a record does not paint it again when it is gone, and goes on where it comes back."""
-    server.ok("POST", T + "/records", {"key": 500, "values": {"code": "SU 500"}})
-    with LiveClient(server, "north") as live:
-        live.send({"op": "hello", "client": "test", "dpr": 1, "accept": ["jpeg"]})
-        live.receive_until("welcome")
-        ids = [f"00000000-0000-4000-8000-00000000005{n}" for n in range(6)]
-        live.send(
-            {
-                "op": "stroke.begin",
-                "layer": "units",
-                "camera": camera,
-                "radius_px": 8,
-                "id": ids[0],
-                "stroke": ids[1],
-                "value": 500,
-            }
-        )
-
-        def extend(number, place):
-            live.send(
-                {
-                    "op": "stroke.extend",
-                    "id": ids[2 + number],
-                    "stroke": ids[1],
-                    "n": number,
-                    "path": [place],
-                }
-            )
-            return live.receive_until("saved", "problem")
-
-        assert extend(0, [320, 200])["op"] == "saved"
-        server.ok("DELETE", T + "/records/500?texels=clear")
-        refused = extend(1, [330, 210])
-        assert (refused["op"], refused.get("status"), refused.get("field")) == (
-            "problem",
-            409,
-            "value",
-        ), refused
-        assert 500 not in [each["key"] for each in server.get(NORTH + "/statistics").json()["keys"]]
-        assert server.ok("POST", T + "/undo").json()["created"] == [500]
-        assert extend(2, [340, 220])["op"] == "saved"
-    server.ok("DELETE", T + "/records/500?texels=clear")
-
-
-def edit_together(server):
+def test_edit_together(server):
     """Who has a record open is told on all models of the project, and gone with the connection."""
     table = server.get(T).json()["id"]
     viewer = server.ok("POST", "/me/tokens", {"name": "looks on", "role": "viewer"}).json()[
@@ -319,7 +294,7 @@ def edit_together(server):
         assert problem(south) == (404, "table")
 
 
-def delete_painted(server):
+def test_delete_painted(server):
     refused = server.request("DELETE", T + "/records/2")
     assert refused.status == 409 and "cm² on Units of North" in refused.json()["detail"], refused
     before = area(server, 1, NORTH), area(server, 2, NORTH)
@@ -363,7 +338,53 @@ def delete_painted(server):
     assert 400 not in records(server)
 
 
-def past_and_history(server):
+def test_delete_under_a_stroke(server, cameras):
+    """Who began to paint while there was a record does not paint it again when it is gone, and goes on where it comes back."""
+    camera = cameras["north"]
+    server.ok("POST", T + "/records", {"key": 500, "values": {"code": "SU 500"}})
+    with LiveClient(server, "north") as live:
+        live.send({"op": "hello", "client": "test", "dpr": 1, "accept": ["jpeg"]})
+        live.receive_until("welcome")
+        ids = [f"00000000-0000-4000-8000-00000000005{n}" for n in range(6)]
+        live.send(
+            {
+                "op": "stroke.begin",
+                "layer": "units",
+                "camera": camera,
+                "radius_px": 8,
+                "id": ids[0],
+                "stroke": ids[1],
+                "value": 500,
+            }
+        )
+
+        def extend(number, place):
+            live.send(
+                {
+                    "op": "stroke.extend",
+                    "id": ids[2 + number],
+                    "stroke": ids[1],
+                    "n": number,
+                    "path": [place],
+                }
+            )
+            return live.receive_until("saved", "problem")
+
+        assert extend(0, [320, 200])["op"] == "saved"
+        server.ok("DELETE", T + "/records/500?texels=clear")
+        refused = extend(1, [330, 210])
+        assert (refused["op"], refused.get("status"), refused.get("field")) == (
+            "problem",
+            409,
+            "value",
+        ), refused
+        assert 500 not in [each["key"] for each in server.get(NORTH + "/statistics").json()["keys"]]
+        assert server.ok("POST", T + "/undo").json()["created"] == [500]
+        assert extend(2, [340, 220])["op"] == "saved"
+    server.ok("DELETE", T + "/records/500?texels=clear")
+
+
+def test_past_and_history(server):
     now = server.ok("GET", T).json()["sequence"]
     assert records(server, query="?at=1") == {}
     assert records(server, query="?at=2")[1]["depth"] == 0.5
@@ -380,7 +401,7 @@ def past_and_history(server):
     assert server.get(T + "/records?at=2000-01-01T00:00:00Z").json()["total"] == 0
 
 
-def bulk(server):
+def test_bulk(server):
     text = server.ok("GET", T + "/records?f=csv").body
     assert text.startswith(b"\xef\xbb\xbfkey,code,depth,"), text[:60]
     rows = list(csv.DictReader(io.StringIO(text.decode("utf-8-sig"))))
@@ -445,7 +466,7 @@ def bulk(server):
     assert server.get(T).json()["records"] == 3
 
 
-def map_brings_records(server):
+def test_a_map_brings_records(server):
     """Names of a map that the legend lacks become records, under keys that no record has."""
     server.ok("POST", "/tables/notes/records", {"values": {"name": "by hand"}})
     features = [
@@ -479,7 +500,7 @@ def map_brings_records(server):
     )
 
 
-def change_columns(server):
+def test_change_columns(server):
     before = records(server)
     etag = server.get(T).headers["ETag"]
     renamed = server.ok(
@@ -522,7 +543,7 @@ def change_columns(server):
     assert server.request("DELETE", T).status == 409
 
 
-def change_at_once(server):
+def test_change_at_once(server):
     """Names, columns and records of one table, by three people."""
     server.ok("POST", "/projects/default/tables", {"name": "Busy"})
 
@@ -546,7 +567,7 @@ def change_at_once(server):
     assert (table["name"], len(table["columns"]), table["records"]) == ("Busy 59", 60, 60), table
 
 
-def circles(server):
+def test_circles(server):
     path = T + "/columns/above/cycles"
     assert server.ok("GET", path).json() == {"cycles": [], "total": 0}
     for key, above in ((1, [300]), (300, [2]), (2, [1])):
@@ -557,8 +578,9 @@ def circles(server):
     assert server.get(T + "/columns/condition/cycles").status == 422
 
 
-def widen(server, camera):
+def test_widen(server, cameras, story):
     """A layer whose keys have run out gets room for more: what is painted, its history and its undo stay."""
+    camera = cameras["north"]
     path = "/models/north/layers/few"
     server.ok(
         "POST",
@@ -633,10 +655,10 @@ def widen(server, camera):
     assert keys() == painted
     server.ok("POST", path + "/restore", {"sequence": then})
     assert keys() == first
-    return path, first
+    story.wide, story.painted = path, first
 
 
-def refusals(server):
+def test_refusals(server):
     for what, method, path, body, headers, status, field in [
         ("unknown table", "GET", "/tables/none", None, {}, 404, None),
         ("unknown project", "GET", "/projects/none/tables", None, {}, 404, None),
@@ -870,47 +892,17 @@ def refusals(server):
     server.ok("DELETE", f"{T}/records/{made['key']}")
 
 
-def main():
-    with StrataServer() as server:
-        models = {
-            "north": server.import_model(folded_grid(), "north.ply", unit="mm", name="North"),
-            "south": server.import_model(bumpy_ball(), "south.ply", unit="mm", name="South"),
-        }
-        cameras = {
-            name: camera_from(model, (0, 0, 1), up=(0, 1, 0)) for name, model in models.items()
-        }
-        server.ok("POST", "/models/north/layers", {"name": "wet"})
-        table = make_tables(server)
-        share_layers(server, table)
-        with LiveClient(server, "south") as live:
-            live.send({"op": "hello", "client": "test", "dpr": 1, "accept": ["jpeg"]})
-            live.receive_until("welcome")
-            write_records(server, live)
-        paint(server, cameras)
-        paint_live(server, cameras["north"])
-        edit_together(server)
-        delete_painted(server)
-        delete_under_a_stroke(server, cameras["north"])
-        past_and_history(server)
-        bulk(server)
-        map_brings_records(server)
-        change_columns(server)
-        change_at_once(server)
-        circles(server)
-        wide, painted = widen(server, cameras["north"])
-        refusals(server)
-        content = records(server)
-        assert server.stop() == 0
-        server.start()
-        assert records(server) == content, "all of it is durable"
-        assert {
-            each["key"]: each["texels"]
-            for each in server.ok("GET", wide + "/statistics").json()["keys"]
-        } == painted
-        assert server.stop() == 0
-        server.assert_clean_log()
-    print("tables, columns, records, their history and what is painted of them: good")
+def test_all_of_it_is_durable(server, story):
+    content = records(server)
+    assert server.stop() == 0
+    server.start()
+    assert records(server) == content
+    assert {
+        each["key"]: each["texels"]
+        for each in server.ok("GET", story.wide + "/statistics").json()["keys"]
+    } == story.painted
 
 
-if __name__ == "__main__":
-    main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

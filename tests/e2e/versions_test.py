@@ -1,13 +1,8 @@
-#!/usr/bin/env python3
 """A project may demand that changes name the version that they were made for (If-Match, 428)."""
-import os
-import sys
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.meshes import folded_grid
 from support.pictures import png
-from support.strata_server import StrataServer
 
 M, T, P = "/models/sheet", "/tables/finds", "/projects/default"
 OF_PATH = {
@@ -91,7 +86,28 @@ BODIES = {
 }
 
 
-def check_demanded(server, changes):
+@pytest.fixture(scope="module")
+def changes(server):
+    make_site(server)
+    return versioned_changes(server)
+
+
+def test_versions_are_not_demanded_at_first(server, changes):
+    assert server.get(P).json()["require_if_match"] is False
+    for method, asked in changes:
+        if method == "PATCH":
+            server.ok(method, asked, BODIES.get(asked, {"text": "Look!"}))
+
+
+def test_a_project_may_demand_them(server):
+    server.ok("PATCH", P, {"require_if_match": True})
+    listed = [
+        each for each in server.get("/projects").json()["projects"] if each["slug"] == "default"
+    ]
+    assert listed[0]["require_if_match"] is True, listed
+
+
+def test_demanded(server, changes):
     for method, asked in changes:
         body = BODIES.get(asked, {"text": "Look!"}) if method == "PATCH" else None
         answer = server.request(method, asked, body)
@@ -110,7 +126,7 @@ def check_demanded(server, changes):
             server.ok(method, asked, body, headers={"If-Match": "*"})
 
 
-def check_elsewhere(server):
+def test_elsewhere(server):
     """Only what has versions, and only there."""
     server.ok("POST", T + "/records", {"values": {"name": "More"}})
     server.ok(
@@ -134,7 +150,7 @@ def check_elsewhere(server):
     ), "what the address leads into demands it, before anything is looked up there"
 
 
-def check_roles(server):
+def test_roles(server):
     """Curators of the project decide, not what it is called; others neither."""
     server.ok("PATCH", P, {"require_if_match": False}, headers={"If-Match": "*"})
     ann, cleo = server.add_person("ann", "annotator"), server.add_person("cleo", "curator")
@@ -155,29 +171,14 @@ def check_roles(server):
     assert server.request("PATCH", M, {"name": "x"}, token=ann).status == 403
 
 
-def main():
-    with StrataServer() as server:
-        make_site(server)
-        changes = versioned_changes(server)
-        assert server.get(P).json()["require_if_match"] is False
-        for method, asked in changes:
-            if method == "PATCH":
-                server.ok(method, asked, BODIES.get(asked, {"text": "Look!"}))
-        server.ok("PATCH", P, {"require_if_match": True})
-        listed = [
-            each for each in server.get("/projects").json()["projects"] if each["slug"] == "default"
-        ]
-        assert listed[0]["require_if_match"] is True, listed
-        check_demanded(server, changes)
-        check_elsewhere(server)
-        check_roles(server)
-        assert server.stop() == 0
-        server.start()
-        assert server.request("DELETE", M).status == 428, "it is kept"
-        gone = server.ok("DELETE", M, headers={"If-Match": server.get(M).headers["ETag"]})
-        assert gone.status == 204
-        assert server.stop() == 0
-        server.assert_clean_log()
+def test_it_is_kept_over_a_restart(server):
+    assert server.stop() == 0
+    server.start()
+    assert server.request("DELETE", M).status == 428
+    gone = server.ok("DELETE", M, headers={"If-Match": server.get(M).headers["ETag"]})
+    assert gone.status == 204
 
 
-main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

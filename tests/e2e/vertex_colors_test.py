@@ -1,15 +1,11 @@
-#!/usr/bin/env python3
 """The mesh with the colours of its layers: each vertex has the colour that an unlit picture shows at its place."""
-import os
-import sys
 import urllib.parse
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.meshes import folded_grid
 from support.pictures import pixels, png
 from support.ply import read_ply
-from support.strata_server import StrataServer
 
 M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
 SIDE = 800
@@ -114,50 +110,62 @@ def make_layers(server):
     dab(server, "pieces", 2, 60, 60, 12)
 
 
-def main():
-    with StrataServer() as server:
-        server.import_model(folded_grid(cells=40, fold=0.001), "sheet.ply", name="Sheet", unit="mm")
-        make_layers(server)
-        assert read_ply(server.get(M + "/vertices.ply?layers=wet").body)[2][3:] == [
-            "wet",
-            "wet_valid",
-        ], "without `colors` as before"
-        assert (
-            server.get(M + "/vertices.ply?colors=scan&layers=wet").body
-            == server.get(M + "/vertices.ply?layers=wet").body
-        )
-        check_as_seen(server, "colors=layers", 500, 6)
-        # Those that are named, in their order, whether they are visible or not.
-        server.ok("PATCH", M + "/layers/wet", {"visible": False})
-        check_as_seen(server, "colors=layers", 500, 5)
-        check_as_seen(server, "colors=layers&layers=units,wet", 500, 3, layers=["units", "wet"])
-        check_as_seen(server, "colors=layers&layers=wet,units", 500, 4, layers=["wet", "units"])
-        check_as_seen(server, "colors=layers&at=2", 500, 2, at=2)
-        # Photos lie below.
-        photo = png(64, 64, lambda x, y: (240, 120, 0, 255) if x < 32 else (0, 120, 240, 128))
-        server.ok(
-            "POST",
-            M + "/looks?name=Light&visible=true",
-            photo,
-            headers={"Content-Type": "image/png"},
-        )
-        check_as_seen(server, "colors=layers", 400, 6)
-        server.ok("PATCH", M + "/looks/light", {"opacity": 0.25})
-        check_as_seen(server, "colors=layers", 400, 6)
-        for query, status, field in (
-            ("colors=rainbow", 422, "colors"),
-            ("colors=", 422, "colors"),
-            ("colors=layers&layers=nothing", 404, "layers"),
-            ("colors=layers&at=99999", 422, "at"),
-        ):
-            answer = server.get(f"{M}/vertices.ply?{query}")
-            assert (answer.status, answer.json()["field"]) == (status, field), (query, answer)
-        broken = {"mode": "categorical", "column": "nothing"}
-        server.ok("PATCH", M + "/layers/pieces", {"palette": broken})
-        answer = server.get(M + "/vertices.ply?colors=layers")
-        assert (answer.status, answer.json()["field"]) == (422, "palette.column"), answer
-        assert server.stop() == 0
-        server.assert_clean_log()
+@pytest.fixture(scope="module")
+def server(server):
+    server.import_model(folded_grid(cells=40, fold=0.001), "sheet.ply", name="Sheet", unit="mm")
+    make_layers(server)
+    return server
 
 
-main()
+def test_colours_are_those_that_are_seen(server):
+    assert read_ply(server.get(M + "/vertices.ply?layers=wet").body)[2][3:] == [
+        "wet",
+        "wet_valid",
+    ], "without `colors` as before"
+    assert (
+        server.get(M + "/vertices.ply?colors=scan&layers=wet").body
+        == server.get(M + "/vertices.ply?layers=wet").body
+    )
+    check_as_seen(server, "colors=layers", 500, 6)
+
+
+def test_layers_that_are_named_are_drawn_in_their_order(server):
+    # Those that are named, in their order, whether they are visible or not.
+    server.ok("PATCH", M + "/layers/wet", {"visible": False})
+    check_as_seen(server, "colors=layers", 500, 5)
+    check_as_seen(server, "colors=layers&layers=units,wet", 500, 3, layers=["units", "wet"])
+    check_as_seen(server, "colors=layers&layers=wet,units", 500, 4, layers=["wet", "units"])
+    check_as_seen(server, "colors=layers&at=2", 500, 2, at=2)
+
+
+def test_photos_lie_below(server):
+    photo = png(64, 64, lambda x, y: (240, 120, 0, 255) if x < 32 else (0, 120, 240, 128))
+    server.ok(
+        "POST",
+        M + "/looks?name=Light&visible=true",
+        photo,
+        headers={"Content-Type": "image/png"},
+    )
+    check_as_seen(server, "colors=layers", 400, 6)
+    server.ok("PATCH", M + "/looks/light", {"opacity": 0.25})
+    check_as_seen(server, "colors=layers", 400, 6)
+
+
+def test_wrong_questions_are_refused(server):
+    for query, status, field in (
+        ("colors=rainbow", 422, "colors"),
+        ("colors=", 422, "colors"),
+        ("colors=layers&layers=nothing", 404, "layers"),
+        ("colors=layers&at=99999", 422, "at"),
+    ):
+        answer = server.get(f"{M}/vertices.ply?{query}")
+        assert (answer.status, answer.json()["field"]) == (status, field), (query, answer)
+    broken = {"mode": "categorical", "column": "nothing"}
+    server.ok("PATCH", M + "/layers/pieces", {"palette": broken})
+    answer = server.get(M + "/vertices.ply?colors=layers")
+    assert (answer.status, answer.json()["field"]) == (422, "palette.column"), answer
+
+
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()
