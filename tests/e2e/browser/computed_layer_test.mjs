@@ -3,91 +3,94 @@
 // button or by itself.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { Browser } from "../support/browser.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { ends_well, test } from "../support/cases.mjs";
+import { wait_for } from "../support/strata-server.mjs";
+import { texts_of } from "../support/texts.mjs";
 
-const browser = await Browser.open();
-const { page } = browser;
-const server = new StrataServer({ demo: true });
+const w = texts_of("en");
 const base = "/models/demo-pot";
-const button = (name) => page.getByRole("button", { name });
-const shot = async (name) => {
+const button = (page, name) => page.getByRole("button", { name });
+const expression_of = (page) => page.getByLabel(w.layer_dialog.expression);
+const shot = async (page, name) => {
   if (process.env.STRATA_TEST_OUTPUT)
     await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `computed-${name}.png`) });
 };
-const risk = async () =>
+const risk_of = async (server) =>
   (await server.json("GET", `${base}/layers`)).layers.find((layer) => layer.slug === "risk");
+const fill_cracks = (server, where) =>
+  server.json("POST", `${base}/layers/cracks/edits`, {
+    op: "fill",
+    mode: "where",
+    where,
+    value: 1,
+  });
 
-try {
-  await server.start();
-  await page.goto(server.link);
-  await page.getByRole("link", { name: /Demo pot/ }).click();
-  await browser.drawn();
+test.beforeAll(async ({ server, desk }) => {
+  await desk.page.goto(server.link);
+  await desk.page.getByRole("link", { name: w.home.open("Demo pot") }).click();
+  await desk.drawn();
+});
 
-  await button("New layer").click();
-  await page.getByRole("radio", { name: /From an expression/ }).click();
-  const expression = page.getByLabel("Expression: a number");
-  await expression.fill("if(valid(crcks), 2, 1)");
+test("a mistake is told at its character", async ({ page }) => {
+  await button(page, w.layers.new).click();
+  await page.getByRole("radio", { name: w.layer_dialog.formula }).click();
+  await expression_of(page).fill("if(valid(crcks), 2, 1)");
   await page.getByText(/no layer 'crcks'.*at character 10/).waitFor();
-  await shot("mistake");
+  await shot(page, "mistake");
+});
+
+test("names are completed, and what the expression holds for is told", async ({ page }) => {
+  const expression = expression_of(page);
   await expression.fill("");
   await expression.pressSequentially("if(valid(cra");
   await page.getByRole("option", { name: /^cracks/ }).waitFor();
-  await shot("completion");
+  await shot(page, "completion");
   await expression.press("Enter");
   await expression.pressSequentially("), 2, 1)");
   await page.getByText(/Has a value on/).waitFor();
+});
+
+test("the layer is computed first and gets its colours then", async ({ server, page }) => {
   await page.getByLabel("Name", { exact: true }).fill("Risk");
-  await shot("dialog");
-  await button("Compute layer").click();
-  // it is computed first and gets its colours then
+  await shot(page, "dialog");
+  await button(page, w.layer_dialog.compute).click();
   await page.locator("strata-layer-dialog").waitFor({ state: "detached" });
-  await wait_for(async () => (await risk())?.stale === false, "the layer");
-  const made = await risk();
+  await wait_for(async () => (await risk_of(server))?.stale === false, "the layer");
+  const made = await risk_of(server);
   assert.deepEqual(
     [made.expression, made.inputs, made.recompute],
     ["if(valid(cracks), 2, 1)", ["cracks"], "manual"],
   );
   assert.ok(made.palette.max <= 2 && made.palette.min >= 1, JSON.stringify(made.palette));
   await page.getByText("if(valid(cracks), 2, 1)").waitFor();
+});
 
-  await server.json("POST", `${base}/layers/cracks/edits`, {
-    op: "fill",
-    mode: "where",
-    where: "z > 0",
-    value: 1,
-  });
-  await page.getByText("Something that it is computed from has changed since.").waitFor();
-  await shot("stale");
-  await button("Compute again").click();
-  await page
-    .getByText("Something that it is computed from has changed since.")
-    .waitFor({ state: "hidden" });
-  assert.equal((await risk()).stale, false);
+test("it is stale once what it reads changes, and computed again by a button", async ({
+  server,
+  page,
+}) => {
+  await fill_cracks(server, "z > 0");
+  await page.getByText(w.layers.stale).waitFor();
+  await shot(page, "stale");
+  await button(page, w.layers.recompute).click();
+  await page.getByText(w.layers.stale).waitFor({ state: "hidden" });
+  assert.equal((await risk_of(server)).stale, false);
+});
 
-  await button("Options for Risk").click();
+test("it may follow by itself", async ({ server, page }) => {
+  await button(page, w.layers.options("Risk")).click();
   await page.getByRole("menuitem", { name: /^Edit…?$/ }).click();
-  await page.getByLabel("Expression: a number").fill("if(valid(cracks), 7, 5)");
-  await page.getByLabel(/by itself/).check();
-  await page.getByRole("button", { name: "Save", exact: true }).click();
-  await wait_for(
-    async () => (await risk()).expression === "if(valid(cracks), 7, 5)" && !(await risk()).stale,
-    "the new expression",
-  );
-  assert.equal((await risk()).recompute, "automatic");
-  await server.json("POST", `${base}/layers/cracks/edits`, {
-    op: "fill",
-    mode: "where",
-    where: "true",
-    value: 1,
-  });
+  await expression_of(page).fill("if(valid(cracks), 7, 5)");
+  await page.getByLabel(w.layer_dialog.follows).check();
+  await page.getByRole("button", { name: w.save, exact: true }).click();
+  await wait_for(async () => {
+    const risk = await risk_of(server);
+    return risk.expression === "if(valid(cracks), 7, 5)" && !risk.stale;
+  }, "the new expression");
+  assert.equal((await risk_of(server)).recompute, "automatic");
+  await fill_cracks(server, "true");
   const least = async () => (await server.json("GET", `${base}/layers/risk/statistics`)).min;
   await wait_for(async () => (await least()) === 7, "the layer to follow by itself");
+});
 
-  browser.assert_no_complaints(["422"]);
-  assert.equal(await server.signal("SIGTERM"), 0);
-  server.assert_clean_log();
-} finally {
-  await browser.close();
-  await server.remove();
-}
+ends_well({ complaints: ["422"] });

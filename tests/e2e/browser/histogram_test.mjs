@@ -2,22 +2,23 @@
 // everyone's then.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { Browser } from "../support/browser.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { ends_well, test } from "../support/cases.mjs";
+import { wait_for } from "../support/strata-server.mjs";
+import { texts_of } from "../support/texts.mjs";
 
-const browser = await Browser.open();
-const { page } = browser;
-const server = new StrataServer({ demo: true });
+const w = texts_of("en");
 const base = "/models/demo-pot";
-const slider = (name) => page.getByRole("slider", { name });
-const palette = async () => (await server.json("GET", `${base}/layers/wet`)).palette;
+const points = [
+  { at: 0, color: "#440154ff" },
+  { at: 1, color: "#fde725ff" },
+];
+const slider = (page, name) => page.getByRole("slider", { name });
+const palette_of = async (server) => (await server.json("GET", `${base}/layers/wet`)).palette;
+const fill = (server, where, value) =>
+  server.json("POST", `${base}/layers/wet/edits`, { op: "fill", mode: "where", where, value });
+const mean_of = (page) => page.locator("strata-statistics-dialog dd").first().textContent();
 
-try {
-  await server.start();
-  const points = [
-    { at: 0, color: "#440154ff" },
-    { at: 1, color: "#fde725ff" },
-  ];
+test.beforeAll(async ({ server, desk }) => {
   await server.json("POST", `${base}/layers`, {
     name: "Wet",
     type: "f32",
@@ -29,30 +30,33 @@ try {
     [0.2, "true"],
     [0.5, "valid(cracks)"],
     [0.9, "pieces > 6"],
-  ]) {
-    await server.json("POST", `${base}/layers/wet/edits`, {
-      op: "fill",
-      mode: "where",
-      where,
-      value,
-    });
-  }
+  ])
+    await fill(server, where, value);
+  const { page } = desk;
   await page.goto(server.link);
-  await page.getByRole("link", { name: /Demo pot/ }).click();
-  await browser.drawn();
-  await page.getByRole("button", { name: "Options for Wet" }).click();
-  await page.getByRole("menuitem", { name: "Areas…" }).click();
+  await page.getByRole("link", { name: w.home.open("Demo pot") }).click();
+  await desk.drawn();
+  await page.getByRole("button", { name: w.layers.options("Wet") }).click();
+  await page.getByRole("menuitem", { name: w.layers.statistics }).click();
+});
 
-  await slider("Colours begin at").focus();
+test("keys move the lower end of the colours' range", async ({ server, page }) => {
+  await slider(page, w.statistics.range_from).focus();
   for (let n = 0; n < 20; ++n) await page.keyboard.press("ArrowRight");
-  await wait_for(async () => (await palette()).min > 0.2, "the lower limit");
-  const box = await slider("Colours end at").boundingBox();
+  await wait_for(async () => (await palette_of(server)).min > 0.2, "the lower limit");
+});
+
+test("the pointer moves the upper end", async ({ server, page }) => {
+  const box = await slider(page, w.statistics.range_to).boundingBox();
   await page.mouse.move(box.x + box.width - 7, box.y + box.height / 2);
   await page.mouse.down();
   await page.mouse.move(box.x + box.width * 0.6, box.y + box.height / 2, { steps: 5 });
   await page.mouse.up();
-  await wait_for(async () => (await palette()).max < 0.7, "the upper limit");
-  const moved = await palette();
+  await wait_for(async () => (await palette_of(server)).max < 0.7, "the upper limit");
+});
+
+test("the colours stay, and their range is everyone's", async ({ server, page }) => {
+  const moved = await palette_of(server);
   assert.deepEqual(
     moved.points.map(({ color }) => color),
     points.map(({ color }) => color),
@@ -63,29 +67,13 @@ try {
   );
   if (process.env.STRATA_TEST_OUTPUT)
     await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, "histogram.png") });
+});
 
-  const mean = await page.locator("strata-statistics-dialog dd").first().textContent();
-  await server.json("POST", `${base}/layers/wet/edits`, {
-    op: "fill",
-    mode: "where",
-    where: "true",
-    value: 0.3,
-  });
-  await server.json("POST", `${base}/layers/wet/edits`, {
-    op: "fill",
-    mode: "where",
-    where: "valid(cracks)",
-    value: 0.4,
-  });
-  await wait_for(
-    async () => (await page.locator("strata-statistics-dialog dd").first().textContent()) !== mean,
-    "what others paint to be counted",
-  );
+test("what others paint is counted", async ({ server, page }) => {
+  const mean = await mean_of(page);
+  await fill(server, "true", 0.3);
+  await fill(server, "valid(cracks)", 0.4);
+  await wait_for(async () => (await mean_of(page)) !== mean, "what others paint to be counted");
+});
 
-  browser.assert_no_complaints();
-  assert.equal(await server.signal("SIGTERM"), 0);
-  server.assert_clean_log();
-} finally {
-  await browser.close();
-  await server.remove();
-}
+ends_well();

@@ -93,6 +93,10 @@ export class StrataServer {
     return this;
   }
 
+  end_of_log() {
+    return this.log.slice(-200).join("\n");
+  }
+
   /** `SIGSTOP` freezes it, `SIGKILL` ends it without warning. */
   async signal(name) {
     this.process.kill(name);

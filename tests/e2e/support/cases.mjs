@@ -1,0 +1,57 @@
+// Cases in a real browser, which @playwright/test runs: those of a file tell one story of one
+// server, in their order, and the first that fails ends it.
+import { Browser, require_browser } from "./browser.mjs";
+import { load_module } from "./modules.mjs";
+import { StrataServer } from "./strata-server.mjs";
+
+require_browser();
+const playwright = load_module("@playwright/test");
+
+export const test = playwright.test.extend({
+  demo: [true, { scope: "worker", option: true }], // the server has the demo project
+  server: [
+    async ({ demo }, use) => {
+      const server = new StrataServer({ demo });
+      try {
+        await server.start();
+        await use(server);
+      } finally {
+        await server.remove();
+      }
+    },
+    { scope: "worker" },
+  ],
+  /** Somebody at the page: a `Browser`. */
+  desk: [
+    async ({ server: _server }, use) => {
+      const desk = await Browser.open();
+      await use(desk);
+      await desk.close();
+    },
+    { scope: "worker" },
+  ],
+  page: ({ desk }, use) => use(desk.page),
+  log_of_failure: [
+    async ({ server }, use, info) => {
+      await use();
+      if (info.status !== info.expectedStatus)
+        await info.attach("log of the server", {
+          body: server.end_of_log(),
+          contentType: "text/plain",
+        });
+    },
+    { auto: true },
+  ],
+});
+
+/** The last case of a file. */
+export function ends_well({ complaints = [], words = [] } = {}) {
+  test("the page has nothing to complain of, and the server ends with a clean log", async ({
+    desk,
+    server,
+  }) => {
+    desk.assert_no_complaints(complaints);
+    playwright.expect(await server.signal("SIGTERM")).toBe(0);
+    server.assert_clean_log(words);
+  });
+}
