@@ -1,9 +1,5 @@
-#!/usr/bin/env python3
 """The Bin: what is deleted is gone through every door, is kept over kill -9, comes back with texels, history and values, and is erased when its time is over."""
-import os
-import sys
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.kiosk_site import make_kiosk
 from support.live_client import LiveClient, Refused
@@ -150,7 +146,14 @@ def doors_of_layer(site):
     assert all("layer" not in line for line in lines if line.get("name") == "Cracks"), lines
 
 
-def layers(site):
+@pytest.fixture(scope="module")
+def site():
+    port = free_port()
+    with StrataServer(options=["--sql-listen", f"127.0.0.1:{port}"]) as server:
+        yield Site(server, port)
+
+
+def test_layers(site):
     """A layer goes and comes back, over kill -9, as it was; its short name is free meanwhile."""
     server = site.server
     before = site.state()
@@ -222,7 +225,7 @@ def layers(site):
     site.ok("carl", "DELETE", M + "/layers/cracks")
 
 
-def models(site):
+def test_models(site):
     """A model goes with all it has and comes back with it."""
     server = site.server
     site.ok("carl", "DELETE", f"{BIN}/{site.listed()[0]['id']}")
@@ -301,7 +304,7 @@ def models(site):
     assert told == [("model", "restored"), ("model", "deleted")], told
 
 
-def records(site):
+def test_records(site):
     """A record comes back with its key and values, by who may delete it, once they fit."""
     table = site.ok("ada", "GET", "/tables/units").json()["id"]
     before = site.ok("ada", "GET", "/tables/units/records/1").json()
@@ -336,7 +339,7 @@ def records(site):
     assert site.ask("ada", "POST", f"{BIN}/{entry['id']}/restore").status == 404
 
 
-def roles(site):
+def test_roles(site):
     """Who may not delete neither sees nor restores; nonsense is refused."""
     site.ok("carl", "DELETE", M + "/layers/graves")
     entry = site.listed()[0]["id"]
@@ -374,7 +377,7 @@ def roles(site):
     site.ok("carl", "POST", f"{BIN}/{entry}/restore")
 
 
-def expiry(site):
+def test_expiry(site):
     """What lay there long enough is erased at the next start, all of it, and nothing else; people erase at once."""
     server = site.server
     for name in ("Old", "Young", "Gone"):
@@ -421,16 +424,7 @@ def expiry(site):
     assert server.ok("GET", BIN).json()["entries"] == []
 
 
-def main():
-    port = free_port()
-    with StrataServer(options=["--sql-listen", f"127.0.0.1:{port}"]) as server:
-        site = Site(server, port)
-        for check in (layers, models, records, roles, expiry):
-            check(site)
-            print(f"ok: {check.__doc__}", flush=True)
-        assert server.stop() == 0
-        server.assert_clean_log()
-
-
-if __name__ == "__main__":
-    main()
+def test_the_server_ends_with_a_clean_log(site):
+    server = site.server
+    assert server.stop() == 0
+    server.assert_clean_log()

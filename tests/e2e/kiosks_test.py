@@ -1,19 +1,35 @@
-#!/usr/bin/env python3
 """Tours over HTTP, and the links of kiosks that show them: who makes them, what a kiosk sees (what is public of its model, read only, through every door of the contract),
 beside whom its cookie counts, and how it ends."""
-import os
 import subprocess
-import sys
 import uuid
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.browsers import Browser, join
 from support.kiosk_site import ALL, STOP, TOUR, M, make_kiosk, make_site, others_closed, sweep, told
 from support.live_client import LiveClient, Refused
-from support.strata_server import LONG_S, StrataServer, wait_for
+from support.strata_server import LONG_S, wait_for
 
 
-def tours(server, tokens):
+@pytest.fixture(scope="module", autouse=True)
+def site(server):
+    """The camera, files and thread of its model."""
+    return make_site(server)
+
+
+@pytest.fixture(scope="module")
+def camera(site):
+    return site[0]
+
+
+@pytest.fixture(scope="module")
+def tokens(server):
+    return {
+        name: server.add_person(name, role)
+        for name, role in (("vera", "viewer"), ("ada", "annotator"), ("carl", "curator"))
+    }
+
+
+def test_tours(server, tokens, story):
     def ask(who, method, path, body=None, **more):
         return server.request(method, path, body, token=tokens[who], **more)
 
@@ -144,11 +160,12 @@ def tours(server, tokens):
     assert server.request("DELETE", f"{ALL}/{spare['id']}").status == 204
     told(server.get(f"{ALL}/spare"), 404)
     told(server.get("/models/nothing/tours"), 404)
-    return path
+    story.tour = path
 
 
-def links(server, tokens, tour):
+def test_links(server, tokens, story):
     """Who makes, lists and ends them."""
+    tour = story.tour
     for who in ("vera", "ada"):
         told(server.post(tour + "/kiosks", {"name": "Hall"}, token=tokens[who]), 403)
         assert server.get("/kiosks", token=tokens[who]).json() == {"kiosks": [], "total": 0}
@@ -196,6 +213,14 @@ def links(server, tokens, tour):
     told(server.post("/auth/kiosk", {"link": secret}, token=False), 401, "link")
 
 
+def test_a_kiosk_opens_the_doors_of_its_tour_alone(server, site, story):
+    _, files, thread = site
+    _, story.sweep_secret = make_kiosk(server, story.tour, "Sweep")
+    answered, refused = sweep(server, story.sweep_secret, story.tour, files, thread)
+    others_closed(server, story.sweep_secret, files)
+    print(f"{answered} doors open, {refused} closed")
+
+
 class Screen(Browser):
     """A kiosk's page: all that it asks says that it is one."""
 
@@ -205,8 +230,9 @@ class Screen(Browser):
         )
 
 
-def cookies(server, tour):
+def test_cookies(server, story):
     """Whose cookie counts: the kiosk's for what is marked so, the person's for the rest."""
+    tour = story.tour
     kiosk, secret = make_kiosk(server, tour, "Cookie")
     page = server.get(f"//kiosk/{secret}", token=False)
     assert page.status in (200, 503) and page.headers["Referrer-Policy"] == "no-referrer", page
@@ -309,11 +335,14 @@ def cookies(server, tour):
         == 429,
         "guesses to be held up",
     )
-    return kiosk, secret, screen
+    story.kiosk, story.cookie_secret, story.screen = kiosk, secret, screen
 
 
-def heartbeat(server, kiosk, secret, screen):
+def test_heartbeat(server, story):
     """It is seen, and loads its page anew when it is asked to."""
+    kiosk = story.kiosk
+    secret = story.cookie_secret
+    screen = story.screen
 
     def listed():
         return next(
@@ -332,8 +361,9 @@ def heartbeat(server, kiosk, secret, screen):
     screen.ok("GET", "/kiosk")
 
 
-def live(server, tour, camera):
+def test_live(server, story, camera):
     """The live connection of a kiosk: it looks, and hears of nobody."""
+    tour = story.tour
     kiosk, secret = make_kiosk(server, tour, "Live")
     cookie = "strata_kiosk=" + secret
     for model, options, status in (
@@ -437,26 +467,10 @@ def live(server, tour, camera):
         server.ok("DELETE", f"/kiosks/{kiosk['id']}")
         screen.until_closed()
     told(server.get("/kiosk", token=secret), 401)
-    return secret
+    story.live_secret = secret
 
 
-def ends(server, kiosk, secret, screen, tour):
-    """Revoked: at once and everywhere; and the link goes with its tour."""
-    screen.ok("GET", "/kiosk")
-    server.ok("DELETE", f"/kiosks/{kiosk['id']}")
-    told(screen.request("GET", "/kiosk"), 401)
-    told(server.get(M, token=secret), 401)
-    told(server.post("/auth/kiosk", {"link": secret}, token=False), 401, "link")
-    server.ok("DELETE", f"/kiosks/{kiosk['id']}")  # again is the same
-    _, other = make_kiosk(server, tour, "Last")
-    with LiveClient(server, "sheet", token=other) as connection:
-        connection.hello(dpr=1, accept=["jpeg"])
-        server.ok("DELETE", tour)
-        connection.until_closed()
-    told(server.get("/kiosk", token=other), 401)
-
-
-def commands(server, tour):
+def test_commands(server):
     """The same from the server's own machine."""
 
     def strata(*words, code=0):
@@ -511,34 +525,34 @@ def commands(server, tour):
         strata(*words, code=2)
 
 
-def main():
-    with StrataServer() as server:
-        camera, files, thread = make_site(server)
-        tokens = {
-            name: server.add_person(name, role)
-            for name, role in (("vera", "viewer"), ("ada", "annotator"), ("carl", "curator"))
-        }
-        tour = tours(server, tokens)
-        links(server, tokens, tour)
-        _, secret = make_kiosk(server, tour, "Sweep")
-        answered, refused = sweep(server, secret, tour, files, thread)
-        others_closed(server, secret, files)
-        print(f"a kiosk: {answered} doors open, {refused} closed", flush=True)
-        kiosk, cookie_secret, screen = cookies(server, tour)
-        heartbeat(server, kiosk, cookie_secret, screen)
-        live_secret = live(server, tour, camera)
-        commands(server, tour)
-        assert server.stop() == 0
-        server.start()
-        assert server.get("/kiosk", token=secret).status == 200, "over a restart"
-        screen.server = server
-        ends(server, kiosk, cookie_secret, screen, tour)
-        assert not any(
-            word in line for line in server.log for word in (secret, cookie_secret, live_secret)
-        ), "a link stands in the log"
-        server.assert_clean_log()
-    print("tours and kiosks")
+def test_a_link_is_good_over_a_restart(server, story):
+    assert server.stop() == 0
+    server.start()
+    assert server.get("/kiosk", token=story.sweep_secret).status == 200
+    story.screen.server = server
 
 
-if __name__ == "__main__":
-    main()
+def test_ends(server, story):
+    """Revoked: at once and everywhere; and the link goes with its tour."""
+    kiosk = story.kiosk
+    secret = story.cookie_secret
+    screen = story.screen
+    tour = story.tour
+    screen.ok("GET", "/kiosk")
+    server.ok("DELETE", f"/kiosks/{kiosk['id']}")
+    told(screen.request("GET", "/kiosk"), 401)
+    told(server.get(M, token=secret), 401)
+    told(server.post("/auth/kiosk", {"link": secret}, token=False), 401, "link")
+    server.ok("DELETE", f"/kiosks/{kiosk['id']}")  # again is the same
+    _, other = make_kiosk(server, tour, "Last")
+    with LiveClient(server, "sheet", token=other) as connection:
+        connection.hello(dpr=1, accept=["jpeg"])
+        server.ok("DELETE", tour)
+        connection.until_closed()
+    told(server.get("/kiosk", token=other), 401)
+
+
+def test_no_link_stands_in_the_log(server, story):
+    secrets = (story.sweep_secret, story.cookie_secret, story.live_secret)
+    assert not any(word in line for line in server.log for word in secrets)
+    server.assert_clean_log()

@@ -1,16 +1,12 @@
-#!/usr/bin/env python3
 """Records on the surface: colours by a column, records that are highlighted, where they lie; over HTTP and in a live view."""
 import math
-import os
-import sys
 import urllib.parse
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.live_client import LAST_RECTANGLE, LiveClient
 from support.meshes import folded_grid
 from support.pictures import pixels
-from support.strata_server import StrataServer
 
 M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
 L = M + "/layers/pieces"
@@ -88,7 +84,89 @@ BY_STATE = {
 }
 
 
-def check_columns(server, camera):
+@pytest.fixture(scope="module")
+def server(server):
+    server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
+    columns = [
+        {"name": "Name"},
+        {"name": "Thickness", "kind": "numeric", "unit": "mm"},
+        {"name": "State", "kind": "enumeration", "choices": ["loose", "firm"]},
+    ]
+    server.ok(
+        "POST",
+        M + "/layers",
+        {
+            "name": "Pieces",
+            "kind": "database",
+            "type": "u16",
+            "resolution": 2048,
+            "columns": columns,
+        },
+    )
+    server.ok(
+        "POST",
+        "/tables/pieces/columns",
+        {"name": "Above", "kind": "relation", "target": "pieces"},
+    )
+    server.ok("POST", M + "/layers", {"name": "Wet", "type": "f32", "resolution": 2048})
+    for values in (
+        {"thickness": 4, "state": "loose"},
+        {"thickness": 8, "state": "firm"},
+        {"thickness": 2, "state": "loose"},
+        {"name": "Unknown"},
+        {"name": "Lost"},
+    ):
+        server.ok("POST", "/tables/pieces/records", {"values": values})
+    for key, (x, y) in PLACES.items():
+        dab(server, key, x, y)
+    return server
+
+
+@pytest.fixture(scope="module", autouse=True)
+def camera(server):
+    global SCALE
+    camera = camera_from(server.get(M).json(), [0, 0, 1], up=(0, 1, 0))
+    SCALE = find_scale(server, camera)
+    return camera
+
+
+def test_classes(server):
+    def classes(column, **query):
+        answer = server.ok(
+            "GET", f"/tables/pieces/columns/{column}/classes?" + urllib.parse.urlencode(query)
+        ).json()
+        assert answer["total"] == len(answer["classes"])
+        return answer
+
+    states = classes("state")
+    assert states["classes"] == [
+        {"value": "loose", "records": 2},
+        {"value": "firm", "records": 1},
+    ], states
+    assert (states["records"], states["without"], states["unclassified"]) == (5, 2, 0), states
+    assert classes("state", count=1)["unclassified"] == 1
+    equal = classes("thickness", method="equal", count=2)
+    assert equal["classes"] == [
+        {"from": 2, "to": 5, "records": 2},
+        {"from": 5, "to": 8, "records": 1},
+    ], equal
+    quantile = classes("thickness", method="quantile", count=3)
+    assert [each["records"] for each in quantile["classes"]] == [1, 1, 1], quantile
+    assert {each["value"] for each in classes("thickness")["classes"]} == {"2", "4", "8"}
+    for column, query, field in (
+        ("state", {"method": "equal"}, "method"),
+        ("state", {"method": "jenks"}, "method"),
+        ("state", {"count": 0}, "count"),
+        ("above", {}, "column"),
+    ):
+        answer = server.get(
+            f"/tables/pieces/columns/{column}/classes?" + urllib.parse.urlencode(query)
+        )
+        assert answer.status == 422 and answer.json()["field"] == field, answer
+    assert server.get("/tables/pieces/columns/none/classes").status == 404
+
+
+def test_columns(server, camera):
     bare = colors(server, camera, layers=[])
     assert set_palette(server, BY_STATE)["others"] == "#0000ffff"
     shown = colors(server, camera)
@@ -179,7 +257,7 @@ def check_columns(server, camera):
     assert "pattern" not in kept["points"][1], kept
 
 
-def check_highlight(server, camera):
+def test_highlight(server, camera):
     set_palette(server, BY_STATE)
     bare = colors(server, camera, layers=[])
 
@@ -241,43 +319,7 @@ def check_highlight(server, camera):
     assert server.post(M + "/layers/wet/extent", {"keys": [1]}).status == 422
 
 
-def check_classes(server):
-    def classes(column, **query):
-        answer = server.ok(
-            "GET", f"/tables/pieces/columns/{column}/classes?" + urllib.parse.urlencode(query)
-        ).json()
-        assert answer["total"] == len(answer["classes"])
-        return answer
-
-    states = classes("state")
-    assert states["classes"] == [
-        {"value": "loose", "records": 2},
-        {"value": "firm", "records": 1},
-    ], states
-    assert (states["records"], states["without"], states["unclassified"]) == (5, 2, 0), states
-    assert classes("state", count=1)["unclassified"] == 1
-    equal = classes("thickness", method="equal", count=2)
-    assert equal["classes"] == [
-        {"from": 2, "to": 5, "records": 2},
-        {"from": 5, "to": 8, "records": 1},
-    ], equal
-    quantile = classes("thickness", method="quantile", count=3)
-    assert [each["records"] for each in quantile["classes"]] == [1, 1, 1], quantile
-    assert {each["value"] for each in classes("thickness")["classes"]} == {"2", "4", "8"}
-    for column, query, field in (
-        ("state", {"method": "equal"}, "method"),
-        ("state", {"method": "jenks"}, "method"),
-        ("state", {"count": 0}, "count"),
-        ("above", {}, "column"),
-    ):
-        answer = server.get(
-            f"/tables/pieces/columns/{column}/classes?" + urllib.parse.urlencode(query)
-        )
-        assert answer.status == 422 and answer.json()["field"] == field, answer
-    assert server.get("/tables/pieces/columns/none/classes").status == 404
-
-
-def check_live(server, camera):
+def test_live(server, camera):
     """What a person lights up is theirs alone, and follows the records. (What it looks like, the page's test sees.)"""
     set_palette(server, BY_STATE)
     with LiveClient(server, "sheet") as live, LiveClient(server, "sheet") as other:
@@ -335,50 +377,6 @@ def check_live(server, camera):
     server.ok("PATCH", "/tables/pieces/records/3", {"values": {"thickness": 2, "state": "loose"}})
 
 
-def main():
-    global SCALE
-    with StrataServer() as server:
-        server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
-        columns = [
-            {"name": "Name"},
-            {"name": "Thickness", "kind": "numeric", "unit": "mm"},
-            {"name": "State", "kind": "enumeration", "choices": ["loose", "firm"]},
-        ]
-        server.ok(
-            "POST",
-            M + "/layers",
-            {
-                "name": "Pieces",
-                "kind": "database",
-                "type": "u16",
-                "resolution": 2048,
-                "columns": columns,
-            },
-        )
-        server.ok(
-            "POST",
-            "/tables/pieces/columns",
-            {"name": "Above", "kind": "relation", "target": "pieces"},
-        )
-        server.ok("POST", M + "/layers", {"name": "Wet", "type": "f32", "resolution": 2048})
-        for values in (
-            {"thickness": 4, "state": "loose"},
-            {"thickness": 8, "state": "firm"},
-            {"thickness": 2, "state": "loose"},
-            {"name": "Unknown"},
-            {"name": "Lost"},
-        ):
-            server.ok("POST", "/tables/pieces/records", {"values": values})
-        for key, (x, y) in PLACES.items():
-            dab(server, key, x, y)
-        camera = camera_from(server.get(M).json(), [0, 0, 1], up=(0, 1, 0))
-        SCALE = find_scale(server, camera)
-        check_classes(server)
-        check_columns(server, camera)
-        check_highlight(server, camera)
-        check_live(server, camera)
-        assert server.stop() == 0
-        server.assert_clean_log()
-
-
-main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()
