@@ -2,7 +2,7 @@
 
 import type { FilterValue } from "./column-filter";
 import type { CellValue, RecordList } from "../core/protocol.gen";
-import type { RecordQuery } from "../net/api";
+import type { RecordQuery } from "../net/records";
 
 const kPage = 1000; // the most that the server gives at once
 const kMostCounted = 20_000; // beyond it a person would wait

@@ -1,7 +1,9 @@
 // What is told of a record: the columns that the tour chose, or else what its table tells, in the
 // visitor's language, and its pictures.
 
-import { ApiError, type Api } from "../net/api";
+import { ApiError } from "../net/api-error";
+import type { Api } from "../net/api";
+import { readRecord } from "../net/records";
 import {
   cellText,
   holdsFiles,
@@ -61,10 +63,12 @@ export async function cardOf(api: Api, asked: CardAsked): Promise<Card | null> {
 }
 
 async function readCard(api: Api, asked: CardAsked): Promise<Card> {
-  const table = await api.table(asked.table);
-  const [record, files] = await Promise.all([
-    api.record({ table: table.id }, asked.key),
-    api.attachments(table.id, asked.key),
+  const table = await api.json("GET /tables/{table}", { path: { table: asked.table } });
+  const [record, { attachments }] = await Promise.all([
+    readRecord(api, { table: table.id }, asked.key),
+    api.json("GET /tables/{table}/records/{key}/attachments", {
+      path: { table: table.id, key: asked.key },
+    }),
   ]);
   const title =
     labelOfRecord(table, record, [asked.language]) ||
@@ -90,7 +94,7 @@ async function readCard(api: Api, asked: CardAsked): Promise<Card> {
     pictures: picturesOf(
       shown.map(({ column }) => column),
       record,
-      files,
+      attachments,
     ),
   };
 }
@@ -152,8 +156,8 @@ async function namesOf(
 ): Promise<string[]> {
   if (keys.length === 0) return [];
   try {
-    const target = await api.table(table);
-    const records = await Promise.all(keys.map((key) => api.record({ table }, key)));
+    const target = await api.json("GET /tables/{table}", { path: { table } });
+    const records = await Promise.all(keys.map((key) => readRecord(api, { table }, key)));
     return records
       .map((record) => labelOfRecord(target, record, [language]))
       .filter((name) => name !== "");

@@ -2,7 +2,8 @@
 // record, and whether somebody is there. Elements subscribe and draw themselves from its state;
 // they change it only through its methods.
 
-import { type Api, ApiError } from "../net/api";
+import type { Api } from "../net/api";
+import { ApiError } from "../net/api-error";
 import type { SocketLike } from "../net/connection";
 import type { KioskSelf, Picked, Tour, View } from "../core/protocol.gen";
 import { AttractLoop } from "./attract";
@@ -365,7 +366,9 @@ export class KioskSession {
   /** Null: it is gone. Where the server is away, as it was known, or undefined. */
   private async readView(model: string, slug: string): Promise<View | null | undefined> {
     try {
-      return await this._options.api.view(model, slug);
+      return await this._options.api.json("GET /models/{model}/views/{view}", {
+        path: { model, view: slug },
+      });
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       return error.status === 404 ? null : this._views.get(slug);

@@ -3,17 +3,13 @@
 // server that is away is asked again for ever, ever more seldom; and so is, every five minutes, one
 // that knows no such link: what was in the trash may be restored.
 
-import { ApiError } from "../net/api";
+import type { Api } from "../net/api";
+import { ApiError } from "../net/api-error";
 import type { KioskSelf } from "../core/protocol.gen";
 
 const kHeartbeatS = 30;
 const kFirstRetryS = 1;
 const kWorthlessS = 300;
-
-export interface LinkServer {
-  signInKiosk(link: string): Promise<KioskSelf>;
-  kioskSelf(): Promise<KioskSelf>;
-}
 
 export interface LinkHost {
   told(self: KioskSelf): void;
@@ -36,7 +32,7 @@ export class KioskLink {
   private _timer: ReturnType<typeof setTimeout> | null = null;
 
   constructor(
-    private readonly _server: LinkServer,
+    private readonly _api: Api,
     private readonly _secret: string,
     private readonly _host: LinkHost,
   ) {}
@@ -77,7 +73,7 @@ export class KioskLink {
   }
 
   private async askOnce(): Promise<void> {
-    const self = this._signedIn ? await this.unlessForgotten(this._server.kioskSelf()) : null;
+    const self = this._signedIn ? await this.unlessForgotten(this._api.json("GET /kiosk")) : null;
     if (self?.wants_reload) {
       this.stop();
       this._host.reload();
@@ -97,7 +93,7 @@ export class KioskLink {
   private async signIn(): Promise<KioskSelf | null> {
     this._signedIn = false;
     try {
-      const self = await this._server.signInKiosk(this._secret);
+      const self = await this._api.json("POST /auth/kiosk", { body: { link: this._secret } });
       this._signedIn = true;
       return self;
     } catch (error) {

@@ -2,7 +2,7 @@
 // shows of layers, looks and light.
 
 import { ViewControl } from "../session/view-control";
-import { newId } from "../net/api";
+import { newId } from "../core/ids";
 import { Connection, type SocketLike } from "../net/connection";
 import type { FrameMessage } from "../net/frame-header";
 import type { GestureHandler, PointerSample } from "../ui/input";

@@ -2,7 +2,8 @@
 // files, what it was told of its tour, and all that the stops show. Where browsers have no such
 // store (addresses without TLS other than localhost), nothing is kept.
 
-import { Api, ApiError, type Fetch } from "../net/api";
+import { Api, type Fetch } from "../net/api";
+import { ApiError } from "../net/api-error";
 import type { KioskSelf } from "../core/protocol.gen";
 import { asKiosk, patientFetch, pictureOfView } from "./as-kiosk";
 import { cardOf } from "./cards";
@@ -125,7 +126,7 @@ async function keepTour({ model, tour }: KioskSelf, get: Fetch, put: Put): Promi
   });
   const picture = (address: string): Promise<void> => put(address, () => get(address));
   for (const view of new Set(tour.stops.flatMap((stop) => stop.view ?? []))) {
-    await unlessGone(api.view(model, view));
+    await unlessGone(api.json("GET /models/{model}/views/{view}", { path: { model, view } }));
     await picture(pictureOfView(model, view));
   }
   for (const stop of tour.stops)

@@ -2,7 +2,7 @@
 // and comes back by itself after a lost connection. The socket can be replaced by a fake; nothing
 // here touches the page.
 
-import { newId } from "./api";
+import { newId } from "../core/ids";
 import type { CameraMessage } from "../math/camera";
 import { decodeFrame, FrameError, type FrameMessage } from "./frame-header";
 import { Outbox, type ChangeMessage, type SingleChange } from "./outbox";

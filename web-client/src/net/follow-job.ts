@@ -1,6 +1,7 @@
 // Long work on the server, watched until it ends.
 
-import { ApiError, type Api } from "./api";
+import { ApiError } from "./api-error";
+import type { Api } from "./api";
 import type { Job } from "../core/types";
 
 const kPollMs = 400;
@@ -22,7 +23,7 @@ export async function followJob(api: Api, first: Job, tell: (job: Job) => void):
     const pauseMs = Math.min(kPollMs * 1.5 ** failedPolls, kLongestPollMs);
     await new Promise((resolve) => setTimeout(resolve, pauseMs));
     try {
-      job = await api.job(job.id);
+      job = await api.json("GET /jobs/{job}", { path: { job: job.id } });
       failedPolls = 0;
     } catch (error) {
       const passing =

@@ -1,7 +1,7 @@
 // Things of one kind that the server lists, each with a version, and tells changes of: all are read
 // at first, and what happens meanwhile holds.
 
-import { ApiError } from "./api";
+import { ApiError } from "./api-error";
 
 interface Item {
   readonly id: number;

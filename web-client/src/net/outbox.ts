@@ -1,7 +1,7 @@
 // Everything this page asked the server to change and that is not known to be durable yet, in the
 // order it was asked. Ids never change, so sending a message again paints nothing twice.
 
-import { newId } from "./api";
+import { newId } from "../core/ids";
 import type {
   EditRequest,
   Redo,

@@ -3,7 +3,9 @@
 // themselves come to the page like anyone's, when they are done; a file stays listed until it is
 // saved.
 
-import { ApiError, type Api } from "../net/api";
+import { pageLocale } from "../core/locale";
+import { ApiError } from "../net/api-error";
+import type { Api } from "../net/api";
 import type { FigureRequest } from "../core/protocol.gen";
 import type { Job, LayerCreate, ProblemBody, Transfer, TransferReport } from "../core/types";
 import { followJob, jobIsOver } from "../net/follow-job";
@@ -36,13 +38,19 @@ export class LayerJobs {
 
   /** Throws an ApiError where the server refuses it at once. */
   async compute(layer: LayerCreate): Promise<StartedJob> {
-    const job = await this._api.computeLayer(this._modelId, layer);
+    const job = (await this._api.json("POST /models/{model}/layers", {
+      path: { model: this._modelId },
+      body: layer,
+    })) as Job;
     return { done: this.follow(this.add(layer.name, job), job) };
   }
 
   /** The same. `name`: what the person is told that it is. */
   async transfer(name: string, wish: Transfer): Promise<StartedJob> {
-    const job = await this._api.transfer(this._modelId, wish);
+    const job = await this._api.json("POST /models/{model}/transfer", {
+      path: { model: this._modelId },
+      body: wish,
+    });
     return { done: this.follow(this.add(name, job), job) };
   }
 
@@ -59,7 +67,12 @@ export class LayerJobs {
     wish: FigureRequest,
     made: (key: number, job: Job) => void,
   ): Promise<number> {
-    const job = await this._api.makeFigure(this._modelId, wish);
+    const job = await this._api.json("POST /models/{model}/figures", {
+      path: { model: this._modelId },
+      query: { lang: pageLocale() },
+      body: wish,
+      header: { Prefer: "respond-async" },
+    });
     const key = this.add(name, job);
     void this.follow(key, job, (last) => made(key, last));
     return key;
@@ -67,7 +80,7 @@ export class LayerJobs {
 
   async cancel(key: number): Promise<void> {
     const job = this.entries.find((entry) => entry.key === key)?.job;
-    if (job) await this._api.cancelJob(job.id);
+    if (job) await this._api.send("DELETE /jobs/{job}", { path: { job: job.id } });
   }
 
   dismiss(key: number): void {

@@ -1,7 +1,7 @@
 // Asks the server what is under the pointer: one question at a time, the newest place wins, and not
 // too often.
 
-import { newId } from "../net/api";
+import { newId } from "../core/ids";
 import type { PointerSample } from "../ui/input";
 import type { Picked } from "../core/protocol.gen";
 

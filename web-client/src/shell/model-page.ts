@@ -4,7 +4,8 @@
 import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
-import { ApiError, type Api } from "../net/api";
+import { ApiError } from "../net/api-error";
+import { type Api, kAsItIs } from "../net/api";
 import { labelOf } from "../domain/cells";
 import type { Project, TourEntry } from "../core/protocol.gen";
 import type { Column, Layer, Me, Model, Role } from "../core/types";
@@ -657,7 +658,10 @@ async function dropColumn(
   )
     return;
   try {
-    await session.api.dropColumn(view.tableId, column.id);
+    await session.api.send("DELETE /tables/{table}/columns/{column}", {
+      path: { table: view.tableId, column: column.id },
+      header: kAsItIs,
+    });
     await session.tables.reload(view.tableId);
   } catch (error) {
     notices.error(error);

@@ -7,7 +7,8 @@
 // `figures` what is drawn to scale, `face` the one that is asked for. Elements subscribe and draw
 // themselves from their state; they change it only through their methods.
 
-import { type Api, ApiError, type Versioned } from "../net/api";
+import type { Api, Versioned } from "../net/api";
+import { ApiError } from "../net/api-error";
 import {
   Connection,
   type ConnectionState,
@@ -443,7 +444,9 @@ export class OpenModelSession implements ModelSession {
   }
 
   async open(): Promise<void> {
-    const model = await this.api.model(this.modelId);
+    const model = await this.api.versioned("GET /models/{model}", {
+      path: { model: this.modelId },
+    });
     if (this._closed) return;
     this.takeModel(model);
     remember(this);
@@ -642,11 +645,19 @@ export class OpenModelSession implements ModelSession {
   }
 
   async changeModel(change: ModelPatch): Promise<void> {
-    this.takeModel(await this.api.changeModel(this.modelId, change, this._etag));
+    this.takeModel(
+      await this.api.versioned("PATCH /models/{model}", {
+        path: { model: this.modelId },
+        body: change,
+        header: { "If-Match": this._etag },
+      }),
+    );
   }
 
   async reloadModel(): Promise<void> {
-    this.takeModel(await this.api.model(this.modelId));
+    this.takeModel(
+      await this.api.versioned("GET /models/{model}", { path: { model: this.modelId } }),
+    );
   }
 
   /**
@@ -701,7 +712,7 @@ export class OpenModelSession implements ModelSession {
   /** A refused socket does not say why; the same question over HTTP does. */
   private async findWhyLost(): Promise<void> {
     try {
-      await this.api.model(this.modelId);
+      await this.api.versioned("GET /models/{model}", { path: { model: this.modelId } });
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.status === 404) this.onDeleted();

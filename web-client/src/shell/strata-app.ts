@@ -4,7 +4,8 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
-import { Api, ApiError } from "../net/api";
+import { Api } from "../net/api";
+import { ApiError } from "../net/api-error";
 import type { Project } from "../core/protocol.gen";
 import type { Me } from "../core/types";
 import type { AccountRequest } from "../ui/account-menu";
@@ -119,7 +120,7 @@ export class StrataApp extends LitElement {
 
   private async checkSession(): Promise<void> {
     try {
-      await this.takeMe(await this._api.me());
+      await this.takeMe(await this._api.json("GET /me"));
       this._session = "signed-in";
       checkConnections();
     } catch (error) {
@@ -136,7 +137,7 @@ export class StrataApp extends LitElement {
   private async takeMe(me: Me): Promise<void> {
     const lost = this._me && this._me.user !== me.user ? discardUnsaved() : 0;
     if (lost > 0) notices.show("problem", texts.saving.discarded(lost));
-    this._projects = await this._api.projects();
+    this._projects = await this._api.all("GET /projects", "projects");
     this._me = me;
   }
 
@@ -144,7 +145,7 @@ export class StrataApp extends LitElement {
   private readonly refreshMe = async (): Promise<void> => {
     if (this._session !== "signed-in") return;
     try {
-      await this.takeMe(await this._api.me());
+      await this.takeMe(await this._api.json("GET /me"));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.status === 401) this.signedOut(); // anything else is told where it matters
@@ -183,7 +184,7 @@ export class StrataApp extends LitElement {
     };
     if (lost > 0 && !(await ask({ ...question, danger: true }))) return;
     try {
-      await this._api.logout();
+      await this._api.send("POST /logout");
     } catch (error) {
       if (!(error instanceof ApiError) || error.status !== 401) {
         notices.error(error); // nobody must think that they are signed out while they are not

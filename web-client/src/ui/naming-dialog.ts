@@ -2,7 +2,8 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError, newId } from "../net/api";
+import { ApiError } from "../net/api-error";
+import { newId } from "../core/ids";
 import "./dialog";
 import type { StrataDialog } from "./dialog";
 import { formStyles, sharedStyles } from "./styles";

@@ -1,6 +1,6 @@
 // Messages to the person, shown by <strata-notices>. A notice says what happened and what to do.
 
-import { ApiError } from "../net/api";
+import { ApiError } from "../net/api-error";
 import type { ProblemBody } from "../core/types";
 import { texts } from "../texts";
 

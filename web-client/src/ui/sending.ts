@@ -1,7 +1,8 @@
 // Files that a dialog sends: how far they are, and what is wrong.
 
 import type { ReactiveController, ReactiveControllerHost } from "lit";
-import { ApiError, type Upload } from "../net/api";
+import { ApiError } from "../net/api-error";
+import type { Upload } from "../net/upload";
 import { texts } from "../texts";
 
 export type Begin<T> = (progress: (share: number) => void) => Upload<T>;

@@ -109,13 +109,22 @@ export class StrataThumbnail extends LitElement {
   }
 
   private picture(signal: AbortSignal): Promise<Blob> {
-    if (this.view) return this.api.viewPicture(this.model.id, this.view.id, kViewSide, signal);
+    if (this.view)
+      return this.api.blob("GET /models/{model}/views/{view}/picture", {
+        path: { model: this.model.id, view: this.view.id },
+        query: { thumbnail: kViewSide },
+        signal,
+      });
     const camera = new OrbitCamera();
     camera.setModel(this.model.bounds, this.up ?? this.model.up);
     if (this.up) camera.resize(kSmallWidth, kSmallHeight);
     else camera.resize(kWidth, kHeight);
     camera.firstView();
-    return this.api.frame(this.model.id, camera.message(), signal);
+    return this.api.blob("POST /models/{model}/frame", {
+      path: { model: this.model.id },
+      body: { camera: camera.message(), format: "jpeg" },
+      signal,
+    });
   }
 
   override render(): TemplateResult {

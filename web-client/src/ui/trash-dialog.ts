@@ -4,12 +4,13 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { ApiError, type Api } from "../net/api";
+import { ApiError } from "../net/api-error";
+import type { Api } from "../net/api";
 import { formatBytes } from "../domain/measure";
 import { called } from "../domain/people";
 import type { BinEntry, BinList, Project } from "../core/protocol.gen";
 import type { Model } from "../core/types";
-import { toldRestored, type TrashApi } from "./trash";
+import { toldRestored } from "./trash";
 import { ask } from "./dialog";
 import { icon, type IconName } from "./icons";
 import { notices } from "./notices";
@@ -27,7 +28,7 @@ const kIcons: Record<BinEntry["kind"], IconName> = {
 
 @customElement("strata-bin-dialog")
 export class StrataTrashDialog extends LitElement {
-  @property({ attribute: false }) api!: TrashApi;
+  @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) project!: Pick<Project, "slug" | "name">;
   answer: (isChanged: boolean) => void = () => {};
 
@@ -157,12 +158,18 @@ export class StrataTrashDialog extends LitElement {
   }
 
   private async read(): Promise<void> {
-    this._trash = await this.api.trash(this.project.slug, { limit: kAtOnce, offset: 0 });
+    this._trash = await this.api.json("GET /projects/{project}/bin", {
+      path: { project: this.project.slug },
+      query: { limit: kAtOnce, offset: 0 },
+    });
   }
 
   private async readMore(): Promise<void> {
     const known = this._trash?.entries ?? [];
-    const next = await this.api.trash(this.project.slug, { limit: kAtOnce, offset: known.length });
+    const next = await this.api.json("GET /projects/{project}/bin", {
+      path: { project: this.project.slug },
+      query: { limit: kAtOnce, offset: known.length },
+    });
     const ids = new Set(known.map(({ id }) => id)); // something came to the trash meanwhile
     this._trash = {
       ...next,
@@ -172,7 +179,9 @@ export class StrataTrashDialog extends LitElement {
 
   private restore(entry: BinEntry): Promise<void> {
     return this.attempt(async () => {
-      const restored = await this.api.restoreFromTrash(this.project.slug, entry.id);
+      const restored = await this.api.json("POST /projects/{project}/bin/{entry}/restore", {
+        path: { project: this.project.slug, entry: entry.id },
+      });
       this.takeOut(entry, toldRestored(restored));
     });
   }
@@ -188,7 +197,9 @@ export class StrataTrashDialog extends LitElement {
     )
       return;
     await this.attempt(async () => {
-      await this.api.eraseFromTrash(this.project.slug, entry.id);
+      await this.api.send("DELETE /projects/{project}/bin/{entry}", {
+        path: { project: this.project.slug, entry: entry.id },
+      });
       this.takeOut(entry, words.erased(entry.name));
     });
   }
@@ -231,10 +242,7 @@ export class StrataTrashDialog extends LitElement {
 }
 
 /** Whether something was restored or deleted for ever. */
-export function openTrash(
-  api: TrashApi,
-  project: Pick<Project, "slug" | "name">,
-): Promise<boolean> {
+export function openTrash(api: Api, project: Pick<Project, "slug" | "name">): Promise<boolean> {
   return new Promise((resolve) => {
     const element = new StrataTrashDialog();
     Object.assign(element, { api, project, answer: resolve });
@@ -252,7 +260,10 @@ export async function openTrashOf({
 }): Promise<void> {
   if (!model) return;
   try {
-    await openTrash(api, (await api.project(model.project)).value);
+    await openTrash(
+      api,
+      (await api.versioned("GET /projects/{project}", { path: { project: model.project } })).value,
+    );
   } catch (error) {
     notices.error(error);
   }

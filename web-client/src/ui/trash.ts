@@ -1,12 +1,11 @@
 // Deleting what goes to the trash of a project: the question before, and the way back after.
 
-import { ApiError, type Api } from "../net/api";
+import { ApiError } from "../net/api-error";
+import type { Api } from "../net/api";
 import type { BinKind, BinRestored } from "../core/protocol.gen";
 import { ask } from "./dialog";
 import { notices } from "./notices";
 import { texts } from "../texts";
-
-export type TrashApi = Pick<Api, "trash" | "restoreFromTrash" | "eraseFromTrash">;
 
 export interface Deletable {
   kind: BinKind;
@@ -20,17 +19,19 @@ export interface Deletable {
  * say.
  */
 export async function askToTrash(
-  api: TrashApi,
+  api: Api,
   { name, project }: Deletable,
   words: { title: (name: string) => string; lead: string },
 ): Promise<boolean> {
-  const days = await api.trash(project, { limit: 1, offset: 0 }).then(
-    (trash) => trash.days,
-    (error: unknown) => {
-      if (!(error instanceof ApiError)) throw error;
-      return null; // whoever deletes is told what is wrong
-    },
-  );
+  const days = await api
+    .json("GET /projects/{project}/bin", { path: { project }, query: { limit: 1, offset: 0 } })
+    .then(
+      (trash) => trash.days,
+      (error: unknown) => {
+        if (!(error instanceof ApiError)) throw error;
+        return null; // whoever deletes is told what is wrong
+      },
+    );
   return ask({
     heading: words.title(name),
     lead: `${words.lead} ${days === 0 ? texts.bin.not_kept : texts.bin.kept(days)}`,
@@ -41,13 +42,15 @@ export async function askToTrash(
 
 /** Says that it was deleted, with a button that brings it back. `cameBack`: once it did. */
 export function tellTrashed(
-  api: TrashApi,
+  api: Api,
   gone: Deletable,
   cameBack: (restored: BinRestored) => void = () => {},
 ): void {
   const undo = async (): Promise<void> => {
     try {
-      const restored = await api.restoreFromTrash(gone.project, gone.entry);
+      const restored = await api.json("POST /projects/{project}/bin/{entry}/restore", {
+        path: { project: gone.project, entry: gone.entry },
+      });
       notices.show("success", toldRestored(restored));
       cameBack(restored);
     } catch (error) {

@@ -3,7 +3,7 @@
 
 import { html, type TemplateResult } from "lit";
 import { csvSeparator, pageLocale } from "../core/locale";
-import type { WorkbookQuery } from "../net/api";
+import type { WorkbookQuery } from "../domain/workbooks";
 import { copyText } from "./copy-field";
 import { icon } from "./icons";
 import { notices } from "./notices";

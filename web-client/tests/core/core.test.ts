@@ -1,6 +1,10 @@
 import { describe, expect, it } from "vitest";
 
-import { Api, ApiError, nameOfFile, newId, problemOfText } from "../../src/net/api";
+import { Api } from "../../src/net/api";
+import { ApiError, problemOfText } from "../../src/net/api-error";
+import { nameOfFile } from "../../src/domain/file-names";
+import { newId } from "../../src/core/ids";
+import { changeLayer, createLayer } from "../../src/net/layers";
 import {
   detailChoices,
   formatArea,
@@ -20,6 +24,7 @@ import {
   purposeOf,
   samePalette,
 } from "../../src/domain/palette";
+import type { Camera } from "../../src/core/protocol.gen";
 import { completePalette } from "../../src/core/types";
 
 describe("numbers as people write them", () => {
@@ -200,7 +205,7 @@ describe("HTTP", () => {
       field: "value",
     };
     const api = new Api(async () => answer(422, JSON.stringify(problem)));
-    await expect(api.me()).rejects.toEqual(new ApiError(problem));
+    await expect(api.json("GET /me")).rejects.toEqual(new ApiError(problem));
   });
   it("an answer that is no problem object is told in plain words", () => {
     expect(problemOfText(503, "<html>").title).toBe("The server is not ready");
@@ -208,7 +213,7 @@ describe("HTTP", () => {
   });
   it("a lost network is an ApiError of status 0", async () => {
     const api = new Api(() => Promise.reject(new TypeError("failed")));
-    await expect(api.models()).rejects.toMatchObject({ status: 0 });
+    await expect(api.all("GET /models", "models")).rejects.toMatchObject({ status: 0 });
   });
   it("a picture that nobody waits for any more is asked for no longer", async () => {
     const givenUp: string[] = [];
@@ -222,8 +227,19 @@ describe("HTTP", () => {
         ),
     );
     const stop = new AbortController();
-    const camera = { op: "camera" } as unknown as Parameters<Api["frame"]>[1];
-    const pictures = [api.frame(1, camera, stop.signal), api.viewPicture(1, 2, 256, stop.signal)];
+    const camera = {} as Camera;
+    const pictures = [
+      api.blob("POST /models/{model}/frame", {
+        path: { model: 1 },
+        body: { camera, format: "jpeg" },
+        signal: stop.signal,
+      }),
+      api.blob("GET /models/{model}/views/{view}/picture", {
+        path: { model: 1, view: 2 },
+        query: { thumbnail: 256 },
+        signal: stop.signal,
+      }),
+    ];
     stop.abort();
     for (const picture of pictures) await expect(picture).rejects.toMatchObject({ status: 499 });
     expect(givenUp).toEqual([
@@ -237,7 +253,7 @@ describe("HTTP", () => {
       calls.push([init!.method!, path, (init!.headers as Record<string, string>)["If-Match"]]);
       return answer(200, '{"id":7,"palette":{"mode":"categorical"}}', { ETag: '"3"' });
     });
-    const changed = await api.changeLayer(1, 7, { name: "x" });
+    const changed = await changeLayer(api, 1, 7, { name: "x" });
     expect(calls).toEqual([
       ["GET", "/api/v1/models/1/layers/7", undefined],
       ["PATCH", "/api/v1/models/1/layers/7", '"3"'],
@@ -245,7 +261,7 @@ describe("HTTP", () => {
     expect(changed.palette.points).toEqual([]);
     calls.length = 0;
     // the version that somebody looked at, even if it is old by now
-    await api.changeLayer(1, 7, { name: "y" }, '"2"');
+    await changeLayer(api, 1, 7, { name: "y" }, '"2"');
     expect(calls).toEqual([["PATCH", "/api/v1/models/1/layers/7", '"2"']]);
   });
   it("every POST that changes something has a key of its own", async () => {
@@ -254,7 +270,7 @@ describe("HTTP", () => {
       keys.add((init!.headers as Record<string, string>)["Idempotency-Key"]!);
       return answer(201, '{"palette":{"mode":"categorical"}}');
     });
-    for (let i = 0; i < 3; ++i) await api.createLayer(1, { name: "a" });
+    for (let i = 0; i < 3; ++i) await createLayer(api, 1, { name: "a" });
     expect(keys.size).toBe(3);
     expect(keys.has(undefined as unknown as string)).toBe(false);
   });

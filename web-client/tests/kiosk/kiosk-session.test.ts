@@ -2,7 +2,8 @@
 // clock that jumps.
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
-import { Api, ApiError } from "../../src/net/api";
+import { Api } from "../../src/net/api";
+import { ApiError } from "../../src/net/api-error";
 import type { KioskSelf, View } from "../../src/core/protocol.gen";
 import { KioskSession } from "../../src/kiosk/kiosk-session";
 import { KioskLink } from "../../src/kiosk/link";
@@ -180,7 +181,7 @@ describe("the link of a kiosk", () => {
     const site = new Site();
     const host = { told: vi.fn(), missed: vi.fn(), worthless: vi.fn(), reload: vi.fn() };
     const refuse = vi
-      .spyOn(site.api, "signInKiosk")
+      .spyOn(site.api, "json")
       .mockRejectedValue(new ApiError({ status: 429, title: "Too many tries" }));
     new KioskLink(site.api, "SECRET", host).ask();
     await vi.advanceTimersByTimeAsync(10_000);

@@ -1,7 +1,8 @@
 import { describe, expect, it, vi } from "vitest";
 
 import { Sending } from "../../src/ui/sending";
-import { ApiError, type Upload } from "../../src/net/api";
+import { ApiError } from "../../src/net/api-error";
+import type { Upload } from "../../src/net/upload";
 
 const host = () => ({
   addController: vi.fn(),

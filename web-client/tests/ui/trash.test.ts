@@ -1,8 +1,9 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
-import { tellTrashed, toldRestored, type TrashApi } from "../../src/ui/trash";
+import { tellTrashed, toldRestored } from "../../src/ui/trash";
+import { fakeApi } from "../fake-api";
 import { notices, type Notice } from "../../src/ui/notices";
-import { ApiError } from "../../src/net/api";
+import { ApiError } from "../../src/net/api-error";
 import type { BinRestored } from "../../src/core/protocol.gen";
 
 const cracks: BinRestored = {
@@ -18,12 +19,12 @@ describe("what was deleted", () => {
   let forget: () => void;
   const asked: string[] = [];
   let answer: () => Promise<BinRestored>;
-  const api = {
-    restoreFromTrash: (project: string, entry: string) => {
+  const api = fakeApi({
+    "POST /projects/{project}/bin/{entry}/restore": ({ path: { project, entry } }) => {
       asked.push(`${project}/${entry}`);
       return answer();
     },
-  } as unknown as TrashApi;
+  });
   const undo = async (): Promise<void> => {
     const link = shown[shown.length - 1]?.link;
     if (!link || !("act" in link)) throw new Error("there is no way back");

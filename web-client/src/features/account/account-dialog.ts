@@ -4,7 +4,8 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
 import { formatList } from "../../core/locale";
 import {
   browserOf,
@@ -143,13 +144,13 @@ export class StrataAccountDialog extends LitElement {
   }
 
   private async readProjects(): Promise<void> {
-    this._projects = await this.api.projects();
+    this._projects = await this.api.all("GET /projects", "projects");
   }
   private async readSessions(): Promise<void> {
-    this._sessions = await this.api.signInSessions();
+    this._sessions = await this.api.all("GET /me/sessions", "sessions");
   }
   private async readTokens(): Promise<void> {
-    this._tokens = await this.api.scriptTokens();
+    this._tokens = await this.api.all("GET /me/tokens", "tokens");
   }
 
   override render(): TemplateResult {
@@ -390,7 +391,7 @@ export class StrataAccountDialog extends LitElement {
     event.preventDefault();
     const fullName = textOf(event, "full_name").trim();
     void this.attempt("name", async () => {
-      this.changed(await this.api.changeMe({ full_name: fullName }));
+      this.changed(await this.api.json("PATCH /me", { body: { full_name: fullName } }));
       this._note = { section: "name", kind: "done", text: words.full_name_saved };
     });
   }
@@ -410,7 +411,7 @@ export class StrataAccountDialog extends LitElement {
   }
 
   private async setPassword(change: { password: string; current?: string }): Promise<void> {
-    await this.api.changePassword(change);
+    await this.api.send("POST /me/password", { body: change });
     this._passwordForm.reset();
     this.changed({ ...this.me, has_password: true });
     this._note = { section: "password", kind: "done", text: words.password_saved };
@@ -436,11 +437,13 @@ export class StrataAccountDialog extends LitElement {
       return;
     }
     void this.attempt("tokens", async () => {
-      this._made = await this.api.createToken({
-        name,
-        role,
-        days,
-        ...(only ? { project: only } : {}),
+      this._made = await this.api.json("POST /me/tokens", {
+        body: {
+          name,
+          role,
+          days,
+          ...(only ? { project: only } : {}),
+        },
       });
       this._adding = false;
       await this.readTokens();
@@ -449,14 +452,16 @@ export class StrataAccountDialog extends LitElement {
 
   private async endSession({ id }: SignInSession): Promise<void> {
     await this.attempt("sessions", async () => {
-      await this.api.endSession(id).catch(unlessGone);
+      await this.api
+        .send("DELETE /me/sessions/{session}", { path: { session: id } })
+        .catch(unlessGone);
       await this.readSessions();
     });
   }
 
   private async endOthers(): Promise<void> {
     await this.attempt("sessions", async () => {
-      await this.api.endOtherSessions();
+      await this.api.send("DELETE /me/sessions");
       await this.readSessions();
       this._note = { section: "sessions", kind: "done", text: words.signed_out_others };
     });
@@ -473,7 +478,7 @@ export class StrataAccountDialog extends LitElement {
     )
       return;
     await this.attempt("tokens", async () => {
-      await this.api.revokeToken(id).catch(unlessGone);
+      await this.api.send("DELETE /me/tokens/{token}", { path: { token: id } }).catch(unlessGone);
       if (this._made?.token.id === id) this._made = null;
       await this.readTokens();
     });

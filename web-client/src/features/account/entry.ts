@@ -1,6 +1,6 @@
 // What the pages before the sign-in read from what they are given, and say about refusals.
 
-import type { ApiError } from "../../net/api";
+import type { ApiError } from "../../net/api-error";
 import { kLeastPasswordLength, type PasswordMistake } from "../../domain/people";
 import { texts } from "../../texts";
 

@@ -4,7 +4,8 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
 import type { Group, Person } from "../../core/protocol.gen";
 import { ask, askText } from "../../ui/dialog";
 import "./group-members-dialog";
@@ -80,7 +81,7 @@ export class StrataGroupList extends LitElement {
   private async read(): Promise<void> {
     this._problem = "";
     try {
-      this._groups = await this.api.groups();
+      this._groups = await this.api.all("GET /groups", "groups");
     } catch (error) {
       this._problem = this.told(error);
     }
@@ -166,7 +167,7 @@ export class StrataGroupList extends LitElement {
     this._nameProblem = name === "" ? words.name_empty : "";
     if (name === "") return this._name.focus();
     try {
-      const { id } = await this.api.createGroup({ name });
+      const { id } = await this.api.json("POST /groups", { body: { name } });
       this._name.value = "";
       await this.read();
       // nobody is in it yet
@@ -185,12 +186,16 @@ export class StrataGroupList extends LitElement {
       yes: texts.save,
     });
     if (next === null || next === name) return;
-    await this.change(id, () => this.api.changeGroup(id, { name: next }));
+    await this.change(id, () =>
+      this.api.json("PATCH /groups/{group}", { path: { group: id }, body: { name: next } }),
+    );
   }
 
   private async deleteGroup({ id, name }: Group): Promise<void> {
     await this.change(id, async () => {
-      const { losing, members } = await this.api.group(id);
+      const { losing, members } = await this.api.json("GET /groups/{group}", {
+        path: { group: id },
+      });
       if (
         !(await ask({
           heading: words.delete_title(name),
@@ -200,7 +205,7 @@ export class StrataGroupList extends LitElement {
         }))
       )
         return;
-      await this.api.deleteGroup(id);
+      await this.api.send("DELETE /groups/{group}", { path: { group: id } });
     });
   }
 

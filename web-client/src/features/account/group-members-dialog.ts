@@ -4,7 +4,8 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
 import { called, findPeople } from "../../domain/people";
 import type { Group, Person } from "../../core/protocol.gen";
 import "../../ui/dialog";
@@ -75,7 +76,11 @@ export class StrataGroupMembersDialog extends LitElement {
   private async read(): Promise<void> {
     this._problem = "";
     try {
-      this._inside = new Set((await this.api.group(this.group.id)).members.map(({ user }) => user));
+      this._inside = new Set(
+        (
+          await this.api.json("GET /groups/{group}", { path: { group: this.group.id } })
+        ).members.map(({ user }) => user),
+      );
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this._problem = error.message;
@@ -147,10 +152,10 @@ export class StrataGroupMembersDialog extends LitElement {
     box: HTMLInputElement;
   }): Promise<void> {
     try {
-      const { members } = await this.api.changeGroup(
-        this.group.id,
-        isIn ? { add: [user] } : { remove: [user] },
-      );
+      const { members } = await this.api.json("PATCH /groups/{group}", {
+        path: { group: this.group.id },
+        body: isIn ? { add: [user] } : { remove: [user] },
+      });
       this._inside = new Set(members.map((member) => member.user));
       this._note = { user, kind: "done", text: isIn ? words.put_in : words.taken_out };
     } catch (error) {

@@ -2,7 +2,8 @@
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
 import { formatList } from "../../core/locale";
 import { called, kLeastPasswordLength, passwordMistake } from "../../domain/people";
 import type { Person } from "../../core/protocol.gen";
@@ -44,7 +45,9 @@ export class StrataJoinPage extends LitElement {
   private async look(): Promise<void> {
     this._problem = "";
     try {
-      this._person = await this.api.showInvitation(this.invitation);
+      this._person = await this.api.json("POST /invitations/show", {
+        body: { invitation: this.invitation },
+      });
     } catch (error) {
       this.refused(error);
     }
@@ -156,10 +159,12 @@ export class StrataJoinPage extends LitElement {
     }
     this._busy = true;
     try {
-      await this.api.acceptInvitation({
-        invitation: this.invitation,
-        password,
-        full_name: String(data.get("full_name") ?? "").trim(),
+      await this.api.json("POST /invitations/accept", {
+        body: {
+          invitation: this.invitation,
+          password,
+          full_name: String(data.get("full_name") ?? "").trim(),
+        },
       });
       this.dispatchEvent(new CustomEvent("joined"));
     } catch (error) {

@@ -4,7 +4,8 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
 import { kSilentMs, stateOfKiosk } from "../../domain/kiosks";
 import { readNumber } from "../../core/locale";
 import type { Kiosk, KioskMade } from "../../core/protocol.gen";
@@ -139,7 +140,7 @@ export class StrataKiosksDialog extends LitElement {
 
   private async read(): Promise<void> {
     const { tour } = this;
-    const all = await this.api.kiosks();
+    const all = await this.api.all("GET /kiosks", "kiosks");
     this._kiosks = tour
       ? all.filter(
           (each) =>
@@ -286,9 +287,12 @@ export class StrataKiosksDialog extends LitElement {
     )
       return this.refuse("days", words.days_wrong(...kDays));
     void this.attempt(async () => {
-      this._made = await this.api.createKiosk(tour.model, tour.slug, {
-        name,
-        ...(this._days.trim() === "" ? {} : { days }),
+      this._made = await this.api.json("POST /models/{model}/tours/{tour}/kiosks", {
+        path: { model: tour.model, tour: tour.slug },
+        body: {
+          name,
+          ...(this._days.trim() === "" ? {} : { days }),
+        },
       });
       this._making = false;
       await this.read();
@@ -300,7 +304,7 @@ export class StrataKiosksDialog extends LitElement {
 
   private async reload(kiosk: Kiosk): Promise<void> {
     await this.change(kiosk, async () => {
-      const now = await this.api.reloadKiosk(kiosk.id);
+      const now = await this.api.json("POST /kiosks/{kiosk}/reload", { path: { kiosk: kiosk.id } });
       this._kiosks = (this._kiosks ?? []).map((each) => (each.id === now.id ? now : each));
       this._note = { id: kiosk.id, kind: "done", text: words.reload_asked };
     });
@@ -317,7 +321,7 @@ export class StrataKiosksDialog extends LitElement {
     )
       return;
     await this.change(kiosk, async () => {
-      await this.api.revokeKiosk(kiosk.id);
+      await this.api.send("DELETE /kiosks/{kiosk}", { path: { kiosk: kiosk.id } });
       if (this._made?.kiosk.id === kiosk.id) this._made = null;
       await this.read();
     });

@@ -4,7 +4,8 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
 import { called, findPeople, isUserName, mayChange, rolesToGive } from "../../domain/people";
 import type { Group, Invitation, Person, PersonPatch } from "../../core/protocol.gen";
 import type { Me, Role } from "../../core/types";
@@ -213,7 +214,7 @@ export class StrataPeopleDialog extends LitElement {
   }
 
   private async read(): Promise<void> {
-    this._people = await this.api.people();
+    this._people = await this.api.all("GET /users", "users");
   }
 
   override render(): TemplateResult {
@@ -430,7 +431,7 @@ export class StrataPeopleDialog extends LitElement {
       this.renderRoot.querySelector<HTMLInputElement>("input[name=user]")?.focus(),
     );
     void this.attempt(async () => {
-      this._groups = await this.api.groups();
+      this._groups = await this.api.all("GET /groups", "groups");
     });
   }
 
@@ -449,7 +450,9 @@ export class StrataPeopleDialog extends LitElement {
     void this.attempt(async () => {
       const groups = data.getAll("group").map(Number);
       const asked = { user: text("user"), full_name: text("full_name"), role: this._role };
-      this._invitation = await this.api.invite(groups.length > 0 ? { ...asked, groups } : asked);
+      this._invitation = await this.api.json("POST /users", {
+        body: groups.length > 0 ? { ...asked, groups } : asked,
+      });
       this._inviting = false;
       await this.read();
     });
@@ -467,7 +470,9 @@ export class StrataPeopleDialog extends LitElement {
       return;
     await this.changeRow(person, async () => {
       this._inviting = false;
-      this._invitation = await this.api.inviteAgain(person.user);
+      this._invitation = await this.api.json("POST /users/{user}/invite", {
+        path: { user: person.user },
+      });
       await this.updateComplete;
       this.renderRoot.querySelector(".made")?.scrollIntoView({ block: "nearest" });
     });
@@ -509,7 +514,7 @@ export class StrataPeopleDialog extends LitElement {
     )
       return;
     await this.changeRow(person, async () => {
-      await this.api.deletePerson(person.user);
+      await this.api.send("DELETE /users/{user}", { path: { user: person.user } });
       if (this._invitation?.user.id === person.id) this._invitation = null;
       await this.read();
     });
@@ -517,7 +522,10 @@ export class StrataPeopleDialog extends LitElement {
 
   private change(person: Person, change: PersonPatch, done: string): Promise<boolean> {
     return this.changeRow(person, async () => {
-      const now = await this.api.changePerson(person.user, change);
+      const now = await this.api.json("PATCH /users/{user}", {
+        path: { user: person.user },
+        body: change,
+      });
       this._people = (this._people ?? []).map((each) => (each.id === now.id ? now : each));
       this._rowNote = { id: now.id, kind: "done", text: done };
     });

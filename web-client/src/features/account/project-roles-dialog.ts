@@ -4,7 +4,8 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
 import { formatList } from "../../core/locale";
 import { called, roleByGroups } from "../../domain/people";
 import type { Group, MemberList, Person, Project, ProjectRole } from "../../core/protocol.gen";
@@ -75,8 +76,15 @@ export class StrataProjectRolesDialog extends LitElement {
   private async read(): Promise<void> {
     this._problem = "";
     try {
-      const projects = await this.api.projects();
-      const members = await Promise.all(projects.map(({ slug }) => this.api.members(slug)));
+      const projects = await this.api.all("GET /projects", "projects");
+      const members = await Promise.all(
+        projects.map(({ slug }) =>
+          this.api.json("GET /projects/{project}/members", {
+            path: { project: slug },
+            query: { limit: 1000 },
+          }),
+        ),
+      );
       this._rows = projects.map((project, i) => ({
         project,
         ...this.rolesIn(members[i]!),
@@ -170,9 +178,23 @@ export class StrataProjectRolesDialog extends LitElement {
 
   private async put(project: string, role: ProjectRole | null): Promise<void> {
     const { api, person, group } = this;
-    if (group && role) await api.putProjectGroup(project, group.id, role);
-    else if (group) await api.removeProjectGroup(project, group.id);
-    else if (person && role) await api.putMember(project, person.user, role);
-    else if (person) await api.removeMember(project, person.user);
+    if (group && role)
+      await api.json("PUT /projects/{project}/groups/{group}", {
+        path: { project, group: group.id },
+        body: { role },
+      });
+    else if (group)
+      await api.send("DELETE /projects/{project}/groups/{group}", {
+        path: { project, group: group.id },
+      });
+    else if (person && role)
+      await api.json("PUT /projects/{project}/members/{user}", {
+        path: { project, user: person.user },
+        body: { role },
+      });
+    else if (person)
+      await api.send("DELETE /projects/{project}/members/{user}", {
+        path: { project, user: person.user },
+      });
   }
 }

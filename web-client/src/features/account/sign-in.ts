@@ -3,7 +3,8 @@
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
 import { loginPathOf, signInProblem } from "./entry";
 import { entryStyles } from "./entry-styles";
 import { icon, logo } from "../../ui/icons";
@@ -121,7 +122,9 @@ export class StrataSignIn extends LitElement {
       (user === "" ? this._user : this._password).focus();
       return;
     }
-    this._problem = await this.tryTo("password", () => this.api.login({ user, password }));
+    this._problem = await this.tryTo("password", () =>
+      this.api.json("POST /login", { body: { user, password } }),
+    );
     if (this._problem) this._password.select();
   }
 
@@ -133,7 +136,10 @@ export class StrataSignIn extends LitElement {
     this._problem = this._tokenProblem = "";
     if (path) location.assign(path);
     else if (token === "") this._tokenProblem = texts.sign_in.token_empty;
-    else this._tokenProblem = await this.tryTo("token", () => this.api.login({ token }));
+    else
+      this._tokenProblem = await this.tryTo("token", () =>
+        this.api.json("POST /login", { body: { token } }),
+      );
   }
 
   /** What is wrong, or nothing. */

@@ -2,7 +2,8 @@
 // lines lead. It is read when somebody looks at it, and again after something happened here.
 
 import { withFirstPage, withNextPage, type ActivityLog } from "../../domain/activity";
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
 import { nameInText } from "../../domain/completion";
 import type { Activity } from "../../core/protocol.gen";
 import { ReadAgain } from "../../net/read-again";
@@ -91,10 +92,13 @@ export class Activities {
     this.busy = true;
     this._host.changed();
     try {
-      const page = await this._api.activity(model.project, {
-        limit: kAtOnce,
-        before,
-        model: this._whole ? undefined : model.id,
+      const page = await this._api.json("GET /projects/{project}/activity", {
+        path: { project: model.project },
+        query: {
+          limit: kAtOnce,
+          before,
+          model: this._whole ? undefined : `${model.id}`,
+        },
       });
       if (question !== this._asked) return;
       take({ lines: page.activity, next: page.next });
@@ -155,7 +159,10 @@ export class Activities {
     const slug = nameInText(layer.slug);
     const where = record === undefined ? `valid(${slug})` : `${slug} = ${record}`;
     try {
-      const { bounds } = await this._api.select(model.id, where);
+      const { bounds } = await this._api.json("POST /models/{model}/select", {
+        path: { model: model.id },
+        body: { where },
+      });
       if (bounds) this._host.view.flyTo(bounds);
     } catch (error) {
       notices.error(error);

@@ -1,9 +1,10 @@
 // How this person sees the model: its looks, the light and the section. Nothing of it is kept but
 // by named views, and others see it their way.
 
-import type { Api } from "../../net/api";
+import { nameOfFile } from "../../domain/file-names";
+import { type Api, kAsItIs } from "../../net/api";
 import type { Bounds } from "../../math/camera";
-import type { Light, Look, LookEvent, LookShown, Plane } from "../../core/protocol.gen";
+import type { Light, Look, LookEvent, LookPatch, LookShown, Plane } from "../../core/protocol.gen";
 import {
   noSection,
   sectionChoice,
@@ -69,7 +70,12 @@ export class Appearance {
   }
 
   async add(file: File): Promise<void> {
-    const look = await this._api.createLook(this._modelId, file);
+    const look = await this._api.json("POST /models/{model}/looks", {
+      path: { model: this._modelId },
+      query: { name: nameOfFile(file.name) },
+      body: file,
+      type: file.type,
+    });
     this.put(look);
     if (!this.visible(look)) this.setVisible(look, true);
   }
@@ -77,27 +83,42 @@ export class Appearance {
   /** A look that work made for this person: they see it at once. */
   async showMade(id: number): Promise<void> {
     if (!this.looks.some((look) => look.id === id))
-      this.takeLooks(await this._api.looks(this._modelId));
+      this.takeLooks(
+        await this._api.all("GET /models/{model}/looks", "looks", {
+          path: { model: this._modelId },
+        }),
+      );
     const look = this.looks.find((each) => each.id === id);
     if (look && !this.visible(look)) this.setVisible(look, true);
   }
 
   async rename(look: Look, name: string): Promise<void> {
-    this.put(await this._api.changeLook(this._modelId, look.id, { name }));
+    this.put(await this.changeLook(look, { name }));
   }
 
   /** Moves the look to the place `index` of the list, which is bottom to top. */
   async move(look: Look, index: number): Promise<void> {
     await reorder(this.looks, look, index, {
       show: (looks) => this.takeLooks(looks),
-      save: async (each) =>
-        this.put(await this._api.changeLook(this._modelId, each.id, { order: each.order })),
-      reload: () => this._api.looks(this._modelId),
+      save: async (each) => this.put(await this.changeLook(each, { order: each.order })),
+      reload: () =>
+        this._api.all("GET /models/{model}/looks", "looks", { path: { model: this._modelId } }),
     });
   }
 
+  /** In its version now. */
+  private async changeLook({ id }: Look, body: LookPatch): Promise<Look> {
+    const path = { model: this._modelId, look: id };
+    const { etag } = await this._api.versioned("GET /models/{model}/looks/{look}", { path });
+    const header = { "If-Match": etag };
+    return this._api.json("PATCH /models/{model}/looks/{look}", { path, body, header });
+  }
+
   async remove(look: Look): Promise<void> {
-    await this._api.deleteLook(this._modelId, look.id);
+    await this._api.send("DELETE /models/{model}/looks/{look}", {
+      path: { model: this._modelId, look: look.id },
+      header: kAsItIs,
+    });
     this.drop(look.id);
   }
 
@@ -105,7 +126,7 @@ export class Appearance {
     for (const look of this.looks) {
       const [visible, opacity] = [this.visible(look), this.opacity(look)];
       if (visible !== look.visible || opacity !== look.opacity)
-        this.put(await this._api.changeLook(this._modelId, look.id, { visible, opacity }));
+        this.put(await this.changeLook(look, { visible, opacity }));
     }
     this.forgetOwnLooks();
     this.send();

@@ -5,7 +5,7 @@ import { css, html, LitElement, nothing, type PropertyValues, type TemplateResul
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { labelOf } from "../../domain/cells";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
 import { beside } from "../../ui/beside";
 import { commentsIn, type Thread } from "../../domain/comments";
 import { called } from "../../domain/people";

@@ -2,7 +2,9 @@
 // not sent yet, and what was read.
 
 import { labelOf } from "../../domain/cells";
-import { ApiError, newId, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import { newId } from "../../core/ids";
+import { type Api, ifVersion } from "../../net/api";
 import type { CameraMessage } from "../../math/camera";
 import type { Point } from "../../net/connection";
 import type { PointerSample } from "../../ui/input";
@@ -167,7 +169,9 @@ export class Comments {
   async loadPeople(): Promise<readonly ProjectPerson[]> {
     const model = this._host.model();
     if (this._people.length === 0 && model) {
-      this._asking ??= this._api.projectPeople(model.project);
+      this._asking ??= this._api.all("GET /projects/{project}/people", "people", {
+        path: { project: model.project },
+      });
       try {
         this._people = (await this._asking).filter(({ user }) => user !== this._me);
         this._host.changed();
@@ -200,7 +204,14 @@ export class Comments {
   }
 
   async load(): Promise<void> {
-    if (await this._known.load(() => this._api.comments(this._modelId))) this.sort();
+    if (
+      await this._known.load(() =>
+        this._api.all("GET /models/{model}/comments", "comments", {
+          path: { model: this._modelId },
+        }),
+      )
+    )
+      this.sort();
   }
 
   onEvent({ event, comment_id: commentId, comment, user }: CommentEvent): void {
@@ -292,7 +303,10 @@ export class Comments {
   }
 
   private async lookAt(camera: CameraMessage, pixels: Point[]): Promise<(Vec3 | null)[]> {
-    const { samples } = await this._api.profile(this._modelId, camera, pixels);
+    const { samples } = await this._api.json("POST /models/{model}/profile", {
+      path: { model: this._modelId },
+      body: { camera, path: pixels, layers: [] },
+    });
     return samples.map(({ point }) => (point.hit && point.position ? point.position : null));
   }
 
@@ -352,7 +366,10 @@ export class Comments {
    */
   async begin({ x, y }: PointerSample): Promise<void> {
     try {
-      const found = await this._api.pick(this._modelId, this._host.view.camera.message(), [x, y]);
+      const found = await this._api.json("POST /models/{model}/pick", {
+        path: { model: this._modelId },
+        body: { camera: this._host.view.camera.message(), x, y },
+      });
       if (found.hit && found.position && found.normal)
         this.beginAt(found.position, found.normal, this.subjectsAt(found));
       else notices.show("info", words.missed);
@@ -401,11 +418,11 @@ export class Comments {
           ...(subject.record === undefined ? {} : { record: subject.record }),
         }
       : {};
-    const made = await this._api.createComment(
-      this._modelId,
-      { text, position: position as [number, number, number], ...about },
-      key,
-    );
+    const made = await this._api.json("POST /models/{model}/comments", {
+      path: { model: this._modelId },
+      body: { text, position, ...about },
+      header: { "Idempotency-Key": key },
+    });
     this.setDraft("new", null);
     this.put(made);
     if (this.card === "new") this.show(made.id);
@@ -414,7 +431,11 @@ export class Comments {
   async sendReply(thread: number): Promise<void> {
     const draft = this.draft(`reply ${thread}`);
     if (!draft) return;
-    const made = await this._api.createReply(thread, draft.text, draft.key);
+    const made = await this._api.json("POST /comments/{comment}/replies", {
+      path: { comment: thread },
+      body: { text: draft.text },
+      header: { "Idempotency-Key": draft.key },
+    });
     this.setDraft(`reply ${thread}`, null);
     this.put(made);
   }
@@ -428,16 +449,27 @@ export class Comments {
     change: { text?: string; state?: "open" | "resolved" },
   ): Promise<void> {
     await this.newestAfter(comment, async () =>
-      this.put(await this._api.changeComment(comment.id, change, comment.version)),
+      this.put(
+        await this._api.json("PATCH /comments/{comment}", {
+          path: { comment: comment.id },
+          body: change,
+          header: ifVersion(comment.version),
+        }),
+      ),
     );
     if (change.text !== undefined) this.setDraft(`edit ${comment.id}`, null);
   }
 
   async remove(comment: Comment): Promise<void> {
-    await this.newestAfter(comment, () => this._api.deleteComment(comment.id, comment.version));
+    await this.newestAfter(comment, () =>
+      this._api.send("DELETE /comments/{comment}", {
+        path: { comment: comment.id },
+        header: ifVersion(comment.version),
+      }),
+    );
     this.setDraft(`edit ${comment.id}`, null);
     if (comment.thread === undefined && this.find(comment.id)?.replies.length)
-      this.put(await this._api.comment(comment.id));
+      this.put(await this._api.json("GET /comments/{comment}", { path: { comment: comment.id } }));
     else this.onEvent({ op: "comment", event: "deleted", comment_id: comment.id });
   }
 
@@ -445,7 +477,8 @@ export class Comments {
     try {
       await work();
     } catch (error) {
-      if (error instanceof ApiError && error.status === 412) this.put(await this._api.comment(id));
+      if (error instanceof ApiError && error.status === 412)
+        this.put(await this._api.json("GET /comments/{comment}", { path: { comment: id } }));
       throw error;
     }
   }

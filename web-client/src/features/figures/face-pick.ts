@@ -43,7 +43,10 @@ export class FacePick {
     const model = this._host.model();
     if (!asker || !model) return;
     try {
-      const { hit, position, normal } = await this._api.pick(model.id, camera.message(), [x, y]);
+      const { hit, position, normal } = await this._api.json("POST /models/{model}/pick", {
+        path: { model: model.id },
+        body: { camera: camera.message(), x, y },
+      });
       if (asker !== this._answer) return;
       const { back } = camera.axes();
       if (!hit || !position) {

@@ -4,7 +4,7 @@
 
 import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
 import type { CameraMessage } from "../../math/camera";
 import { holdsFiles, labelColumn, labelOf } from "../../domain/cells";
 import {

@@ -1,9 +1,10 @@
 // <strata-figure-preview>: the sheet as it would be now, drawn anew a moment after what is asked
 // for has changed.
 
+import { pageLocale } from "../../core/locale";
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
 import { previewRequest } from "../../domain/figures";
 import type { FigureRequest } from "../../core/protocol.gen";
 import type { ProblemBody } from "../../core/types";
@@ -150,7 +151,12 @@ export class StrataFigurePreview extends LitElement {
   private async ask(request: FigureRequest, asked: AbortController): Promise<void> {
     const { api, modelId } = this.session;
     try {
-      const picture = await api.figure(modelId, previewRequest(request), asked.signal);
+      const picture = await api.blob("POST /models/{model}/figures", {
+        path: { model: modelId },
+        query: { lang: pageLocale() },
+        body: previewRequest(request),
+        signal: asked.signal,
+      });
       if (asked !== this._asked) return;
       URL.revokeObjectURL(this._picture);
       this._picture = URL.createObjectURL(picture);

@@ -44,7 +44,10 @@ export class Figures {
     const job = this._jobs.entries.find((entry) => entry.key === key)?.job;
     if (!job?.file) return;
     try {
-      saveBlob(await this._api.jobFile(job.id), job.file.name);
+      saveBlob(
+        await this._api.blob("GET /jobs/{job}/file", { path: { job: job.id } }),
+        job.file.name,
+      );
       this.saved = job.file.name;
       this._jobs.dismiss(key);
     } catch (error) {

@@ -3,7 +3,8 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
 import { labelOf } from "../../domain/cells";
 import type { Table } from "../../core/protocol.gen";
 import { openTrash } from "../../ui/trash-dialog";
@@ -55,9 +56,14 @@ class StrataDeleteProjectDialog extends LitElement {
     this._problem = "";
     try {
       const { slug } = this.listed.project;
-      const trash = await this.api.trash(slug, { limit: 1000, offset: 0 });
+      const trash = await this.api.json("GET /projects/{project}/bin", {
+        path: { project: slug },
+        query: { limit: 1000, offset: 0 },
+      });
       this._hasTrashed = trash.entries.some(({ kind }) => kind === "model");
-      this._tables = await this.api.tables(slug);
+      this._tables = await this.api.all("GET /projects/{project}/tables", "tables", {
+        path: { project: slug },
+      });
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this._problem = error.message;

@@ -4,7 +4,8 @@
 import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
 import { formatArea, formatSize, metresPer } from "../../domain/measure";
 import type { Project } from "../../core/protocol.gen";
 import { mayAdminister, type Me, type Model } from "../../core/types";
@@ -140,7 +141,7 @@ export class StrataHomePage extends LitElement {
 
   private async load(): Promise<void> {
     try {
-      this._models = await this.api.models();
+      this._models = await this.api.all("GET /models", "models");
       this._problem = "";
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
@@ -435,7 +436,7 @@ export class StrataHomePage extends LitElement {
     if (!(await askToTrash(this.api, gone, { title: words.delete_title, lead: words.delete_lead })))
       return;
     try {
-      await this.api.deleteModel(model.id);
+      await this.api.deleteAsRead("DELETE /models/{model}", { path: { model: model.id } });
       tellTrashed(this.api, gone, () => void this.load());
     } catch (error) {
       notices.error(error);

@@ -1,7 +1,10 @@
 // Imports under way: upload, then the server's job. Kept outside the page's elements, so that going
 // to another page does not stop them.
 
-import { ApiError, nameOfFile, type Api, type Upload } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import { nameOfFile } from "../../domain/file-names";
+import type { Api } from "../../net/api";
+import type { Upload } from "../../net/upload";
 import type { Job, ProblemBody } from "../../core/types";
 import type { DroppedFile } from "../../ui/drop";
 import { followJob } from "../../net/follow-job";
@@ -143,8 +146,19 @@ export class Imports {
     this._sent.set(key, { scan, project });
     this.tell();
     try {
-      const upload = this._api.uploadModel(scan.files, scan.name, project, (progress) =>
-        this.change(key, { progress }),
+      const upload = this._api.upload(
+        "POST /models",
+        {
+          query: {
+            name: scan.name,
+            filename: scan.files[0].file.name,
+            project,
+            unit: "proposed",
+            up: "proposed",
+          },
+        },
+        scan.files,
+        (progress) => this.change(key, { progress }),
       );
       this._uploads.set(key, upload);
       const job = await upload.done;
@@ -159,7 +173,7 @@ export class Imports {
   async cancel(key: number): Promise<void> {
     this._uploads.get(key)?.cancel();
     const job = this._jobs.get(key);
-    if (job !== undefined) await this._api.cancelJob(job);
+    if (job !== undefined) await this._api.send("DELETE /jobs/{job}", { path: { job } });
   }
 
   /** Once more from the beginning, in place of what failed. */

@@ -4,7 +4,8 @@
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
 import { cardStyles } from "./home-styles";
 import { logo } from "../../ui/icons";
 import type { ListedProject } from "./project-list";
@@ -79,10 +80,13 @@ export class StrataProjectCard extends LitElement {
   private async load(): Promise<void> {
     if (!this.isConnected) return;
     try {
-      const { activity } = await this.api.activity(this.listed.project.slug, {
-        model: undefined,
-        before: undefined,
-        limit: 1,
+      const { activity } = await this.api.json("GET /projects/{project}/activity", {
+        path: { project: this.listed.project.slug },
+        query: {
+          model: undefined,
+          before: undefined,
+          limit: 1,
+        },
       });
       this._changed = activity[0]?.time ?? "";
     } catch (error) {

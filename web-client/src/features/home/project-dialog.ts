@@ -1,6 +1,7 @@
 // The dialog that makes a project, or names and describes one anew.
 
-import { ApiError, type Api, type Versioned } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api, Versioned } from "../../net/api";
 import type { Project } from "../../core/protocol.gen";
 import { StrataNamingDialog, type Called } from "../../ui/naming-dialog";
 import { pathOfProject } from "../../ui/routes";
@@ -14,26 +15,28 @@ export class ProjectChange {
   private _base: Versioned<Project> | null = null;
 
   constructor(
-    private readonly _api: Pick<Api, "project" | "changeProject">,
+    private readonly _api: Api,
     private readonly _project: Project,
   ) {}
 
   /** Null: somebody else changed it, and it is called `name` now. */
   async save({ name, text }: Called, requireIfMatch: boolean): Promise<Project | null> {
     const { slug } = this._project;
-    const { value, etag } = this._base ?? (await this._api.project(slug));
+    const { value, etag } =
+      this._base ??
+      (await this._api.versioned("GET /projects/{project}", { path: { project: slug } }));
     const known = this._base?.value ?? this._project;
     try {
       if (isSame(value, known))
-        return await this._api.changeProject(
-          slug,
-          { name, description: text, require_if_match: requireIfMatch },
-          etag,
-        );
+        return await this._api.json("PATCH /projects/{project}", {
+          path: { project: slug },
+          body: { name, description: text, require_if_match: requireIfMatch },
+          header: { "If-Match": etag },
+        });
     } catch (error) {
       if (!(error instanceof ApiError) || error.status !== 412) throw error;
     }
-    this._base = await this._api.project(slug);
+    this._base = await this._api.versioned("GET /projects/{project}", { path: { project: slug } });
     return null;
   }
 
@@ -54,7 +57,10 @@ export function askProject(api: Api, project: Project | null): Promise<Project |
   const save = async (called: Called, key: string, requireIfMatch: boolean): Promise<string> => {
     answer = change
       ? await change.save(called, requireIfMatch)
-      : await api.createProject({ name: called.name, description: called.text }, key);
+      : await api.json("POST /projects", {
+          body: { name: called.name, description: called.text },
+          header: { "Idempotency-Key": key },
+        });
     return answer || !change ? "" : words.changed(change.name);
   };
   const dialog = Object.assign(new StrataNamingDialog(), {

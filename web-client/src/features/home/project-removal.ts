@@ -1,7 +1,8 @@
 // Deleting a project. The server keeps one that still holds something, so what may go with it goes
 // first: tables, but never models.
 
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
 import type { Project, Table } from "../../core/protocol.gen";
 
 /** What is typed is what the project is called, as far as that can be seen. */
@@ -14,12 +15,14 @@ const asSeen = (text: string): string => text.normalize().trim().replace(/\s+/g,
  * be tried again.
  */
 export async function removeProject(
-  api: Pick<Api, "deleteProject" | "deleteTable">,
+  api: Api,
   project: Project,
   tables: readonly Table[],
 ): Promise<void> {
-  await removeTables(tables, (table) => api.deleteTable(table.id));
-  await gone(api.deleteProject(project.slug));
+  await removeTables(tables, (table) =>
+    api.deleteAsRead("DELETE /tables/{table}", { path: { table: table.id } }),
+  );
+  await gone(api.deleteAsRead("DELETE /projects/{project}", { path: { project: project.slug } }));
 }
 
 /** The server keeps a table that another one's columns name; which do is found by trying. */

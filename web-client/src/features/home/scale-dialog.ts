@@ -4,7 +4,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
 import { kUpAxes, upName } from "../../math/camera";
 import { formatSize, likelyScale, metresPer } from "../../domain/measure";
 import type { ScaleProposal } from "../../core/protocol.gen";

@@ -321,12 +321,13 @@ export class StrataColorDialog extends LitElement {
     const { layer, _method: method, _count: count, _ramp: ramp } = this;
     try {
       const numbers = method !== "unique";
-      const classes = await this.session.api.classes(
-        layer.table!,
-        column.slug,
-        method === "smooth" ? "equal" : method,
-        numbers ? (method === "smooth" ? 1 : count) : kMostCategories,
-      );
+      const classes = await this.session.api.json("GET /tables/{table}/columns/{column}/classes", {
+        path: { table: layer.table!, column: column.slug },
+        query: {
+          method: method === "smooth" ? "equal" : method,
+          count: numbers ? (method === "smooth" ? 1 : count) : kMostCategories,
+        },
+      });
       if (asked !== this._asked) return;
       this._classes = method === "smooth" ? null : classes;
       this._problem = classes.classes.length === 0 ? texts.colors.no_values : "";

@@ -3,7 +3,8 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { ApiError, type WorkbookQuery } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { WorkbookQuery } from "../../domain/workbooks";
 import { labelOf } from "../../domain/cells";
 import { formatArea } from "../../domain/measure";
 import type { CrossTable } from "../../core/protocol.gen";
@@ -121,11 +122,10 @@ export class StrataCrossTable extends LitElement {
     this._problem = "";
     if (!other) return;
     try {
-      const table = await this.session.api.crossTable(
-        this.session.modelId,
-        this.layer.id,
-        other.id,
-      );
+      const table = await this.session.api.json("POST /models/{model}/cross-table", {
+        path: { model: this.session.modelId },
+        body: { rows: this.layer.id, columns: other.id },
+      });
       if (this._with === other) this._table = table;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
@@ -192,12 +192,11 @@ export class StrataCrossTable extends LitElement {
   private async save(other: Layer, f: WorkbookQuery["f"]): Promise<void> {
     this._problem = "";
     try {
-      const sheet = await this.session.api.crossTableWorkbook(
-        this.session.modelId,
-        this.layer.id,
-        other.id,
-        workbookQuery(f),
-      );
+      const sheet = await this.session.api.blob("POST /models/{model}/cross-table", {
+        path: { model: this.session.modelId },
+        body: { rows: this.layer.id, columns: other.id },
+        query: workbookQuery(f),
+      });
       saveBlob(sheet, `${this.layer.slug}-${other.slug}.${f}`);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;

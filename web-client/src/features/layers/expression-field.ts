@@ -4,7 +4,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
 import { labelOf } from "../../domain/cells";
 import {
   complete,
@@ -291,7 +291,19 @@ export class StrataExpressionField extends LitElement {
   ): Promise<{ error?: ApiError; told: string; before: number }> {
     const { api, modelId } = this.session;
     try {
-      return { told: inWords(formatArea((await api.select(modelId, where)).area_m2)), before };
+      return {
+        told: inWords(
+          formatArea(
+            (
+              await api.json("POST /models/{model}/select", {
+                path: { model: modelId },
+                body: { where },
+              })
+            ).area_m2,
+          ),
+        ),
+        before,
+      };
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       return { error, told: "", before };

@@ -17,7 +17,9 @@ import {
   type LayerPurpose,
 } from "../../domain/palette";
 import type { Layer, LayerCreate, Palette, Resolution, ValueType } from "../../core/types";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import { createRecord } from "../../net/records";
+import { createLayer, createLayerOrJob, readLayer, recomputeLayer } from "../../net/layers";
 import { labelOf } from "../../domain/cells";
 import type { Labels, Table, Visibility } from "../../core/protocol.gen";
 import "../../ui/dialog";
@@ -215,7 +217,7 @@ export class StrataLayerDialog extends LitElement {
   private async read(layer: Layer): Promise<void> {
     this.refuse("", "");
     try {
-      const { value, etag } = await this.session.api.layer(this.session.modelId, layer.id);
+      const { value, etag } = await readLayer(this.session.api, this.session.modelId, layer.id);
       const purpose = purposeOf(value);
       // it can have a second class one day
       this._purpose = purpose === "presence" ? "classes" : purpose;
@@ -534,7 +536,7 @@ export class StrataLayerDialog extends LitElement {
   private async createComputed(layer: LayerCreate): Promise<void> {
     const { session } = this;
     await this.attempt(async () => {
-      const made = await session.api.createComputed(session.modelId, {
+      const made = await createLayerOrJob(session.api, session.modelId, {
         ...layer,
         ...this.resolution(),
       });
@@ -643,7 +645,7 @@ export class StrataLayerDialog extends LitElement {
       if (Object.keys(change).length > 0)
         await session.layers.change(base.layer, change, base.etag);
       if (change.expression !== undefined)
-        session.layers.put(await session.api.recomputeLayer(session.modelId, base.layer.id));
+        session.layers.put(await recomputeLayer(session.api, session.modelId, base.layer.id));
       return;
     }
     const created: LayerCreate = {
@@ -653,10 +655,10 @@ export class StrataLayerDialog extends LitElement {
       ...(this.namedByTable ? { table: this._table!.id } : {}),
       ...this.resolution(),
     };
-    const layer = await session.api.createLayer(session.modelId, created);
+    const layer = await createLayer(session.api, session.modelId, created);
     // So that painting can begin at once: a number without a record is not painted.
     if (layer.table !== undefined && !this.namedByTable)
-      await session.api.createRecord(layer.table);
+      await createRecord(session.api, layer.table);
     session.addCreated(layer);
     notices.show("success", texts.layers.created(wanted.name));
   }

@@ -1,6 +1,7 @@
 // The layers of the open model: which there are, which is chosen, and what this person shows, hides
 // and puts in another order, which is kept for them alone.
 
+import { changeLayer } from "../../net/layers";
 import type { Api } from "../../net/api";
 import { samePalette } from "../../domain/palette";
 import { layersOfView, layersToKeep, ownPart, type LayerShown } from "../../domain/views";
@@ -169,11 +170,13 @@ export class LayerList {
 
   /** `etag`: the version that the change was thought out for. */
   async change(layer: Layer, change: LayerPatch, etag?: string): Promise<void> {
-    this.put(await this._api.changeLayer(this._modelId, layer.id, change, etag));
+    this.put(await changeLayer(this._api, this._modelId, layer.id, change, etag));
   }
 
   async remove(layer: Layer): Promise<void> {
-    await this._api.deleteLayer(this._modelId, layer.id);
+    await this._api.deleteAsRead("DELETE /models/{model}/layers/{layer}", {
+      path: { model: this._modelId, layer: layer.id },
+    });
     this.drop(layer.id);
   }
 

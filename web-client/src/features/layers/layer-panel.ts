@@ -1,6 +1,7 @@
 // <strata-layer-panel>: the layers from top to bottom, as this person sees them. The selected one
 // is painted on.
 
+import { recomputeLayer } from "../../net/layers";
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
@@ -485,7 +486,7 @@ export class StrataLayerPanel extends LitElement {
       return;
     this._computing = layer.id;
     try {
-      session.layers.put(await session.api.recomputeLayer(session.modelId, layer.id, byHand));
+      session.layers.put(await recomputeLayer(session.api, session.modelId, layer.id, byHand));
     } catch (error) {
       notices.error(error);
     } finally {

@@ -1,6 +1,7 @@
 // <strata-map-dialog>: paints a layer from files: readings and vertex values (CSV), maps of areas,
 // rasters, orthophotos, scanned maps.
 
+import type { Query } from "../../net/calls";
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { labelOf } from "../../domain/cells";
@@ -302,9 +303,15 @@ export class StrataMapDialog extends LitElement {
   /** Asks the server what the files hold. */
   private async look(): Promise<void> {
     const { _files: files, session } = this;
-    const query = { tolerance: String(this._tolerance) };
+    const query = { tolerance: this._tolerance };
     const contents = await this._sending.run((progress) =>
-      session.api.mapContents(session.modelId, query, asUploads(files), progress),
+      session.api.upload(
+        "POST /models/{model}/map-contents",
+        { path: { model: session.modelId }, query },
+        asUploads(files),
+        progress,
+        true,
+      ),
     );
     if (!contents || files !== this._files) return;
     this._contents = contents;
@@ -337,43 +344,81 @@ export class StrataMapDialog extends LitElement {
 
   /** The request; a text that says what is missing. */
   private request(kind: Kind): Begin<EditResult> | string {
-    const { session, layer } = this;
+    const { api, modelId } = this.session;
+    const path = { model: modelId, layer: this.layer.id };
     const files = asUploads(this._files);
-    if (kind === "vertices") {
-      const source = this.sources.length > 1 ? this._source : null;
-      return (progress) =>
-        session.api.putVertexValues(session.modelId, layer.id, source, files[0]!, progress);
+    switch (kind) {
+      case "vertices": {
+        const query = this.sources.length > 1 ? { source: this._source } : {};
+        return (progress) =>
+          api.upload(
+            "PUT /models/{model}/layers/{layer}/vertices.csv",
+            { path, query },
+            files.slice(0, 1),
+            progress,
+          );
+      }
+      case "readings": {
+        const query = { radius_mm: this._radiusMm, tolerance_mm: this._toleranceMm };
+        return (progress) =>
+          api.upload(
+            "POST /models/{model}/layers/{layer}/readings",
+            { path, query },
+            files,
+            progress,
+            false,
+          );
+      }
+      // the names of maps tell what they are, so that they are sent as forms
+      case "polygons": {
+        const query = this.polygonsQuery();
+        return (progress) =>
+          api.upload(
+            "POST /models/{model}/layers/{layer}/polygons",
+            { path, query },
+            files,
+            progress,
+            true,
+          );
+      }
+      case "picture": {
+        const query = this.pictureQuery();
+        if (typeof query === "string") return query;
+        return (progress) =>
+          api.upload(
+            "POST /models/{model}/layers/{layer}/picture",
+            { path, query },
+            files,
+            progress,
+            true,
+          );
+      }
     }
-    const lengths = {
-      radius_mm: String(this._radiusMm),
-      tolerance_mm: String(this._toleranceMm),
-    };
-    const query = kind === "readings" ? lengths : this.mapQuery(kind);
-    if (typeof query === "string") return query;
-    return (progress) =>
-      session.api.paintMap(session.modelId, layer.id, kind, query, files, progress);
   }
 
-  private mapQuery(kind: "polygons" | "picture"): Record<string, string> | string {
+  private polygonsQuery(): Query<"POST /models/{model}/layers/{layer}/polygons"> {
     const along = { along: this._along, ...crsQuery(this._crs) };
-    if (kind === "polygons") {
-      const value = String(this.session.painting.brush.valueFor(this.layer));
-      if (this._attribute === "") return { ...along, value };
-      return {
-        ...along,
-        attribute: this._attribute,
-        ...(this._names ? { names: this._names } : {}),
-      };
-    }
-    const world = this._contents?.world ? {} : { world: worldNumbers(this._world) };
-    if (world.world === null) return words.world_wrong;
-    const placed = { ...along, ...(world as Record<string, string>) };
+    if (this._attribute === "")
+      return { ...along, value: this.session.painting.brush.valueFor(this.layer) };
+    return {
+      ...along,
+      attribute: this._attribute,
+      ...(this._names ? { names: this._names } : {}),
+    };
+  }
+
+  private pictureQuery(): Query<"POST /models/{model}/layers/{layer}/picture"> | string {
+    const world = this._contents?.world ? undefined : worldNumbers(this._world);
+    if (world === null) return words.world_wrong;
+    const placed = {
+      along: this._along,
+      ...crsQuery(this._crs),
+      ...(world === undefined ? {} : { world }),
+    };
     if (this._mode === "luminance") return placed;
-    if (this._mode === "band") return { ...placed, band: String(this._band) };
+    if (this._mode === "band") return { ...placed, band: this._band };
     const colors = colorKeys(this._rows);
-    return colors === null
-      ? words.colors_wrong
-      : { ...placed, colors, tolerance: String(this._tolerance) };
+    return colors === null ? words.colors_wrong : { ...placed, colors, tolerance: this._tolerance };
   }
 
   private onCrs(taken: string | null): void {

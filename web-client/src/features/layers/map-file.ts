@@ -1,6 +1,6 @@
 // Files that are painted over a layer: what they are, and what is asked for.
 
-import type { UploadFile } from "../../net/api";
+import type { UploadFile } from "../../net/upload";
 import { readNumber, typedNumber } from "../../core/locale";
 import type { MapColor, MapContents } from "../../core/types";
 

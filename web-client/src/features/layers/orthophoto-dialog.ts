@@ -2,7 +2,7 @@
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { nameOfFile } from "../../net/api";
+import { nameOfFile } from "../../domain/file-names";
 import type { MapContents } from "../../core/types";
 import "../../ui/dialog";
 import "../../ui/file-choice";
@@ -100,7 +100,13 @@ export class StrataOrthophotoDialog extends LitElement {
     }
     const { api, modelId } = this.session;
     const contents = await this._sending.run((progress) =>
-      api.mapContents(modelId, {}, asUploads(files), progress),
+      api.upload(
+        "POST /models/{model}/map-contents",
+        { path: { model: modelId } },
+        asUploads(files),
+        progress,
+        true,
+      ),
     );
     if (!contents || files !== this._files) return;
     if (contents.kind === "polygons") this._sending.refuse(words.no_picture);
@@ -143,7 +149,13 @@ export class StrataOrthophotoDialog extends LitElement {
     };
     const files = asUploads(this._files);
     const job = await this._sending.run((progress) =>
-      session.api.addOrthophoto(session.modelId, query, files, progress),
+      session.api.upload(
+        "POST /models/{model}/orthophotos",
+        { path: { model: session.modelId }, query },
+        files,
+        progress,
+        true,
+      ),
     );
     if (!job) return;
     session.jobs.watch(words.job(name), job, ({ look }) => {

@@ -1,10 +1,12 @@
 // What a person keeps of how they show the layers of a model: sent to the server soon after each
 // change, and before the page goes.
 
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
 import type { PersonalView } from "../../core/protocol.gen";
 
 const kPauseMs = 400; // a slider tells many changes
+const kMostKeptAlive = 60_000; // characters that browsers send after the page is left
 
 export class PersonalViewKeeper {
   private _timer: ReturnType<typeof setTimeout> | 0 = 0;
@@ -12,7 +14,7 @@ export class PersonalViewKeeper {
   private _wanted: PersonalView | null = null; // what the server does not have yet
 
   constructor(
-    private readonly _api: Pick<Api, "keepPersonalView">,
+    private readonly _api: Api,
     private readonly _modelId: string,
   ) {}
 
@@ -39,7 +41,11 @@ export class PersonalViewKeeper {
     if (!view) return;
     this._wanted = null;
     this._sending = this._api
-      .keepPersonalView(this._modelId, view)
+      .send("PUT /me/models/{model}/view", {
+        path: { model: this._modelId },
+        body: view,
+        keepalive: JSON.stringify(view).length < kMostKeptAlive,
+      })
       .catch((error: unknown) => {
         if (!(error instanceof ApiError)) throw error;
         this._wanted ??= view; // with the next change, or when the connection is back

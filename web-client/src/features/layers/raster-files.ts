@@ -1,8 +1,10 @@
 // A layer's texels as files: saved from the page, and put back from one; and its outlines for maps.
 
+import { newId } from "../../core/ids";
 import { labelOf } from "../../domain/cells";
 import { pageLocale } from "../../core/locale";
-import type { Layer } from "../../core/types";
+import type { Layer, Model } from "../../core/types";
+import type { Axis } from "../../math/section";
 import { formatArea } from "../../domain/measure";
 import { ask } from "../../ui/dialog";
 import type { ModelSession } from "../../session/model-session";
@@ -27,18 +29,29 @@ export const formatsOf = (layer: Layer): RasterFormat[] =>
   );
 
 export function saveRaster(session: ModelSession, layer: Layer, format: RasterFormat): void {
-  saveFrom(session.api.texelsUrl(session.modelId, layer.id, format), `${layer.slug}.${format}`);
+  saveFrom(
+    session.api.url("GET /models/{model}/layers/{layer}/texels.{format}", {
+      path: { model: session.modelId, layer: layer.id, format },
+    }),
+    `${layer.slug}.${format}`,
+  );
 }
 
 export const kFeatureFormats = ["geojson", "gpkg"] as const;
 export type FeatureFormat = (typeof kFeatureFormats)[number];
 
 /** From above, as the model stands: the map of a wall that is `y` up is its plan in x and z. */
-export const planOf = (up: string): string => `-${up.at(-1)}`;
+export const planOf = (up: Model["up"]): `-${Axis}` => `-${up.at(-1) as Axis}`;
 
 export function saveFeatures(session: ModelSession, layer: Layer, format: FeatureFormat): void {
   const query = { f: format, along: planOf(session.model?.up ?? "z"), lang: pageLocale() };
-  saveFrom(session.api.featuresUrl(session.modelId, layer.id, query), `${layer.slug}.${format}`);
+  saveFrom(
+    session.api.url("GET /models/{model}/layers/{layer}/features", {
+      path: { model: session.modelId, layer: layer.id },
+      query,
+    }),
+    `${layer.slug}.${format}`,
+  );
 }
 
 /** Asks for a file and makes the layer hold what is in it. */
@@ -69,11 +82,13 @@ export async function importRaster(session: ModelSession, layer: Layer, file: Fi
   )
     return;
   try {
-    const { texels_changed: texelsChanged, area_m2: areaM2 } = await session.api.putTexels(
-      session.modelId,
-      layer.id,
-      format,
-      file,
+    const { texels_changed: texelsChanged, area_m2: areaM2 } = await session.api.json(
+      "PUT /models/{model}/layers/{layer}/texels.{format}",
+      {
+        path: { model: session.modelId, layer: layer.id, format },
+        body: file,
+        header: { "Idempotency-Key": newId() },
+      },
     );
     if (texelsChanged === 0) notices.show("info", words.same);
     else notices.show("success", texts.areas.changed(formatArea(areaM2)));

@@ -3,7 +3,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
 import type { Model, VertexPropertyName } from "../../core/types";
 import type { ModelSession } from "../../session/model-session";
 import { numberInput } from "../../ui/number-input";
@@ -82,7 +82,10 @@ export class StrataShapeFields extends LitElement {
   private async load(): Promise<void> {
     const { api, modelId, model } = this.session;
     try {
-      const [models, properties] = await Promise.all([api.models(), api.vertexProperties(modelId)]);
+      const [models, { properties }] = await Promise.all([
+        api.all("GET /models", "models"),
+        api.json("GET /models/{model}/vertex-properties", { path: { model: modelId } }),
+      ]);
       this._models = model ? otherModels(models, model) : [];
       this._properties = properties;
       const [firstModel, firstProperty] = [this._models[0], properties[0]];

@@ -4,7 +4,7 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { formatArea, formatNumber } from "../../domain/measure";
 import { colorOf, cssColor, withRange } from "../../domain/palette";
-import type { WorkbookQuery } from "../../net/api";
+import type { WorkbookQuery } from "../../domain/workbooks";
 import type { KeyStatistics, Layer, Palette, Statistics } from "../../core/types";
 import { labelOf } from "../../domain/cells";
 import { describeValue } from "../../session/layer-values";
@@ -159,7 +159,10 @@ export class StrataStatisticsDialog extends LitElement {
     this._problem = "";
     this._counted = this.layer.sequence;
     try {
-      this._statistics = await this.session.api.statistics(this.session.modelId, this.layer.id);
+      this._statistics = await this.session.api.json(
+        "GET /models/{model}/layers/{layer}/statistics",
+        { path: { model: this.session.modelId, layer: this.layer.id } },
+      );
     } catch (error) {
       this._problem = error instanceof Error ? error.message : texts.problems.unexpected;
     }
@@ -234,7 +237,10 @@ export class StrataStatisticsDialog extends LitElement {
 
   private save(f: WorkbookQuery["f"]): void {
     saveFrom(
-      this.session.api.quantitiesUrl(this.session.modelId, this.layer.id, workbookQuery(f)),
+      this.session.api.url("GET /models/{model}/layers/{layer}/quantities", {
+        path: { model: this.session.modelId, layer: this.layer.id },
+        query: workbookQuery(f),
+      }),
       `${this.layer.slug}-quantities.${f}`,
     );
   }

@@ -3,9 +3,10 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
 import { labelOf } from "../../domain/cells";
 import { personLanguages } from "../../core/locale";
+import { completeLayer } from "../../core/types";
 import type { Template, TemplateTable } from "../../core/protocol.gen";
 import "../../ui/dialog";
 import type { StrataDialog } from "../../ui/dialog";
@@ -94,7 +95,7 @@ export class StrataTemplateDialog extends LitElement {
   private async load(): Promise<void> {
     this._problem = "";
     try {
-      this._templates = await this.session.api.templates();
+      this._templates = await this.session.api.all("GET /templates", "templates");
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this._problem = error.message;
@@ -151,14 +152,18 @@ export class StrataTemplateDialog extends LitElement {
     this._making = slug;
     this._refused = null;
     try {
-      const { tables, layers } = await session.api.useTemplate(session.model.project, slug, {
-        model: session.modelId,
-        language: personLanguages()[0]!,
+      const made = await session.api.json("POST /projects/{project}/templates/{template}", {
+        path: { project: session.model.project, template: slug },
+        body: {
+          model: session.modelId,
+          language: personLanguages()[0]!,
+        },
       });
+      const layers = made.layers.map(completeLayer);
       for (const layer of layers) session.layers.put(layer);
       const first = layers.find(({ kind }) => kind === "database");
       if (first) session.addCreated(first);
-      notices.show("success", words.made(tables.length, layers.length));
+      notices.show("success", words.made(made.tables.length, layers.length));
       this._dialog.close();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;

@@ -3,10 +3,10 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { labelOf } from "../../domain/cells";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
 import { readNumber } from "../../core/locale";
 import { formatNumber, metresPer } from "../../domain/measure";
-import type { Layer, Model } from "../../core/types";
+import { completeLayer, type Layer, type Model } from "../../core/types";
 import "../../ui/dialog";
 import type { StrataDialog } from "../../ui/dialog";
 import { layerChip } from "./legend";
@@ -80,7 +80,7 @@ export class StrataTransferDialog extends LitElement {
     const { api, model } = this.session;
     if (!model) return;
     try {
-      this._models = otherModels(await api.models(), model);
+      this._models = otherModels(await api.all("GET /models", "models"), model);
       if (this._models[0]) await this.choose(String(this._models[0].id));
     } catch (error) {
       this.refuse(error);
@@ -92,9 +92,11 @@ export class StrataTransferDialog extends LitElement {
     this._layers = null;
     this._problem = "";
     try {
-      const layers = await this.session.api.layers(from);
+      const layers = await this.session.api.all("GET /models/{model}/layers", "layers", {
+        path: { model: from },
+      });
       if (this._from !== from) return;
-      this._layers = [...layers].reverse();
+      this._layers = layers.map(completeLayer).reverse();
       this._chosen = new Set(layers.map((layer) => layer.id));
     } catch (error) {
       this.refuse(error);

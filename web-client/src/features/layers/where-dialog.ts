@@ -3,7 +3,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { labelOf } from "../../domain/cells";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
 import { formatArea } from "../../domain/measure";
 import type { Layer } from "../../core/types";
 import "../../ui/dialog";
@@ -108,14 +108,16 @@ export class StrataWhereDialog extends LitElement {
       : { value: session.painting.brush.valueFor(layer) };
     this._working = true;
     try {
-      const { texels_changed: texelsChanged, area_m2: areaM2 } = await session.api.edit(
-        session.modelId,
-        layer.id,
+      const { texels_changed: texelsChanged, area_m2: areaM2 } = await session.api.json(
+        "POST /models/{model}/layers/{layer}/edits",
         {
-          op: "fill",
-          ...paint,
-          mode: "where",
-          where,
+          path: { model: session.modelId, layer: layer.id },
+          body: {
+            op: "fill",
+            ...paint,
+            mode: "where",
+            where,
+          },
         },
       );
       if (texelsChanged === 0) notices.show("info", texts.areas.nothing_changed);

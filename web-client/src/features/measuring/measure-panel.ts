@@ -2,7 +2,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
 import { axisName } from "../../math/camera";
 import { flatPolygon, heightOf, legsOf, sum } from "../../math/measured-line";
 import { kMeasuredDigits, measuredArea, measuredLength, metresPer } from "../../domain/measure";

@@ -2,14 +2,16 @@
 // them, and what is looked at of it. Places are of the object, not of a picture: the camera moves
 // on between them. Nothing of it is stored.
 
-import { ApiError, type Api, type ProfileLine } from "../../net/api";
+import type { Sent } from "../../net/calls";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
 import { boundingRadius, OrbitCamera, type CameraMessage } from "../../math/camera";
 import type { Point } from "../../net/connection";
 import type { PointerSample } from "../../ui/input";
 import { markLength, partsOfLine } from "../../domain/marks";
 import { legsOf, sum } from "../../math/measured-line";
 import { metresPer } from "../../domain/measure";
-import type { MarkPlace } from "../../core/protocol.gen";
+import type { MarkPlace, ProfileRequest } from "../../core/protocol.gen";
 import {
   lengthOf,
   passesThrough,
@@ -48,7 +50,7 @@ export type Way = "seen" | "nearest";
 
 export interface MeasuredProfile {
   way: Way;
-  line: ProfileLine;
+  line: Sent<ProfileRequest>;
   /** Model units. */
   parts: ProfileParts;
   /** Its course, in as few places as show it. */
@@ -162,7 +164,10 @@ export class Measuring {
       }
       const model = this._host.model();
       if (!model || (!this.ended && this.places.length === kMostPlaces)) return;
-      const { hit, position, normal } = await this._api.pick(model.id, camera.message(), [x, y]);
+      const { hit, position, normal } = await this._api.json("POST /models/{model}/pick", {
+        path: { model: model.id },
+        body: { camera: camera.message(), x, y },
+      });
       if (!isCurrent()) return;
       if (!hit || !position) {
         notices.show("info", texts.marks.missed);
@@ -230,7 +235,11 @@ export class Measuring {
     const { profile } = this;
     const model = this._host.model();
     if (!profile || !model) throw new Error("nothing is measured");
-    return this._api.profileCsv(model.id, profile.line);
+    return this._api.blob("POST /models/{model}/profile", {
+      path: { model: model.id },
+      body: profile.line,
+      accept: "text/csv",
+    });
   }
 
   // ── what happens
@@ -354,13 +363,16 @@ export class Measuring {
   private async ask(
     model: Model,
     way: Way,
-    line: ProfileLine,
+    line: Sent<ProfileRequest>,
     stepAt: (place: Vec3) => number,
   ): Promise<MeasuredProfile> {
     const { layer } = this;
-    const { samples } = await this._api.profileOf(model.id, {
-      ...line,
-      layers: layer ? [layer.slug] : [],
+    const { samples } = await this._api.json("POST /models/{model}/profile", {
+      path: { model: model.id },
+      body: {
+        ...line,
+        layers: layer ? [layer.slug] : [],
+      },
     });
     const parts = profileParts(samples, stepAt, layer?.slug ?? null);
     return {
@@ -378,9 +390,12 @@ export class Measuring {
     const model = this._host.model();
     if (!layer || !model) return;
     try {
-      const { samples } = await this._api.profileOf(model.id, {
-        ...profile.line,
-        layers: [layer.slug],
+      const { samples } = await this._api.json("POST /models/{model}/profile", {
+        path: { model: model.id },
+        body: {
+          ...profile.line,
+          layers: [layer.slug],
+        },
       });
       if (this.profile !== profile || this.layer?.id !== layer.id) return;
       const values = samples.flatMap(({ point: { hit, values } }) =>
@@ -413,7 +428,10 @@ export class Measuring {
   }
 
   private async lookAlong(path: readonly Point[]): Promise<readonly (MarkPlace | null)[]> {
-    const { samples } = await this._api.profile(this._host.model()!.id, this._seenBy!, path);
+    const { samples } = await this._api.json("POST /models/{model}/profile", {
+      path: { model: this._host.model()!.id },
+      body: { camera: this._seenBy!, path, layers: [] },
+    });
     return samples.map(({ point }) => (point.hit && point.position ? point.position : null));
   }
 

@@ -1,7 +1,7 @@
 // What this person paints with, and the edits that come of it.
 
 import { labelOf } from "../../domain/cells";
-import { newId } from "../../net/api";
+import { newId } from "../../core/ids";
 import type { Connection, Point, StrokeHandle } from "../../net/connection";
 import type { PointerSample } from "../../ui/input";
 import { formatArea, metresPer } from "../../domain/measure";

@@ -3,7 +3,8 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError, nameOfFile } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import { nameOfFile } from "../../domain/file-names";
 import { inSquare, kShapeSide, likelyPart, toShape, type ShapePart } from "../../domain/shape";
 import "../../ui/dialog";
 import type { ModelSession } from "../../session/model-session";

@@ -1,7 +1,7 @@
 // The shapes that the brush can have beside round and square: tools of the site, made of pictures.
 // All people share them.
 
-import type { Api } from "../../net/api";
+import { kAsItIs, type Api } from "../../net/api";
 import { compareWords } from "../../core/locale";
 import type { Tool, ToolEvent, ToolShape } from "../../core/protocol.gen";
 import type { ShapePart } from "../../domain/shape";
@@ -33,7 +33,7 @@ export class ToolShapes {
   /** After a connection that was lost: what happened meanwhile was not told. */
   refresh(): void {
     if (!this._wanted) return;
-    this._api.tools().then(
+    this._api.all("GET /tools", "tools").then(
       (tools) => this.take(tools),
       (error: unknown) => notices.error(error),
     );
@@ -44,18 +44,28 @@ export class ToolShapes {
   }
 
   async add(file: Blob, name: string, part: ShapePart): Promise<void> {
-    const tool = await this._api.createTool(file, name, part);
+    const tool = await this._api.json("POST /tools", {
+      query: { name, part },
+      body: file,
+      type: file.type,
+    });
     this.put(tool);
     this._host.choose(tool.id);
   }
 
   async rename(tool: Tool, name: string): Promise<void> {
-    this.put(await this._api.renameTool(tool.id, name));
+    this.put(
+      await this._api.json("PATCH /tools/{tool}", {
+        path: { tool: tool.id },
+        body: { name },
+        header: kAsItIs,
+      }),
+    );
   }
 
   async remove(tool: Tool): Promise<void> {
     if (this._host.chosen() === tool.id) this._host.choose("disc");
-    await this._api.deleteTool(tool.id);
+    await this._api.send("DELETE /tools/{tool}", { path: { tool: tool.id }, header: kAsItIs });
     this.take(this.list.filter(({ id }) => id !== tool.id));
   }
 

@@ -2,7 +2,7 @@
 // glides between; whether a place is hidden behind the surface the server is asked, one place at a
 // time: what would a ray through its pixel meet?
 
-import { newId } from "../../net/api";
+import { newId } from "../../core/ids";
 import { boundingRadius, type CameraMessage, type OrbitCamera } from "../../math/camera";
 import type { Picked, PresencePointer, PresenceUser } from "../../core/protocol.gen";
 import { dot, length, mix, subtract, type Vec3 } from "../../math/vector";

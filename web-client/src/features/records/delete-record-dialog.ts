@@ -3,7 +3,8 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { ApiError, type TexelsOfDeleted } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import { kAsItIs } from "../../net/api";
 import { tellTrashed } from "../../ui/trash";
 import "../../ui/dialog";
 import type { ModelSession } from "../../session/model-session";
@@ -77,9 +78,10 @@ export class StrataDeleteRecordDialog extends LitElement {
     }`;
   }
 
-  private get texels(): TexelsOfDeleted {
-    if (this._painted === "") return { what: "refuse" };
-    return this._what === "clear" ? { what: "clear" } : { what: "reassign", to: this._to[0]! };
+  /** What becomes of the surface that has the record's key. */
+  private get texels(): { texels: "refuse" | "clear" | "reassign"; to?: number } {
+    if (this._painted === "") return { texels: "refuse" };
+    return this._what === "clear" ? { texels: "clear" } : { texels: "reassign", to: this._to[0]! };
   }
 
   private async deleteRecord(): Promise<void> {
@@ -94,7 +96,11 @@ export class StrataDeleteRecordDialog extends LitElement {
     this._busy = true;
     this._problem = "";
     try {
-      await api.deleteRecord(this.table, this.key, this.texels);
+      await api.send("DELETE /tables/{table}/records/{key}", {
+        path: { table: this.table, key: this.key },
+        query: this.texels,
+        header: kAsItIs,
+      });
       this.session.tables.view?.forget(this.key);
       tellTrashed(api, gone);
       this.dispatchEvent(new CustomEvent("closed"));

@@ -122,7 +122,7 @@ export class StrataHoverCard extends LitElement {
         ${color ? html`<span class="swatch" ${styled({ background: cssColor(color) })}></span>` : nothing}
         <b class="ellipsis">${session.tables.title(table, record) || texts.tables.record(record.key)}</b>
       </div>
-      ${picture === null ? nothing : html`<img src=${session.api.attachmentUrl(picture, 256)} alt="" />`}
+      ${picture === null ? nothing : html`<img src=${session.api.url("GET /attachments/{attachment}", { path: { attachment: picture }, query: { thumbnail: 256 } })} alt="" />`}
       ${
         told.length === 0
           ? nothing

@@ -1,7 +1,9 @@
 // Lines and points that this person draws on the surface. They go to the record that the brush
 // paints with, into the layer's table.
 
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
+import { readRecord, changeRecord } from "../../net/records";
 import type { CameraMessage } from "../../math/camera";
 import type { Point } from "../../net/connection";
 import type { PointerSample } from "../../ui/input";
@@ -122,7 +124,10 @@ export class MarkDrawing {
     if (!target) return;
     const seenBy = this._host.view.camera.message();
     this.queue(async () => {
-      const { hit, position } = await this._api.pick(`${target.model.id}`, seenBy, [x, y]);
+      const { hit, position } = await this._api.json("POST /models/{model}/pick", {
+        path: { model: `${target.model.id}` },
+        body: { camera: seenBy, x, y },
+      });
       await this.add(target, hit && position ? [[position]] : [], words.point_set);
     });
   }
@@ -160,7 +165,10 @@ export class MarkDrawing {
     seenBy: CameraMessage,
     path: readonly Point[],
   ): Promise<Step[]> {
-    const { samples } = await this._api.profile(`${id}`, seenBy, path);
+    const { samples } = await this._api.json("POST /models/{model}/profile", {
+      path: { model: `${id}` },
+      body: { camera: seenBy, path, layers: [] },
+    });
     return stepsAlong(path, samples);
   }
   private async nearestAlong(
@@ -169,10 +177,13 @@ export class MarkDrawing {
     to: MarkPlace,
     step: number,
   ): Promise<(MarkPlace | null)[]> {
-    const { samples } = await this._api.profileOf(`${id}`, {
-      places: [from, to],
-      step_mm: step * metresPer(unit) * 1000,
-      layers: [],
+    const { samples } = await this._api.json("POST /models/{model}/profile", {
+      path: { model: `${id}` },
+      body: {
+        places: [from, to],
+        step_mm: step * metresPer(unit) * 1000,
+        layers: [],
+      },
     });
     return samples.map(({ point }) => (point.hit && point.position ? point.position : null));
   }
@@ -199,7 +210,7 @@ export class MarkDrawing {
     }
     const marks = places.map((coordinates) => ({ model: model.id, coordinates }));
     const changed = await this.change(table, key, ({ version, values }) =>
-      this._api.changeRecord(table, key, {
+      changeRecord(this._api, table, key, {
         version,
         values: { [column.slug]: [...marksOf(values[column.slug]), ...marks] },
       }),
@@ -223,7 +234,7 @@ export class MarkDrawing {
   ): Promise<TableRecord> {
     for (let tries = 1; ; ++tries) {
       try {
-        return await change(await this._api.record({ table }, key));
+        return await change(await readRecord(this._api, { table }, key));
       } catch (error) {
         if (!(error instanceof ApiError) || error.status !== 412 || tries === kMostTries)
           throw error;
@@ -233,7 +244,9 @@ export class MarkDrawing {
 
   /** Only that change: what came after it is not what the notice spoke of. */
   private async takeBack(table: number, version: number): Promise<void> {
-    const [newest] = await this._api.tableEdits(table, 1);
+    const {
+      edits: [newest],
+    } = await this._api.json("GET /tables/{table}/edits", { path: { table }, query: { limit: 1 } });
     if (newest?.sequence === version) await this._host.tables.undo(table);
     else notices.show("info", words.changed_since);
   }

@@ -3,7 +3,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
 import { labelColumn, labelOf } from "../../domain/cells";
 import type { AttachmentMatches, Column, MatchedName } from "../../core/protocol.gen";
 import "../../ui/dialog";
@@ -184,10 +184,13 @@ export class StrataPhotosDialog extends LitElement {
     const asked = ++this._asked;
     const { _pattern: pattern, _column: column, names } = this;
     try {
-      const matches = await this.session.api.matchAttachments(this.table, {
-        pattern,
-        column,
-        names,
+      const matches = await this.session.api.json("POST /tables/{table}/attachments/match", {
+        path: { table: this.table },
+        body: {
+          pattern,
+          column,
+          names,
+        },
       });
       if (asked !== this._asked) return;
       this._matches = matches;
@@ -214,7 +217,11 @@ export class StrataPhotosDialog extends LitElement {
         if (this._stopped) break;
         const file = this.files.find((each) => each.name === name);
         if (!file || key === undefined) continue;
-        await this.session.api.attach(this.table, key, target, file);
+        await this.session.api.send("POST /tables/{table}/records/{key}/attachments", {
+          path: { table: this.table, key },
+          query: { name: file.name, column: target },
+          body: file,
+        });
         this._sent += 1;
       }
       notices.show("success", words.sent(this._sent));

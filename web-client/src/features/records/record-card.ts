@@ -109,8 +109,8 @@ export class StrataRecordCard extends LitElement {
     const { api } = this.session;
     const id = firstPicture(table, record);
     if (id === null) return nothing;
-    return html`<a class="picture" href=${api.attachmentUrl(id)} target="_blank" rel="noopener">
-      <img src=${api.attachmentUrl(id, 512)} alt=${texts.files.file(id)} />
+    return html`<a class="picture" href=${api.url("GET /attachments/{attachment}", { path: { attachment: id } })} target="_blank" rel="noopener">
+      <img src=${api.url("GET /attachments/{attachment}", { path: { attachment: id }, query: { thumbnail: 512 } })} alt=${texts.files.file(id)} />
     </a>`;
   }
 

@@ -3,7 +3,8 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import { readRecord, createRecord, changeRecord, lastEditOf } from "../../net/records";
 import { cellText, holdsFiles, labelOf, sameValue } from "../../domain/cells";
 import { formatArea } from "../../domain/measure";
 import { cssColor, recordColor } from "../../domain/palette";
@@ -110,7 +111,8 @@ export class StrataRecordDialog extends LitElement {
 
   private async load(key: number): Promise<void> {
     try {
-      const record = await this.session.api.record(
+      const record = await readRecord(
+        this.session.api,
         { model: this.session.modelId, layer: this.layer.id },
         key,
       );
@@ -280,14 +282,14 @@ export class StrataRecordDialog extends LitElement {
     this._busy = true;
     try {
       if (record && Object.keys(values).length > 0) {
-        const changed = await session.api.changeRecord(table.id, record.key, {
+        const changed = await changeRecord(session.api, table.id, record.key, {
           version: record.version,
           values,
         });
         session.tables.view?.rows.put(changed);
         this._record = { ...record, ...changed };
       } else if (!record) {
-        const made = await session.api.createRecord(table.id, { values });
+        const made = await createRecord(session.api, table.id, { values });
         this._record = made; // what is refused from here on is tried again for this record
         session.tables.view?.rows.refresh();
         session.tables.view?.show(made.key);
@@ -316,14 +318,19 @@ export class StrataRecordDialog extends LitElement {
       for (const field of fields) {
         for (const file of field.pending) {
           this._sending = texts.files.sending_one(file.name, ++n, of);
-          await this.session.api.attach(table.id, key, field.column.slug, file);
+          await this.session.api.send("POST /tables/{table}/records/{key}/attachments", {
+            path: { table: table.id, key },
+            query: { name: file.name, column: field.column.slug },
+            body: file,
+          });
           field.sent(file);
         }
       }
     } finally {
       this._sending = "";
       if (n > 0) {
-        this._record = await this.session.api.record(
+        this._record = await readRecord(
+          this.session.api,
           { model: this.session.modelId, layer: this.layer.id },
           key,
         );
@@ -354,8 +361,8 @@ export class StrataRecordDialog extends LitElement {
    */
   private async tellChanges(table: Table, read: TableRecord): Promise<void> {
     const { api } = this.session;
-    const [newest] = await api.recordEdits(table.id, read.key, 1);
-    const now = await api.record({ table: table.id }, read.key);
+    const newest = await lastEditOf(api, table.id, read.key);
+    const now = await readRecord(api, { table: table.id }, read.key);
     const typed = new Map<string, TableRecord["values"][string]>();
     const told = new Map<string, string>();
     for (const column of table.columns) {

@@ -2,7 +2,8 @@
 // anew soon after something changed on a layer.
 
 import { labelOf } from "../../domain/cells";
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
 import { placeLike } from "../../math/fit-to-window";
 import type { LayerEvent, Review, ReviewQueue, WaitingStroke } from "../../core/protocol.gen";
 import { ReadAgain } from "../../net/read-again";
@@ -133,7 +134,10 @@ export class Reviews {
     this._asked.set(layer, question);
     try {
       const whose = this._host.canCurate() ? null : this._host.me();
-      const queue = await this._api.reviewQueue(this._modelId, layer, kAtOnce, whose);
+      const queue = await this._api.json("GET /models/{model}/layers/{layer}/review", {
+        path: { model: this._modelId, layer },
+        query: { limit: kAtOnce, user: whose ?? undefined },
+      });
       if (this._asked.get(layer) !== question) return;
       this._queues.set(layer, queue);
       this._failed.delete(layer);
@@ -191,7 +195,10 @@ export class Reviews {
   private async send(layer: Layer, decision: Review): Promise<boolean> {
     let done = true;
     try {
-      await this._api.review(this._modelId, layer.id, decision);
+      await this._api.json("POST /models/{model}/layers/{layer}/review", {
+        path: { model: this._modelId, layer: layer.id },
+        body: decision,
+      });
     } catch (error) {
       notices.error(error);
       done = false;

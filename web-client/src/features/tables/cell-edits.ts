@@ -1,7 +1,9 @@
 // Cells that this person wrote and that are not in the table yet: on their way, refused, or changed
 // by somebody else meanwhile.
 
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
+import { readRecord, changeRecord, lastEditOf } from "../../net/records";
 import { sameValue } from "../../domain/cells";
 import type { CellValue, TableRecord } from "../../core/protocol.gen";
 import { texts } from "../../texts";
@@ -92,14 +94,14 @@ export class CellEdits {
     try {
       for (let tries = 1; ; ++tries) {
         const row =
-          this._host.row(key) ?? (await this._api.record({ table: this._host.table }, key));
+          this._host.row(key) ?? (await readRecord(this._api, { table: this._host.table }, key));
         if (!edit.onto.some((value) => sameValue(row.values[slug], value))) {
           await this.tellConflict(edit, row);
           return;
         }
         try {
           this._host.put(
-            await this._api.changeRecord(this._host.table, key, {
+            await changeRecord(this._api, this._host.table, key, {
               version: row.version,
               values: { [slug]: value },
             }),
@@ -109,7 +111,7 @@ export class CellEdits {
           if (!(error instanceof ApiError) || error.status !== 412 || tries === kMostTries)
             throw error;
           // another cell of it may be all that changed
-          this._host.put(await this._api.record({ table: this._host.table }, key));
+          this._host.put(await readRecord(this._api, { table: this._host.table }, key));
         }
       }
       if (this.of(key, slug) === edit) this.forget(key, slug);
@@ -121,7 +123,7 @@ export class CellEdits {
   }
 
   private async tellConflict(edit: CellEdit, row: TableRecord): Promise<void> {
-    const [newest] = await this._api.recordEdits(this._host.table, edit.key, 1);
+    const newest = await lastEditOf(this._api, this._host.table, edit.key);
     edit.state = "conflict";
     edit.theirs = {
       value: row.values[edit.slug] ?? null,

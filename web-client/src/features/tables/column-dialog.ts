@@ -2,7 +2,8 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import { kAsItIs } from "../../net/api";
 import { cellText, labelOf, parseCell } from "../../domain/cells";
 import { formatList } from "../../core/locale";
 import type {
@@ -215,19 +216,30 @@ export class StrataColumnDialog extends LitElement {
     const { column, table, session } = this;
     await this.work(async () => {
       if (!column) {
-        await session.api.createColumn(table.id, {
-          ...ofKind(wanted),
-          visibility: this._visibility,
-        } as ColumnCreate);
+        await session.api.json("POST /tables/{table}/columns", {
+          path: { table: table.id },
+          body: {
+            ...ofKind(wanted),
+            visibility: this._visibility,
+          } as ColumnCreate,
+        });
       } else {
         // In a call of its own, which is no entry of the journal; the first, so that what follows
         // is seen by none who should not.
         if (this._visibility !== column.visibility)
-          await session.api.changeColumn(table.id, column.id, { visibility: this._visibility });
+          await session.api.json("PATCH /tables/{table}/columns/{column}", {
+            path: { table: table.id, column: column.id },
+            body: { visibility: this._visibility },
+            header: kAsItIs,
+          });
         const change = columnChanges(column, wanted);
         const outcome =
           Object.keys(change).length > 0
-            ? await session.api.changeColumn(table.id, column.id, change)
+            ? await session.api.json("PATCH /tables/{table}/columns/{column}", {
+                path: { table: table.id, column: column.id },
+                body: change,
+                header: kAsItIs,
+              })
             : null;
         if (outcome?.lost) this._outcome = outcome;
       }
@@ -239,7 +251,7 @@ export class StrataColumnDialog extends LitElement {
   /** The column is as it was, with all its values. */
   private async takeBack(): Promise<void> {
     await this.work(async () => {
-      await this.session.api.undoTable(this.table.id);
+      await this.session.api.json("POST /tables/{table}/undo", { path: { table: this.table.id } });
       await this.session.tables.reload(this.table.id);
       this.dispatchEvent(new CustomEvent("closed"));
     });

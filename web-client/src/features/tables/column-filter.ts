@@ -4,7 +4,8 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import { readRecords } from "../../net/records";
 import { isNumber, labelOf, namesRecords } from "../../domain/cells";
 import {
   chosenIn,
@@ -175,7 +176,7 @@ export class StrataColumnFilter extends LitElement {
     try {
       const filter = withChoice(this.filter, this.column, null);
       this._counts = await countValues(
-        (query) => this.session.api.records({ table: this.table }, { ...query, filter }),
+        (query) => readRecords(this.session.api, { table: this.table }, { ...query, filter }),
         this.column.slug,
       );
     } catch (error) {

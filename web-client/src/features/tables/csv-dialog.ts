@@ -3,7 +3,7 @@
 
 import { html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
 import type { RecordsReport } from "../../core/protocol.gen";
 import "../../ui/dialog";
 import type { ModelSession } from "../../session/model-session";
@@ -44,7 +44,12 @@ export class StrataCsvDialog extends LitElement {
     this._busy = true;
     this._problem = "";
     try {
-      const report = await this.session.api.importRecords(this.table, this.file, dryRun);
+      const report = (await this.session.api.json("POST /tables/{table}/records", {
+        path: { table: this.table },
+        query: dryRun ? { dry_run: true } : {},
+        body: this.file,
+        type: "text/csv",
+      })) as RecordsReport;
       this._report = report;
       if (dryRun) return;
       this.session.tables.view?.rows.refresh();

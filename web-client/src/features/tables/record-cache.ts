@@ -1,7 +1,9 @@
 // Records that were looked at, kept until something tells that they changed. The oldest make room
 // for new ones.
 
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
+import { readRecord } from "../../net/records";
 import type { TableRecord } from "../../core/protocol.gen";
 
 const kMostKept = 300;
@@ -42,7 +44,7 @@ export class RecordCache {
     if (this._kept.size > kMostKept && oldest !== undefined) this._kept.delete(oldest);
     let found: TableRecord | null = null;
     try {
-      found = await this._api.record({ table }, key);
+      found = await readRecord(this._api, { table }, key);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error; // paint without a record
     }

@@ -2,7 +2,9 @@
 // somebody needs a name, all at once, since a search over them must not wait; of very large tables
 // the first ones.
 
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
+import { readRecords } from "../../net/records";
 import { labelColumn, labelOfRecord, type NameOfKey } from "../../domain/cells";
 import { personLanguages } from "../../core/locale";
 import type { Table, TableRecord } from "../../core/protocol.gen";
@@ -147,7 +149,8 @@ export class RecordNames {
         let complete = false;
         for (let offset = 0; offset < kMostNames; offset += kAtOnce) {
           const sortby = labelColumn(table)?.slug ?? "key";
-          const { records, total } = await this._api.records(
+          const { records, total } = await readRecords(
+            this._api,
             { table: table.id },
             { sortby, limit: kAtOnce, offset },
           );

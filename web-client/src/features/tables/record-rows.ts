@@ -2,7 +2,8 @@
 // are asked for in pages; what was seen stays until its newer state is here, so that nothing
 // flickers.
 
-import { ApiError, type RecordQuery } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { RecordQuery } from "../../net/records";
 import { sameValue } from "../../domain/cells";
 import { marksOf } from "../../domain/marks";
 import type { RecordList, TableRecord } from "../../core/protocol.gen";

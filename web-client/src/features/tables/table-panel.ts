@@ -1,6 +1,7 @@
 // <strata-table-panel>: the records of a database layer as a table: sorted, filtered, written into.
 // Only the rows in sight are drawn.
 
+import { kAsItIs } from "../../net/api";
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
@@ -290,7 +291,10 @@ export class StrataTablePanel extends LitElement {
     const words = texts.terms_dialog;
     const { api, canCurate } = this.session;
     const save = (format: "csv" | "turtle", ending: string) => () =>
-      saveFrom(api.termsUrl(table.id, format), `${table.slug}.${ending}`);
+      saveFrom(
+        api.url("GET /tables/{table}/terms", { path: { table: table.id }, query: { f: format } }),
+        `${table.slug}.${ending}`,
+      );
     return html`<hr />
       <button class="quiet" role="menuitem" @click=${save("csv", "csv")}>${icon("import")}${words.save_csv}</button>
       <button class="quiet" role="menuitem" @click=${save("turtle", "ttl")}>${icon("import")}${words.save_turtle}</button>
@@ -500,7 +504,11 @@ export class StrataTablePanel extends LitElement {
 
   private async setTitle(table: number, column: number | null): Promise<void> {
     try {
-      await this.session.api.setTitleColumn(table, column);
+      await this.session.api.json("PATCH /tables/{table}", {
+        path: { table },
+        body: { title_column: column === null ? "" : `${column}` },
+        header: kAsItIs,
+      });
       await this.session.tables.reload(table);
     } catch (error) {
       notices.error(error);
@@ -1026,7 +1034,10 @@ export class StrataTablePanel extends LitElement {
       ...(filter ? { filter } : {}),
     };
     saveFrom(
-      this.session.api.recordsUrl({ model: this.session.modelId, layer: this.view.layerId }, query),
+      this.session.api.url("GET /models/{model}/layers/{layer}/records", {
+        path: { model: this.session.modelId, layer: this.view.layerId },
+        query,
+      }),
       `${table.slug}.${format}`,
     );
   }

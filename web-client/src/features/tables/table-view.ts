@@ -1,7 +1,9 @@
 // One table as it is looked at below the stage, under the layer whose areas it shows: its rows,
 // what is written into them and which are chosen.
 
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
+import { readRecords } from "../../net/records";
 import type {
   CellValue,
   Extent,
@@ -58,7 +60,7 @@ export class TableView {
   ) {
     const place = { model: _host.modelId, layer: _host.layer_id };
     this.rows = new RecordRows({
-      ask: (query) => _api.records(place, query),
+      ask: (query) => readRecords(_api, place, query),
       changed: () => this.changed(),
       measuresOutdated: () => this.refreshSoon(),
     });
@@ -184,7 +186,10 @@ export class TableView {
     const { highlight, _highlighted } = this;
     if (!highlight) return;
     try {
-      const extent = await this._api.extent(this._host.modelId, this._host.layer_id, highlight);
+      const extent = await this._api.json("POST /models/{model}/layers/{layer}/extent", {
+        path: { model: this._host.modelId, layer: this._host.layer_id },
+        body: highlight,
+      });
       if (this._highlighted !== _highlighted) return;
       this.extent = extent;
       if (this._flies && extent.bounds) this._host.flyTo(extent.bounds);
@@ -204,10 +209,16 @@ export class TableView {
   }
 
   async undo(): Promise<void> {
-    await this.turn(() => this._api.undoTable(this.tableId), texts.tables.undone);
+    await this.turn(
+      () => this._api.json("POST /tables/{table}/undo", { path: { table: this.tableId } }),
+      texts.tables.undone,
+    );
   }
   async redo(): Promise<void> {
-    await this.turn(() => this._api.redoTable(this.tableId), texts.tables.redone);
+    await this.turn(
+      () => this._api.json("POST /tables/{table}/redo", { path: { table: this.tableId } }),
+      texts.tables.redone,
+    );
   }
 
   private async turn(

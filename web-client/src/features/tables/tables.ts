@@ -1,7 +1,9 @@
 // The tables of the project that this page has needed so far: their columns, and what their records
 // are called.
 
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
+import { readRecord } from "../../net/records";
 import { labelOfRecord } from "../../domain/cells";
 import type {
   Bounds,
@@ -119,7 +121,9 @@ export class Tables {
   async all(): Promise<Table[]> {
     const project = this._host.project();
     if (project === null) return [];
-    const tables = await this._api.tables(project);
+    const tables = await this._api.all("GET /projects/{project}/tables", "tables", {
+      path: { project },
+    });
     for (const table of tables) this._tables.set(table.id, table);
     return tables;
   }
@@ -181,7 +185,9 @@ export class Tables {
       return;
     }
     try {
-      const what = await (way === "undo" ? this._api.undoTable(table) : this._api.redoTable(table));
+      const what = await (way === "undo"
+        ? this._api.json("POST /tables/{table}/undo", { path: { table } })
+        : this._api.json("POST /tables/{table}/redo", { path: { table } }));
       if (what.columns_changed) await this.reload(table);
       const told = way === "undo" ? texts.tables.undone : texts.tables.redone;
       notices.show("success", told(what.created.length, what.changed.length, what.deleted.length));
@@ -253,7 +259,8 @@ export class Tables {
     const { card } = this;
     if (!card) return;
     try {
-      const record = await this._api.record(
+      const record = await readRecord(
+        this._api,
         { model: this._host.modelId, layer: card.layer.id },
         card.key,
       );
@@ -270,7 +277,7 @@ export class Tables {
   private async load(id: number): Promise<void> {
     if (!this._tables.has(id)) this._tables.set(id, "asked");
     try {
-      this._tables.set(id, await this._api.table(id));
+      this._tables.set(id, await this._api.json("GET /tables/{table}", { path: { table: id } }));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.status !== 404) notices.error(error);

@@ -3,7 +3,9 @@
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError, nameOfFile } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import { nameOfFile } from "../../domain/file-names";
+import { createLayer } from "../../net/layers";
 import { labelOf } from "../../domain/cells";
 import type { RecordsReport, Table } from "../../core/protocol.gen";
 import "../../ui/dialog";
@@ -13,7 +15,7 @@ import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { isUseful, recordsReport, reportStyles } from "./records-report";
 import { sharedStyles } from "../../ui/styles";
-import { kTermsEndings, termsType } from "./terms-files";
+import { kTermsEndings, termsType, type TermsType } from "./terms-files";
 import { texts } from "../../texts";
 
 const words = texts.terms_dialog;
@@ -92,10 +94,21 @@ export class StrataTermsDialog extends LitElement {
     void this.look(file);
   }
 
-  private get into(): { project: number | string; name: string } | { table: number } {
+  /**
+   * Makes a new list of the project, or adds to one. `dryRun` only reports. Where terms are wrong
+   * nothing is written.
+   */
+  private import(body: File, type: TermsType, dryRun: boolean): Promise<RecordsReport> {
+    const { api, model } = this.session;
+    const query = dryRun ? { dry_run: true } : {};
     return this.table === null
-      ? { project: this.session.model?.project ?? 0, name: this._name }
-      : { table: this.table };
+      ? api.json("POST /projects/{project}/terms", {
+          path: { project: model?.project ?? 0 },
+          query: { name: this._name, ...query },
+          body,
+          type,
+        })
+      : api.json("POST /tables/{table}/terms", { path: { table: this.table }, query, body, type });
   }
 
   /** What it would do. The newest question counts. */
@@ -111,7 +124,7 @@ export class StrataTermsDialog extends LitElement {
           : "";
     if (type === null || this._problem !== "") return;
     try {
-      const report = await this.session.api.importTerms(this.into, file, type, true);
+      const report = await this.import(file, type, true);
       if (asked === this._asked) this._report = report;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
@@ -126,7 +139,7 @@ export class StrataTermsDialog extends LitElement {
     this._busy = true;
     this._problem = "";
     try {
-      const report = await session.api.importTerms(this.into, file, type, false);
+      const report = await this.import(file, type, false);
       if (this.table !== null) await session.tables.reload(this.table);
       notices.show("success", words.done(report.created, report.changed));
       if (this.table === null && this._withLayer && report.table)
@@ -149,7 +162,7 @@ export class StrataTermsDialog extends LitElement {
     try {
       const type = terms > kMostOfU16 ? "u32" : "u16";
       session.addCreated(
-        await session.api.createLayer(session.modelId, {
+        await createLayer(session.api, session.modelId, {
           name,
           kind: "database",
           type,

@@ -1,6 +1,7 @@
 // Files that lists of terms come in, known by their names.
 
-import type { TermsType } from "../../net/api";
+/** What files of terms are sent as. */
+export type TermsType = "text/csv" | "text/turtle" | "application/rdf+xml";
 
 const kTypes: [TermsType, string[]][] = [
   ["text/csv", ["csv", "tsv", "txt"]],

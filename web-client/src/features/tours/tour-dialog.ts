@@ -4,7 +4,8 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError, newId } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import { newId } from "../../core/ids";
 import { languageInWords } from "../../core/languages";
 import { pageLocale } from "../../core/locale";
 import type { Tour, TourEntry } from "../../core/protocol.gen";

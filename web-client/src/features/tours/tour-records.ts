@@ -4,7 +4,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
 import { labelOf } from "../../domain/cells";
 import { languageInWords } from "../../core/languages";
 import type { Table, TourRecords } from "../../core/protocol.gen";

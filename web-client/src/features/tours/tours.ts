@@ -1,7 +1,8 @@
 // The tours of the open model, for those who make them. Nobody tells this page what others do to
 // them, so they are read again where that matters.
 
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import { type Api, ifVersion } from "../../net/api";
 import type { Tour, TourCreate, TourEntry } from "../../core/protocol.gen";
 import { KnownItems } from "../../net/known-items";
 
@@ -27,13 +28,22 @@ export class Tours {
   }
 
   async load(): Promise<void> {
-    if (await this._known.load(() => this._api.tours(this._modelId))) this._changed();
+    if (
+      await this._known.load(() =>
+        this._api.all("GET /models/{model}/tours", "tours", { path: { model: this._modelId } }),
+      )
+    )
+      this._changed();
   }
 
   /** With its stops, as it is now. */
   async read(id: number): Promise<Tour> {
     try {
-      return this.put(await this._api.tour(this._modelId, id));
+      return this.put(
+        await this._api.json("GET /models/{model}/tours/{tour}", {
+          path: { model: this._modelId, tour: id },
+        }),
+      );
     } catch (error) {
       if (error instanceof ApiError && error.status === 404) this.drop(id);
       throw error;
@@ -42,19 +52,34 @@ export class Tours {
 
   /** `key`: the same for each attempt at one tour. */
   async make(tour: TourCreate, key: string): Promise<Tour> {
-    return this.put(await this._api.createTour(this._modelId, tour, key));
+    return this.put(
+      await this._api.json("POST /models/{model}/tours", {
+        path: { model: this._modelId },
+        body: tour,
+        header: { "Idempotency-Key": key },
+      }),
+    );
   }
   /** Of what was read: another's change in between is an ApiError of status 412. */
   async change(
     { id, version }: { id: number; version: number },
     change: TourCreate,
   ): Promise<Tour> {
-    return this.put(await this._api.changeTour(this._modelId, id, change, version));
+    return this.put(
+      await this._api.json("PATCH /models/{model}/tours/{tour}", {
+        path: { model: this._modelId, tour: id },
+        body: change,
+        header: ifVersion(version),
+      }),
+    );
   }
   /** The same about changes in between. */
   async remove({ id, version }: TourEntry): Promise<void> {
     try {
-      await this._api.deleteTour(this._modelId, id, version);
+      await this._api.send("DELETE /models/{model}/tours/{tour}", {
+        path: { model: this._modelId, tour: id },
+        header: ifVersion(version),
+      });
     } catch (error) {
       if (error instanceof ApiError && error.status === 412) await this.load();
       if (!(error instanceof ApiError && error.status === 404)) throw error;

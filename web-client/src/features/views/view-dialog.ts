@@ -3,7 +3,7 @@
 
 import { html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
 import type { View } from "../../core/protocol.gen";
 import type { ViewContent } from "../../domain/views";
 import type { ModelSession } from "../../session/model-session";

@@ -1,7 +1,8 @@
 // The named views of the open model: which there are, how this person comes to see it as one of
 // them has it, and how they come back.
 
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import { type Api, ifVersion } from "../../net/api";
 import { placeLike } from "../../math/fit-to-window";
 import type { View, ViewEvent } from "../../core/protocol.gen";
 import type { ViewContent } from "../../domain/views";
@@ -75,7 +76,12 @@ export class Views {
   }
 
   async load(): Promise<void> {
-    if (await this._known.load(() => this._api.views(this._modelId))) this._host.changed();
+    if (
+      await this._known.load(() =>
+        this._api.all("GET /models/{model}/views", "views", { path: { model: this._modelId } }),
+      )
+    )
+      this._host.changed();
   }
 
   onEvent({ event, view }: ViewEvent): void {
@@ -85,7 +91,11 @@ export class Views {
 
   private async read(id: number): Promise<void> {
     try {
-      this.put(await this._api.view(this._modelId, id));
+      this.put(
+        await this._api.json("GET /models/{model}/views/{view}", {
+          path: { model: this._modelId, view: id },
+        }),
+      );
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       // otherwise it is as it was, until they are all read again
@@ -200,7 +210,11 @@ export class Views {
     content: ViewContent,
     key: string,
   ): Promise<void> {
-    const made = await this._api.createView(this._modelId, { ...called, ...content }, key);
+    const made = await this._api.json("POST /models/{model}/views", {
+      path: { model: this._modelId },
+      body: { ...called, ...content },
+      header: { "Idempotency-Key": key },
+    });
     this.put(made);
     this._back = null; // what was seen before has a name now
     this.remember(made);
@@ -212,7 +226,13 @@ export class Views {
    */
   async describe(view: View, called: { name: string; text: string }): Promise<void> {
     await this.newestAfter(view, async () =>
-      this.put(await this._api.changeView(this._modelId, view.id, called, view.version)),
+      this.put(
+        await this._api.json("PATCH /models/{model}/views/{view}", {
+          path: { model: this._modelId, view: view.id },
+          body: called,
+          header: ifVersion(view.version),
+        }),
+      ),
     );
   }
   /** Under the view's name what this person sees now; the same about changes in between. */
@@ -227,7 +247,12 @@ export class Views {
   }
   /** The same about changes in between. */
   async remove(view: View): Promise<void> {
-    await this.newestAfter(view, () => this._api.deleteView(this._modelId, view.id, view.version));
+    await this.newestAfter(view, () =>
+      this._api.send("DELETE /models/{model}/views/{view}", {
+        path: { model: this._modelId, view: view.id },
+        header: ifVersion(view.version),
+      }),
+    );
     this.drop(view.id);
   }
 
@@ -237,7 +262,11 @@ export class Views {
   ): Promise<View> {
     let changed = view;
     await this.newestAfter(view, async () => {
-      changed = await this._api.changeView(this._modelId, view.id, content, view.version);
+      changed = await this._api.json("PATCH /models/{model}/views/{view}", {
+        path: { model: this._modelId, view: view.id },
+        body: content,
+        header: ifVersion(view.version),
+      });
     });
     this.put(changed);
     return changed;

@@ -3,7 +3,7 @@
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
 import { labelOf } from "../../domain/cells";
 import { formatBytes } from "../../domain/measure";
 import type { Attachment, Column, Visibility } from "../../core/protocol.gen";
@@ -124,8 +124,13 @@ export class StrataFilesField extends LitElement {
 
   private async load(): Promise<void> {
     try {
-      const files = await this.session.api.attachments(this.table, this.record!);
-      this._known = new Map(files.map((file) => [file.id, file]));
+      const { attachments } = await this.session.api.json(
+        "GET /tables/{table}/records/{key}/attachments",
+        {
+          path: { table: this.table, key: this.record! },
+        },
+      );
+      this._known = new Map(attachments.map((file) => [file.id, file]));
       this._isKnown = true;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
@@ -149,8 +154,8 @@ export class StrataFilesField extends LitElement {
     const file = this._known.get(id);
     const name = file?.name ?? words.file(id);
     return html`<figure>
-      <a href=${this.session.api.attachmentUrl(id)} target="_blank" rel="noopener" title=${file ? `${name}, ${formatBytes(file.bytes)}` : name}>
-        ${this.isPictures ? html`<img src=${this.session.api.attachmentUrl(id, 256)} alt=${name} loading="lazy" />` : icon("document")}
+      <a href=${this.session.api.url("GET /attachments/{attachment}", { path: { attachment: id } })} target="_blank" rel="noopener" title=${file ? `${name}, ${formatBytes(file.bytes)}` : name}>
+        ${this.isPictures ? html`<img src=${this.session.api.url("GET /attachments/{attachment}", { path: { attachment: id }, query: { thumbnail: 256 } })} alt=${name} loading="lazy" />` : icon("document")}
       </a>
       <figcaption class="ellipsis">${name}</figcaption>
       ${file ? this.seenBy(file) : nothing}
@@ -182,7 +187,10 @@ export class StrataFilesField extends LitElement {
 
   private async showTo(file: Attachment, choice: HTMLSelectElement): Promise<void> {
     try {
-      const now = await this.session.api.showAttachment(file.id, choice.value as Visibility);
+      const now = await this.session.api.json("PATCH /attachments/{attachment}", {
+        path: { attachment: file.id },
+        body: { visibility: choice.value as Visibility },
+      });
       this._known = new Map(this._known).set(file.id, now);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;

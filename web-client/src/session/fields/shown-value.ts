@@ -35,7 +35,7 @@ export function shownValue(session: ModelSession, column: Column, value: CellVal
       .slice(0, kMostPictures)
       .map(
         (id) =>
-          html`<img class="thumbnail" src=${session.api.attachmentUrl(id, 64)} alt=${texts.files.file(id)} loading="lazy" height="24" @load=${showWhether(true)} @error=${showWhether(false)} />`,
+          html`<img class="thumbnail" src=${session.api.url("GET /attachments/{attachment}", { path: { attachment: id }, query: { thumbnail: 64 } })} alt=${texts.files.file(id)} loading="lazy" height="24" @load=${showWhether(true)} @error=${showWhether(false)} />`,
       )}${ids.length > kMostPictures ? ` +${ids.length - kMostPictures}` : ""}`;
   }
   if (column.kind === "boolean") return value ? texts.tables.yes : texts.tables.no;

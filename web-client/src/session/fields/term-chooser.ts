@@ -5,7 +5,7 @@ import { css, html, LitElement, nothing, type PropertyValues, type TemplateResul
 import { customElement, property, query, state } from "lit/decorators.js";
 import { live } from "lit/directives/live.js";
 import { repeat } from "lit/directives/repeat.js";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
 import { colorOf, pointOf, swatchStyle } from "../../domain/palette";
 import type { ListedTerm, TermTree as FoundTerms } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";

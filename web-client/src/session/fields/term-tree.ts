@@ -1,7 +1,8 @@
 // The terms of a list in the person's language. Asked for once somebody needs them, and again when
 // the list changes; of very large lists the first ones, since the server finds the others.
 
-import { ApiError, type Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import type { Api } from "../../net/api";
 import { personLanguages } from "../../core/locale";
 import type { ListedTerm, TermTree as FoundTerms } from "../../core/protocol.gen";
 
@@ -47,11 +48,14 @@ export class TermTree {
 
   /** Those that have all of the words, with those above them. */
   async search(words: string): Promise<FoundTerms> {
-    return this._api.terms(this._table, {
-      q: words,
-      lang: this._language,
-      limit: kMostFound,
-      offset: 0,
+    return this.ask({ limit: kMostFound, offset: 0, ...(words === "" ? {} : { q: words }) });
+  }
+
+  /** A page of the tree as it is written down. */
+  private ask(page: { limit: number; offset: number; q?: string }): Promise<FoundTerms> {
+    return this._api.json("GET /tables/{table}/terms", {
+      path: { table: this._table },
+      query: { lang: this._language, ...page },
     });
   }
 
@@ -68,11 +72,7 @@ export class TermTree {
         const terms: ListedTerm[] = [];
         let total = 1;
         while (terms.length < Math.min(total, kMostTerms)) {
-          const page = await this._api.terms(this._table, {
-            lang: this._language,
-            limit: kAtOnce,
-            offset: terms.length,
-          });
+          const page = await this.ask({ limit: kAtOnce, offset: terms.length });
           total = page.total;
           if (page.terms.length === 0) break; // some were deleted meanwhile
           terms.push(...page.terms);

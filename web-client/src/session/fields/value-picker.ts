@@ -1,9 +1,11 @@
 // <strata-value-picker>: which value is painted in the selected layer: a class, a term, a number,
 // or the only one there is.
 
+import { readRecord } from "../../net/records";
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { ApiError } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import { createRecord } from "../../net/records";
 import { readNumber } from "../../core/locale";
 import { cssColor, purposeOf } from "../../domain/palette";
 import type { Layer } from "../../core/types";
@@ -154,7 +156,7 @@ export class StrataValuePicker extends LitElement {
       void this.ask(async () =>
         this.setRecord(
           layer,
-          (await this.session.api.createRecord(table, { ...(key === undefined ? {} : { key }) }))
+          (await createRecord(this.session.api, table, { ...(key === undefined ? {} : { key }) }))
             .key,
         ),
       );
@@ -174,8 +176,14 @@ export class StrataValuePicker extends LitElement {
 
   /** Only records can be painted: a number that has none is offered to be made. */
   private async findRecord(layer: Layer, table: number, key: number): Promise<void> {
-    if (await this.session.api.hasRecord(table, key)) this.setRecord(layer, key);
-    else this._missing = key;
+    try {
+      await readRecord(this.session.api, { table }, key);
+    } catch (error) {
+      if (!(error instanceof ApiError) || error.status !== 404) throw error;
+      this._missing = key;
+      return;
+    }
+    this.setRecord(layer, key);
   }
 
   private async ask(work: () => Promise<void>): Promise<void> {

@@ -7,10 +7,14 @@ import {
   passwordWords,
   signInProblem,
 } from "../../../src/features/account/entry";
+import { Appearance } from "../../../src/features/appearance/appearance";
 import { routeOf } from "../../../src/ui/routes";
 import { texts } from "../../../src/texts";
 import { toldDate, toldTime } from "../../../src/domain/times";
-import { Api, ApiError, nextPage } from "../../../src/net/api";
+import { Api, nextPage, kAsItIs } from "../../../src/net/api";
+import { ApiError } from "../../../src/net/api-error";
+import { changeRecord } from "../../../src/net/records";
+import { changeLayer, createLayer } from "../../../src/net/layers";
 import {
   browserOf,
   called,
@@ -24,7 +28,7 @@ import {
   rolesOfTokensIn,
   rolesToGive,
 } from "../../../src/domain/people";
-import type { Person } from "../../../src/core/protocol.gen";
+import type { Look, Person } from "../../../src/core/protocol.gen";
 import { mayAdminister } from "../../../src/core/types";
 
 const person = (user: string, fullName = "", more: Partial<Person> = {}): Person => ({
@@ -59,6 +63,14 @@ function apiOf(...answers: [status: number, body: unknown, headers?: Record<stri
   });
   return { api, asked };
 }
+
+const appearanceOf = (api: Api): Appearance =>
+  new Appearance(api, "1", {
+    send: () => {},
+    sendSection: () => {},
+    bounds: () => null,
+    changed: () => {},
+  });
 
 describe("roles by groups", () => {
   const given = [
@@ -297,13 +309,13 @@ describe("coming in", () => {
 describe("the interface", () => {
   it("has the server keep no answer with a secret for a repeated call", async () => {
     const { api, asked } = apiOf(...Array.from({ length: 7 }, (): [number, unknown] => [200, {}]));
-    await api.login({ user: "ada", password: "x" });
-    await api.acceptInvitation({ invitation: "i", password: "x" });
-    await api.changePassword({ password: "x" });
-    await api.createToken({ name: "n" });
-    await api.invite({ user: "ada" });
-    await api.inviteAgain("a@b");
-    await api.createLayer(1, { name: "L" }).catch(() => {});
+    await api.json("POST /login", { body: { user: "ada", password: "x" } });
+    await api.json("POST /invitations/accept", { body: { invitation: "i", password: "x" } });
+    await api.send("POST /me/password", { body: { password: "x" } });
+    await api.json("POST /me/tokens", { body: { name: "n" } });
+    await api.json("POST /users", { body: { user: "ada" } });
+    await api.json("POST /users/{user}/invite", { path: { user: "a@b" } });
+    await createLayer(api, 1, { name: "L" }).catch(() => {});
     expect(asked.map(({ what, headers }) => [what, "Idempotency-Key" in headers])).toEqual([
       ["POST /api/v1/login", false],
       ["POST /api/v1/invitations/accept", false],
@@ -322,7 +334,7 @@ describe("the interface", () => {
       [200, { users: page(0, 1000), total: 1200 }, next],
       [200, { users: page(1000, 1200), total: 1200 }],
     );
-    expect((await api.people()).length).toBe(1200);
+    expect((await api.all("GET /users", "users")).length).toBe(1200);
     expect(asked.map(({ what }) => what)).toEqual([
       "GET /api/v1/users?limit=1000",
       "GET /api/v1/users?limit=1000&after=WyJh",
@@ -337,7 +349,7 @@ describe("the interface", () => {
       ],
       [200, { users: [], total: 1 }],
     );
-    expect((await api.people()).map(({ user }) => user)).toEqual(["a"]);
+    expect((await api.all("GET /users", "users")).map(({ user }) => user)).toEqual(["a"]);
   });
   it("follows no link that leads elsewhere", () => {
     for (const link of [
@@ -356,12 +368,35 @@ describe("the interface", () => {
       { ETag: '"v7"' },
     ];
     const ofWhateverIsThere: ((api: Api) => Promise<unknown>)[] = [
-      (api) => api.setTitleColumn("units", 3),
-      (api) => api.changeColumn("units", "depth", { name: "Depth" }),
-      (api) => api.dropColumn("units", "depth"),
-      (api) => api.changeRecord("units", 1, { values: {} }),
-      (api) => api.deleteRecord("units", 1, { what: "clear" }),
-      (api) => api.deleteLook(1, 2),
+      (api) =>
+        api.json("PATCH /tables/{table}", {
+          path: { table: "units" },
+          body: { title_column: "3" },
+          header: kAsItIs,
+        }),
+      (api) =>
+        api.json("PATCH /tables/{table}/columns/{column}", {
+          path: { table: "units", column: "depth" },
+          body: { name: "Depth" },
+          header: kAsItIs,
+        }),
+      (api) =>
+        api.send("DELETE /tables/{table}/columns/{column}", {
+          path: { table: "units", column: "depth" },
+          header: kAsItIs,
+        }),
+      (api) => changeRecord(api, "units", 1, { values: {} }),
+      (api) =>
+        api.send("DELETE /tables/{table}/records/{key}", {
+          path: { table: "units", key: 1 },
+          query: { texels: "clear" },
+          header: kAsItIs,
+        }),
+      (api) =>
+        api.send("DELETE /models/{model}/looks/{look}", {
+          path: { model: 1, look: 2 },
+          header: kAsItIs,
+        }),
     ];
     for (const change of ofWhateverIsThere) {
       const { api, asked } = apiOf([200, {}]);
@@ -369,12 +404,13 @@ describe("the interface", () => {
       expect(asked.map(({ headers }) => headers["If-Match"])).toEqual(["*"]);
     }
     const changes: ((api: Api) => Promise<unknown>)[] = [
-      (api) => api.changeLook(1, 2, { name: "x" }),
-      (api) => api.changeLayer(1, 2, { name: "x" }),
-      (api) => api.deleteLayer(1, 2),
-      (api) => api.deleteModel(1),
-      (api) => api.deleteTable("units"),
-      (api) => api.deleteProject("villa"),
+      (api) => appearanceOf(api).rename({ id: 2 } as Look, "x"),
+      (api) => changeLayer(api, 1, 2, { name: "x" }),
+      (api) =>
+        api.deleteAsRead("DELETE /models/{model}/layers/{layer}", { path: { model: 1, layer: 2 } }),
+      (api) => api.deleteAsRead("DELETE /models/{model}", { path: { model: 1 } }),
+      (api) => api.deleteAsRead("DELETE /tables/{table}", { path: { table: "units" } }),
+      (api) => api.deleteAsRead("DELETE /projects/{project}", { path: { project: "villa" } }),
     ];
     for (const change of changes) {
       const { api, asked } = apiOf(seen, [200, { palette: {} }]);
@@ -382,7 +418,7 @@ describe("the interface", () => {
       expect(asked.map(({ headers }) => headers["If-Match"])).toEqual([undefined, '"v7"']);
     }
     const { api, asked } = apiOf([200, {}]);
-    await api.changeRecord("units", 1, { values: {}, version: 4 });
+    await changeRecord(api, "units", 1, { values: {}, version: 4 });
     expect(asked[0]!.headers["If-Match"]).toBe('"v4"');
   });
 });

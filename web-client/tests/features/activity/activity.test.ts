@@ -1,9 +1,10 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
+import { fakeApi } from "../../fake-api";
 import { Activities, type ActivitiesHost } from "../../../src/features/activity/activity";
 import { toldDay } from "../../../src/domain/times";
 import { byDay, withFirstPage, withNextPage } from "../../../src/domain/activity";
-import { ApiError, type Api } from "../../../src/net/api";
+import { ApiError } from "../../../src/net/api-error";
 import type { Activity, ActivityList } from "../../../src/core/protocol.gen";
 
 const line = (id: number, minute: number, more: Partial<Activity> = {}): Activity => {
@@ -55,12 +56,12 @@ describe("a log of activity", () => {
 describe("the activity of a model", () => {
   const asked: unknown[] = [];
   let answer: (asked: { before: string | undefined }) => Promise<ActivityList>;
-  const api = {
-    activity: (project: number, query: { before: string | undefined }) => {
-      asked.push([project, query]);
-      return answer(query);
+  const api = fakeApi({
+    "GET /projects/{project}/activity": ({ path, query = {} }) => {
+      asked.push([path.project, query]);
+      return answer({ before: query.before });
     },
-  } as unknown as Api;
+  });
   const flown: unknown[] = [];
   const host = {
     comments: { goTo: (id: number) => flown.push(id) },
@@ -93,7 +94,7 @@ describe("the activity of a model", () => {
     expect(asked).toEqual([]);
     activity.watch(true);
     await settle();
-    expect(asked).toEqual([[1, { limit: 50, before: undefined, model: 7 }]]);
+    expect(asked).toEqual([[1, { limit: 50, before: undefined, model: "7" }]]);
     for (let i = 0; i < 5; ++i) activity.outdated();
     vi.runAllTimers();
     await settle();

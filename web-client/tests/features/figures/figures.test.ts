@@ -6,7 +6,8 @@ import { Figures } from "../../../src/features/figures/figures";
 import { isBusy, LayerJobs } from "../../../src/session/layer-jobs";
 import { notices, type Notice } from "../../../src/ui/notices";
 import { texts } from "../../../src/texts";
-import { Api, ApiError } from "../../../src/net/api";
+import { Api } from "../../../src/net/api";
+import { ApiError } from "../../../src/net/api-error";
 import { OrbitCamera } from "../../../src/math/camera";
 import {
   figureChoices,
@@ -392,7 +393,12 @@ describe("a figure", () => {
     answers.set(kFigures, () => new Promise<Response>(() => {}));
     const stop = new AbortController();
     const picture = api
-      .figure("9", { format: "png", dpi: 60 }, stop.signal)
+      .blob("POST /models/{model}/figures", {
+        path: { model: "9" },
+        query: { lang: "en-GB" },
+        body: { format: "png", dpi: 60 },
+        signal: stop.signal,
+      })
       .catch((error: unknown) => error);
     stop.abort();
     const error = await picture;

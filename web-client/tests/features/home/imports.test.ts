@@ -1,5 +1,6 @@
 import { describe, expect, it, vi } from "vitest";
-import { ApiError, type Api } from "../../../src/net/api";
+import { fakeApi } from "../../fake-api";
+import { ApiError } from "../../../src/net/api-error";
 import type { Job } from "../../../src/core/types";
 import { Imports, type Scan } from "../../../src/features/home/imports";
 
@@ -23,17 +24,17 @@ const problem = (status: number): NonNullable<Job["problem"]> => ({
 /** Answers of GET /jobs/7, one after the other: a job, or the status of a refusal. */
 function importing(...answers: (Job | number)[]): { imports: Imports; sent: string[] } {
   const sent: string[] = [];
-  const api = {
-    uploadModel: (_files: unknown, name: string) => {
-      sent.push(name);
-      return { done: Promise.resolve(job("queued")), cancel: () => {} };
+  const api = fakeApi({
+    "POST /models": ({ query }) => {
+      sent.push(query?.name ?? "");
+      return job("queued");
     },
-    job: async () => {
+    "GET /jobs/{job}": async () => {
       const next = answers.shift()!;
       if (typeof next === "number") throw new ApiError(problem(next));
       return next;
     },
-  } as unknown as Api;
+  });
   return { imports: new Imports(api), sent };
 }
 

@@ -1,7 +1,9 @@
 import { describe, expect, it } from "vitest";
 
+import { fakeApi } from "../../fake-api";
 import { ProjectChange } from "../../../src/features/home/project-dialog";
-import { ApiError, type Versioned } from "../../../src/net/api";
+import { ApiError } from "../../../src/net/api-error";
+import type { Versioned } from "../../../src/net/api";
 import type { Project } from "../../../src/core/protocol.gen";
 
 /** A server with one project. */
@@ -10,6 +12,12 @@ class FakeServer {
   version = 1;
   /** Happens after the next reading. */
   meanwhile: (() => void) | null = null;
+
+  readonly api = fakeApi({
+    "GET /projects/{project}": () => this.project(),
+    "PATCH /projects/{project}": ({ path, body, header }) =>
+      this.changeProject(path.project, body, header["If-Match"]),
+  });
 
   readonly project = async (): Promise<Versioned<Project>> => {
     const answer = { value: { ...this.now }, etag: `"${this.version}"` };
@@ -38,7 +46,7 @@ describe("a change of a project", () => {
   it("is made of the project that this person sees", async () => {
     const server = new FakeServer();
     const seen = { ...server.now, role: "administrator" } as Project; // as lists have it
-    expect(await new ProjectChange(server, seen).save(wanted, false)).toMatchObject({
+    expect(await new ProjectChange(server.api, seen).save(wanted, false)).toMatchObject({
       name: "Villa Giulia",
     });
     expect(server.version).toBe(2);
@@ -51,7 +59,7 @@ describe("a change of a project", () => {
       { require_if_match: true },
     ]) {
       const server = new FakeServer();
-      const change = new ProjectChange(server, { ...server.now });
+      const change = new ProjectChange(server.api, { ...server.now });
       server.put(other);
       expect(await change.save(wanted, false)).toBeNull();
       expect(server.now).toMatchObject(other);
@@ -66,7 +74,7 @@ describe("a change of a project", () => {
 
   it("is told of each change between reading and writing, too", async () => {
     const server = new FakeServer();
-    const change = new ProjectChange(server, { ...server.now });
+    const change = new ProjectChange(server.api, { ...server.now });
     server.meanwhile = () => server.put({ name: "First" });
     expect([await change.save(wanted, false), change.name]).toEqual([null, "First"]);
     server.put({ name: "Second" });
@@ -78,7 +86,9 @@ describe("a change of a project", () => {
     const server = new FakeServer();
     server.changeProject = () =>
       Promise.reject(new ApiError({ status: 403, title: "Not allowed" }));
-    await expect(new ProjectChange(server, server.now).save(wanted, false)).rejects.toMatchObject({
+    await expect(
+      new ProjectChange(server.api, server.now).save(wanted, false),
+    ).rejects.toMatchObject({
       status: 403,
     });
   });

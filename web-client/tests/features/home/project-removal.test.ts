@@ -1,7 +1,8 @@
 import { describe, expect, it } from "vitest";
 
+import { fakeApi } from "../../fake-api";
 import { isNameOf, removeProject } from "../../../src/features/home/project-removal";
-import { ApiError } from "../../../src/net/api";
+import { ApiError } from "../../../src/net/api-error";
 import type { Project, Table } from "../../../src/core/protocol.gen";
 
 const villa: Project = { id: 4, name: "Villa  Ñuño", slug: "villa", description: "" };
@@ -12,6 +13,11 @@ class FakeServer {
   readonly done: (number | string)[] = [];
   /** By table, what else is answered first, once. */
   readonly faults = new Map<number, ApiError>();
+
+  readonly api = fakeApi({
+    "DELETE /tables/{table}": ({ path }) => this.deleteTable(path.table),
+    "DELETE /projects/{project}": ({ path }) => this.deleteProject(path.project),
+  });
 
   constructor(
     private readonly _names: Map<number, number[]>,
@@ -48,7 +54,7 @@ describe("deleting a project", () => {
         [3, [2, 3]],
       ]),
     );
-    await removeProject(server, villa, [table(1), table(2), table(3)]);
+    await removeProject(server.api, villa, [table(1), table(2), table(3)]);
     expect(server.done).toEqual([3, 2, 1, "villa"]);
   });
 
@@ -61,7 +67,7 @@ describe("deleting a project", () => {
       ]),
     );
     await expect(
-      removeProject(server, villa, [table(1), table(2), table(3)]),
+      removeProject(server.api, villa, [table(1), table(2), table(3)]),
     ).rejects.toMatchObject({ status: 409, problem: { title: "Table in use" } });
     expect(server.done).toEqual([3]);
   });
@@ -74,18 +80,18 @@ describe("deleting a project", () => {
       ]),
     );
     server.faults.set(2, new ApiError({ status: 503, title: "Busy" }));
-    await expect(removeProject(server, villa, [table(1), table(2)])).rejects.toMatchObject({
+    await expect(removeProject(server.api, villa, [table(1), table(2)])).rejects.toMatchObject({
       status: 503,
     });
     expect(server.done).toEqual([1]);
-    await removeProject(server, villa, [table(1), table(2)]);
+    await removeProject(server.api, villa, [table(1), table(2)]);
     expect(server.done).toEqual([1, 2, "villa"]);
-    await removeProject(server, villa, []); // somebody else was faster
+    await removeProject(server.api, villa, []); // somebody else was faster
   });
 
   it("fails where there is more in it than was shown", async () => {
     const server = new FakeServer(new Map([[1, []]]));
-    await expect(removeProject(server, villa, [])).rejects.toMatchObject({
+    await expect(removeProject(server.api, villa, [])).rejects.toMatchObject({
       status: 409,
       problem: { detail: "still has tables" },
     });

@@ -29,7 +29,7 @@ describe("raster files", () => {
   });
 
   it("outlines are laid on the ground, whichever axis is up", () => {
-    expect(["x", "y", "z", "-x", "-y", "-z"].map(planOf)).toEqual([
+    expect((["x", "y", "z", "-x", "-y", "-z"] as const).map(planOf)).toEqual([
       "-x",
       "-y",
       "-z",

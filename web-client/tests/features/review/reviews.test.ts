@@ -2,8 +2,8 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { notices, type Notice } from "../../../src/ui/notices";
 import { Reviews } from "../../../src/features/review/reviews";
-import type { Api } from "../../../src/net/api";
-import { ApiError } from "../../../src/net/api";
+import { ApiError } from "../../../src/net/api-error";
+import { fakeApi } from "../../fake-api";
 import type { Review, ReviewQueue, WaitingStroke } from "../../../src/core/protocol.gen";
 import type { Layer } from "../../../src/core/types";
 
@@ -40,8 +40,10 @@ function make(role: "annotator" | "curator") {
   const delays: Promise<void>[] = []; // of the next answers
   const sent: Review[] = [];
   let refusal: ApiError | null = null;
-  const api = {
-    reviewQueue: async (_: string, layer: number, __: number, user: string | null) => {
+  const api = fakeApi({
+    "GET /models/{model}/layers/{layer}/review": async ({ path, query }) => {
+      const layer = Number(path.layer);
+      const user = query?.user ?? null;
       asked.push(layer);
       const queue = queueOf(
         queues.get(layer)!.strokes.filter((each) => user === null || each.user === user),
@@ -49,7 +51,9 @@ function make(role: "annotator" | "curator") {
       await delays.shift();
       return queue;
     },
-    review: (_: string, layer: number, decision: Review) => {
+    "POST /models/{model}/layers/{layer}/review": ({ path, body }) => {
+      const layer = Number(path.layer);
+      const decision = body as Review;
       if (refusal) return Promise.reject(refusal);
       sent.push(decision);
       queues.set(
@@ -65,7 +69,7 @@ function make(role: "annotator" | "curator") {
       );
       return Promise.resolve({ sequence: 9, texels_changed: 0, area_m2: 0 });
     },
-  } as unknown as Api;
+  });
   const list = {
     all: layers,
     find: (id: number) => layers.find((layer) => layer.id === id) ?? null,

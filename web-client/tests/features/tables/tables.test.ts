@@ -9,7 +9,9 @@ import {
 import { RecordNames } from "../../../src/features/tables/record-names";
 import { kPageRows, RecordRows } from "../../../src/features/tables/record-rows";
 import { Tables } from "../../../src/features/tables/tables";
-import { Api, ApiError, type RecordQuery } from "../../../src/net/api";
+import { Api } from "../../../src/net/api";
+import { ApiError } from "../../../src/net/api-error";
+import type { RecordQuery } from "../../../src/net/records";
 import {
   labelColumn,
   labelOf,

@@ -3,7 +3,8 @@ import { describe, expect, it } from "vitest";
 
 import { toldAgo } from "../../../src/domain/times";
 import { Tours } from "../../../src/features/tours/tours";
-import { Api, ApiError } from "../../../src/net/api";
+import { Api } from "../../../src/net/api";
+import { ApiError } from "../../../src/net/api-error";
 import { kSilentMs, stateOfKiosk } from "../../../src/domain/kiosks";
 import type { Tour, TourEntry } from "../../../src/core/protocol.gen";
 import {
@@ -313,8 +314,11 @@ describe("a kiosk's link", () => {
       keys = [...keys, (init!.headers as Record<string, string>)["Idempotency-Key"]];
       return new Response("{}", { status: 201 });
     });
-    await api.createKiosk("pot", "round", { name: "Hall" });
-    await api.reloadKiosk(3);
+    await api.json("POST /models/{model}/tours/{tour}/kiosks", {
+      path: { model: "pot", tour: "round" },
+      body: { name: "Hall" },
+    });
+    await api.json("POST /kiosks/{kiosk}/reload", { path: { kiosk: 3 } });
     expect([keys[0], typeof keys[1]]).toEqual([undefined, "string"]);
   });
 });

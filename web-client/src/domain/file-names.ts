@@ -1,0 +1,10 @@
+// What things are called after the files that they come from.
+
+/** A model's name from its file's: "statue_nefertiti_70k.ply" → "statue nefertiti 70k". */
+export function nameOfFile(filename: string): string {
+  const stem = filename
+    .replace(/\.[a-z0-9]{1,5}$/i, "")
+    .replace(/_+/g, " ")
+    .trim();
+  return stem || filename;
+}

@@ -1,0 +1,48 @@
+// Every failure of a call, also a lost network, as an error that carries a problem for people.
+
+import { ownProblems } from "../core/problems";
+import type { ProblemBody } from "../core/types";
+
+export class ApiError extends Error {
+  constructor(readonly problem: ProblemBody) {
+    super(problem.detail ?? problem.title);
+    this.name = "ApiError";
+  }
+  get status(): number {
+    return this.problem.status;
+  }
+}
+
+export const cancelled = (): ApiError => new ApiError({ status: 499, title: "Cancelled" });
+
+export function unreachable(): ApiError {
+  const [title, detail] = ownProblems().unreachable;
+  return new ApiError({ status: 0, title, detail });
+}
+
+/**
+ * The problem in an answer's text; where the text is not one, what the status means in plain words.
+ */
+export function problemOfText(status: number, text: string): ProblemBody {
+  try {
+    const body = JSON.parse(text) as Partial<ProblemBody> | null;
+    if (body && typeof body.title === "string") {
+      return {
+        status: typeof body.status === "number" ? body.status : status,
+        title: body.title,
+        ...(body.detail ? { detail: String(body.detail) } : {}),
+        ...(body.field ? { field: String(body.field) } : {}),
+        ...(typeof body.offset === "number" ? { offset: body.offset } : {}),
+        ...(body.rows ? { rows: body.rows } : {}),
+      };
+    }
+  } catch {
+    // Not JSON: a proxy's page, or nothing. The status says enough.
+  }
+  const words = ownProblems();
+  const [title, detail] = words.statuses[status] ?? [
+    words.other_status(status),
+    words.other_status_detail,
+  ];
+  return { status, title, detail };
+}

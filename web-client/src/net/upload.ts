@@ -1,0 +1,52 @@
+// Files on their way to the server, with how far they are: `fetch` does not tell how much is sent.
+
+import { newId } from "../core/ids";
+import { ApiError, cancelled, problemOfText, unreachable } from "./api-error";
+
+/** A file and what it is called by the others of its scan, with folders. */
+export interface UploadFile {
+  file: File;
+  path: string;
+}
+
+export interface Upload<T> {
+  /** Resolves with the answer. */
+  done: Promise<T>;
+  cancel(): void;
+}
+
+/** Takes the share of the bytes that is sent, from 0 to 1. */
+export type Progress = (share: number) => void;
+
+/** Sends an opened request with the files as a form, or with the only one as the body. */
+export function uploadFiles<T>(
+  request: XMLHttpRequest,
+  files: readonly UploadFile[],
+  progress: Progress,
+  asForm: boolean,
+): Upload<T> {
+  const form = new FormData();
+  if (asForm) for (const each of files) form.append("files", each.file, each.path);
+  const done = new Promise<T>((resolve, reject) => {
+    if (!asForm) request.setRequestHeader("Content-Type", "application/octet-stream");
+    request.setRequestHeader("Idempotency-Key", newId());
+    request.upload.onprogress = (event) => {
+      if (event.lengthComputable) progress(event.loaded / event.total);
+    };
+    request.onload = () => {
+      if (request.status >= 400) {
+        reject(new ApiError(problemOfText(request.status, request.responseText)));
+        return;
+      }
+      try {
+        resolve(JSON.parse(request.responseText) as T);
+      } catch {
+        reject(new ApiError(problemOfText(502, "")));
+      }
+    };
+    request.onerror = () => reject(unreachable());
+    request.onabort = () => reject(cancelled());
+    request.send(asForm ? form : files[0]!.file);
+  });
+  return { done, cancel: () => request.abort() };
+}
