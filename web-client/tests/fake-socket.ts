@@ -1,6 +1,6 @@
 // A socket without a network: tests look at what was sent and say what comes.
 
-import type { SocketLike } from "../src/net/connection";
+import type { SocketLike } from "../src/net/socket";
 import type { ClientMessage, ServerMessage, Welcome } from "../src/core/protocol.gen";
 
 export class FakeSocket implements SocketLike {

@@ -3,7 +3,7 @@
 // surface for a short way, as beside an edge, the line goes on along the surface instead of leaping
 // to what lies behind, and where that cannot be it is cut.
 
-import type { Point } from "../net/connection";
+import type { Point } from "../net/stroke";
 import { markLength, simplifyLine } from "./marks";
 import type { MarkPlace, ProfileSample } from "../core/protocol.gen";
 import { dot, length, subtract, type Vec3 } from "../math/vector";

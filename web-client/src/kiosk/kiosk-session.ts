@@ -4,7 +4,7 @@
 
 import type { Api } from "../net/api";
 import { ApiError } from "../net/api-error";
-import type { SocketLike } from "../net/connection";
+import type { SocketLike } from "../net/socket";
 import type { KioskSelf, Picked, Tour, View } from "../core/protocol.gen";
 import { AttractLoop } from "./attract";
 import { cardOf, type Card } from "./cards";

@@ -3,7 +3,8 @@
 
 import { ViewControl } from "../session/view-control";
 import { newId } from "../core/ids";
-import { Connection, type SocketLike } from "../net/connection";
+import { Connection } from "../net/connection";
+import type { SocketLike } from "../net/socket";
 import type { FrameMessage } from "../net/frame-header";
 import type { GestureHandler, PointerSample } from "../ui/input";
 import { placeLike } from "../math/fit-to-window";

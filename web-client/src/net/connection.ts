@@ -6,6 +6,12 @@ import { newId } from "../core/ids";
 import type { CameraMessage } from "../math/camera";
 import { decodeFrame, FrameError, type FrameMessage } from "./frame-header";
 import { Outbox, type ChangeMessage, type SingleChange } from "./outbox";
+import { CameraSender } from "./camera-sender";
+import { kFirstRetryMs, kLastRetryMs, Resender } from "./resender";
+import { kOpenSocket, type SocketLike } from "./socket";
+import { SilenceWatch } from "./silence-watch";
+import { beginOf, StrokeHandle, type StrokeOptions } from "./stroke";
+import { ViewSettings } from "./view-settings";
 import { ownProblems } from "../core/problems";
 import {
   parse_server_message,
@@ -28,27 +34,11 @@ import {
   type RecordEvent,
   type Saved,
   type ServerMessage,
-  type StrokeBegin,
   type TableEvent,
   type ToolEvent,
-  type ToolShape,
   type ViewEvent,
   type Welcome,
 } from "../core/protocol.gen";
-
-const kOpenSocket = 1; // WebSocket.OPEN
-
-export interface SocketLike {
-  binaryType: BinaryType;
-  readonly bufferedAmount: number;
-  readonly readyState?: number; // as a WebSocket has it; absent: open
-  onopen: ((event: never) => void) | null;
-  onmessage: ((event: { data: unknown }) => void) | null;
-  onclose: ((event: { code: number; reason: string }) => void) | null;
-  onerror: ((event: never) => void) | null;
-  send(data: string): void;
-  close(code?: number, reason?: string): void;
-}
 
 /** lost: waits for the next attempt. open: the server said welcome. */
 export type ConnectionState = "connecting" | "open" | "lost" | "closed";
@@ -103,23 +93,6 @@ export interface ConnectionOptions {
   random?: () => number;
 }
 
-export interface StrokeOptions {
-  layer: number | string;
-  value: number;
-  erase: boolean;
-  camera: CameraMessage;
-  radius: { px: number } | { mm: number };
-  shape: ToolShape;
-  through: boolean;
-  max_angle_deg?: number;
-}
-
-export type Point = [number, number];
-
-const kFirstRetryMs = 250;
-const kLastRetryMs = 8000;
-const kQuietMs = 10_000; // an answer is due but nothing came: ask for a sign of life
-const kSilenceMs = 10_000; // nor came one: the connection is dead
 // for the handshake and the welcome; the server may be reading the model
 const kOpeningMs = 30_000;
 const kBusySocketBytes = 256 * 1024; // cameras wait while so much is unsent
@@ -131,33 +104,36 @@ export class Connection {
   private _state: ConnectionState = "connecting";
   private _attempts = 0;
   private _retryTimer: ReturnType<typeof setTimeout> | null = null;
-  private _resendTimer: ReturnType<typeof setTimeout> | null = null;
-  private _sliceTimer: ReturnType<typeof setTimeout> | null = null;
-  private _silenceTimer: ReturnType<typeof setTimeout> | null = null;
-  private _answerDue = false; // something was sent that the server answers
-  private _resendDelayMs = kFirstRetryMs;
+  private readonly _silence = new SilenceWatch({
+    ask: () => this.askForLife(),
+    giveUp: () => this.giveUpSocket(),
+  });
   private _failing = false;
   private _pathPoints = 4096;
-  private _resendSlice = 100; // messages a second, so that the server's limit is kept
-  private _resending: ChangeMessage[] = []; // still to go out again; new changes queue behind them
+  private readonly _resender = new Resender((message) => this.send(message));
 
   private _queue: ChangeQueue | null = null;
   private readonly _outbox = new Outbox((ids) => this._queue?.remove(ids));
   // ids whose answers say nothing new: given up, or signs of life
   private readonly _silenced = new Set<string>();
 
-  private _camera: { camera: CameraMessage; moving: boolean } | null = null;
-  private _cameraSeq = 0;
-  private _cameraScheduled = false;
-  private _overrides: LayerOverride[] = [];
-  private _looks: LookShown[] | null = null; // null: those that everyone sees at first
-  private _light: Light | null = null; // null: the server's own
-  private _background: Background | null = null;
+  private readonly _camera: CameraSender;
+  private readonly _settings = new ViewSettings();
 
   constructor(
     private readonly _options: ConnectionOptions,
     private readonly _callbacks: ConnectionCallbacks,
-  ) {}
+  ) {
+    this._camera = new CameraSender({
+      maySend: () => this._state === "open",
+      isBusy: () => (this._socket?.bufferedAmount ?? 0) > kBusySocketBytes,
+      send: (message) => {
+        this.send(message);
+        this.expectAnswer(); // a frame
+      },
+      nextFrame: _options.nextFrame ?? ((callback) => void requestAnimationFrame(callback)),
+    });
+  }
 
   get state(): ConnectionState {
     return this._state;
@@ -171,7 +147,7 @@ export class Connection {
   }
   /** Number of the newest camera sent; frames echo it. */
   get cameraSeq(): number {
-    return this._cameraSeq;
+    return this._camera.seq;
   }
 
   open(): void {
@@ -198,7 +174,7 @@ export class Connection {
       if (socket === this._socket) this.onLost();
     };
     socket.onerror = () => {}; // a close follows
-    this.setSilenceTimer(kOpeningMs, () => this.giveUpSocket());
+    this._silence.limit(kOpeningMs);
   }
 
   /** For good; what is not saved stays in the queue. */
@@ -215,7 +191,7 @@ export class Connection {
    * finds out whether a connection that looks open still is.
    */
   check(): void {
-    if (this._state === "open") this.askForLife();
+    if (this._state === "open") this._silence.askNow();
     if (this._state !== "lost") return;
     if (this._retryTimer) clearTimeout(this._retryTimer);
     this._retryTimer = null;
@@ -227,51 +203,30 @@ export class Connection {
    * does.
    */
   stopViewing(): void {
-    this._camera = null;
-    this._overrides = [];
-    this._looks = this._light = null;
+    this._camera.forget();
+    this._settings.forgetShown();
   }
 
-  /** Latest wins: at most one camera per drawn picture leaves, always the newest. */
   setCamera(camera: CameraMessage, moving: boolean): void {
-    this._camera = { camera, moving };
-    this.scheduleCamera();
+    this._camera.set(camera, moving);
   }
 
   setLayerOverrides(overrides: LayerOverride[]): void {
-    this._overrides = overrides;
+    this._settings.overrides = overrides;
     this.sendSettings();
   }
 
   setAppearance(looks: LookShown[] | null, light: Light): void {
-    if (
-      !looks &&
-      !this._looks &&
-      light.mode === "museum" &&
-      (this._light?.mode ?? "museum") === "museum"
-    )
-      return;
-    this._looks = looks;
-    this._light = light;
-    this.sendSettings();
+    if (this._settings.setAppearance(looks, light)) this.sendSettings();
   }
 
   /** Null: the server's own. */
   setBackground(background: Background | null): void {
-    if (JSON.stringify(background) === JSON.stringify(this._background)) return;
-    this._background = background;
-    this.sendSettings();
+    if (this._settings.setBackground(background)) this.sendSettings();
   }
 
   private sendSettings(): void {
-    if (this._state !== "open") return;
-    this.send({
-      op: "layers",
-      layers: this._overrides,
-      ...(this._looks ? { looks: this._looks } : {}),
-      ...(this._light && this._light.mode !== "museum" ? { light: this._light } : {}),
-      ...(this._background ? { background: this._background } : {}),
-    });
+    if (this._state === "open") this.send(this._settings.message());
   }
 
   ack(viewId: number, frame: number): void {
@@ -295,20 +250,7 @@ export class Connection {
   /** Null while edits cannot be taken: not connected, or too much waits to be saved. */
   beginStroke(options: StrokeOptions): StrokeHandle | null {
     if (this._state !== "open" || this.full) return null;
-    const begin: StrokeBegin = {
-      op: "stroke.begin",
-      id: newId(),
-      stroke: newId(),
-      layer: options.layer,
-      ...(options.erase ? { erase: true } : { value: options.value }),
-      camera: options.camera,
-      ...("px" in options.radius
-        ? { radius_px: options.radius.px }
-        : { radius_mm: options.radius.mm }),
-      shape: options.shape,
-      ...(options.through ? { through: true } : {}),
-      ...(options.max_angle_deg === undefined ? {} : { max_angle_deg: options.max_angle_deg }),
-    };
+    const begin = beginOf(options);
     this.change(begin);
     return new StrokeHandle(begin.stroke, this._pathPoints, (message) => {
       if (this._outbox.hasStroke(begin.stroke)) this.change(message);
@@ -325,8 +267,7 @@ export class Connection {
   private change(message: ChangeMessage): void {
     this._queue?.put(message);
     this._outbox.add(message);
-    if (this._resending.length > 0) this._resending.push(message);
-    else if (this._state === "open") this.send(message);
+    if (!this._resender.queue(message) && this._state === "open") this.send(message);
     this.expectAnswer();
     this.reportSaving();
   }
@@ -336,28 +277,6 @@ export class Connection {
     // one.
     if ((this._socket?.readyState ?? kOpenSocket) > kOpenSocket) return;
     this._socket?.send(JSON.stringify(message));
-  }
-
-  private scheduleCamera(): void {
-    if (this._cameraScheduled || !this._camera) return;
-    this._cameraScheduled = true;
-    const nextFrame =
-      this._options.nextFrame ?? ((callback) => void requestAnimationFrame(callback));
-    nextFrame(() => {
-      this._cameraScheduled = false;
-      if (this._state !== "open" || !this._camera) return;
-      if ((this._socket?.bufferedAmount ?? 0) > kBusySocketBytes) this.scheduleCamera();
-      else this.sendCamera();
-    });
-  }
-
-  private sendCamera(): void {
-    if (!this._camera) return;
-    const { camera, moving } = this._camera;
-    this._camera = { camera, moving: false }; // after a reconnect the picture is a still one
-    this._cameraSeq += 1;
-    this.send({ op: "camera", seq: this._cameraSeq, ...camera, moving });
-    this.expectAnswer(); // a frame
   }
 
   private onMessage(data: unknown): void {
@@ -394,7 +313,7 @@ export class Connection {
       case "saved":
         this._outbox.saved(message);
         this._failing = false;
-        this._resendDelayMs = kFirstRetryMs;
+        this._resender.succeeded();
         this.reportSaving();
         return this._callbacks.saved(message);
       case "unsaved":
@@ -433,23 +352,17 @@ export class Connection {
   private onWelcome(message: Welcome): void {
     this._attempts = 0;
     this._pathPoints = message.limits.path_points;
-    this._resendSlice = Math.max(1, Math.floor(message.limits.messages_per_second / 2));
+    this._resender.messagesPerSecond = Math.max(
+      1,
+      Math.floor(message.limits.messages_per_second / 2),
+    );
     this.setState("open");
     this.heard();
-    const layers = new Set<number | string>(message.layers.map((layer) => layer.id));
-    // one unknown layer refuses them all
-    this._overrides = this._overrides.filter(({ layer }) => layers.has(layer));
-    const looks = new Set<number | string>(message.looks.map((look) => look.id));
-    this._looks = this._looks?.filter(({ look }) => looks.has(look)) ?? null;
+    this._settings.keepOnly(message);
     for (const { stroke, n } of message.strokes) this._outbox.savedThrough(stroke, n);
     this._callbacks.welcome(message);
-    const hasSettings =
-      this._overrides.length > 0 ||
-      this._looks ||
-      (this._light && this._light.mode !== "museum") ||
-      this._background;
-    if (hasSettings) this.sendSettings();
-    if (this._camera) this.sendCamera();
+    if (this._settings.differ) this.sendSettings();
+    this._camera.sendNow();
     this.resend();
     this.reportSaving();
     if (!this._queue && this._options.makeQueue) {
@@ -503,27 +416,16 @@ export class Connection {
   }
 
   private resend(): void {
-    this._resending = this._outbox.messages();
-    if (this._resending.length > 0) this.expectAnswer();
-    this.resendSlice();
-  }
-
-  private resendSlice(): void {
-    for (const message of this._resending.splice(0, this._resendSlice)) this.send(message);
-    if (this._sliceTimer) clearTimeout(this._sliceTimer);
-    this._sliceTimer = null;
-    if (this._resending.length === 0) return;
-    this._sliceTimer = setTimeout(() => this.resendSlice(), 1000);
+    const messages = this._outbox.messages();
+    if (messages.length > 0) this.expectAnswer();
+    this._resender.start(messages);
   }
 
   private resendLater(): void {
     this._failing = true;
-    if (this._resendTimer) return;
-    this._resendTimer = setTimeout(() => {
-      this._resendTimer = null;
+    this._resender.later(() => {
       if (this._state === "open") this.resend();
-    }, this._resendDelayMs);
-    this._resendDelayMs = Math.min(kLastRetryMs, this._resendDelayMs * 2);
+    });
   }
 
   private onLost(): void {
@@ -544,29 +446,20 @@ export class Connection {
     }, delayMs);
   }
 
-  /**
-   * A dead network does not say so: the server's silence must. Before the socket is given up, the
-   * server is asked something that it always answers, because not everything that is sent brings an
-   * answer of its own.
-   */
   private expectAnswer(): void {
-    if (this._state !== "open" || this._answerDue) return;
-    this._answerDue = true;
-    this.setSilenceTimer(kQuietMs, () => this.askForLife());
+    if (this._state === "open") this._silence.expectAnswer();
   }
 
+  /** Something that the server always answers. */
   private askForLife(): void {
     const id = newId();
     this._silenced.add(id);
     this.pick(id, 0, 0);
-    this._answerDue = true;
-    this.setSilenceTimer(kSilenceMs, () => this.giveUpSocket());
   }
 
   private heard(): void {
-    this._answerDue = false;
-    this.setSilenceTimer(0, null);
-    if (this._outbox.waiting > 0) this.expectAnswer();
+    this._silence.heard();
+    if (this._outbox.waiting > 0) this._silence.expectAnswer();
   }
 
   private giveUpSocket(): void {
@@ -575,17 +468,11 @@ export class Connection {
     socket?.close(4000, "no answer");
   }
 
-  private setSilenceTimer(afterMs: number, action: (() => void) | null): void {
-    if (this._silenceTimer) clearTimeout(this._silenceTimer);
-    this._silenceTimer = action ? setTimeout(action, afterMs) : null;
-  }
-
   private forgetTimers(): void {
-    const timers = [this._retryTimer, this._resendTimer, this._sliceTimer, this._silenceTimer];
-    for (const timer of timers) if (timer) clearTimeout(timer);
-    this._retryTimer = this._resendTimer = this._sliceTimer = this._silenceTimer = null;
-    this._answerDue = false;
-    this._resending = [];
+    if (this._retryTimer) clearTimeout(this._retryTimer);
+    this._retryTimer = null;
+    this._resender.stop();
+    this._silence.heard();
   }
 
   private setState(state: ConnectionState): void {
@@ -597,40 +484,6 @@ export class Connection {
   private reportSaving(): void {
     if (this._outbox.waiting === 0) this._failing = false;
     this._callbacks.saving({ waiting: this._outbox.waiting, failing: this._failing });
-  }
-}
-
-/** One stroke being drawn. The server sweeps the brush from the last point of the batch before. */
-export class StrokeHandle {
-  private _n = 0;
-  private _ended = false;
-
-  constructor(
-    readonly stroke: string,
-    private readonly _pathPoints: number,
-    private readonly _change: (message: ChangeMessage) => void,
-  ) {}
-
-  /** `widths`: what share of the radius the brush has at each of them; absent: the whole. */
-  extend(points: readonly Point[], widths?: readonly number[]): void {
-    if (this._ended || points.length === 0) return;
-    for (let start = 0; start < points.length; start += this._pathPoints) {
-      const path = points.slice(start, start + this._pathPoints);
-      this._change({
-        op: "stroke.extend",
-        id: newId(),
-        stroke: this.stroke,
-        n: this._n++,
-        path,
-        ...(widths ? { widths: widths.slice(start, start + this._pathPoints) } : {}),
-      });
-    }
-  }
-
-  end(): void {
-    if (this._ended) return;
-    this._ended = true;
-    this._change({ op: "stroke.end", id: newId(), stroke: this.stroke });
   }
 }
 

@@ -2,7 +2,7 @@
 
 import { html, nothing, type TemplateResult } from "lit";
 import { beside } from "../ui/beside";
-import type { Point } from "../net/connection";
+import type { Point } from "../net/stroke";
 import { formatLength } from "../domain/measure";
 import { styled } from "../ui/styled";
 import type { ViewControl } from "./view-control";

@@ -2,7 +2,7 @@
 // new, one part at a time and not too often: a long line must not cost more with every move of the
 // pointer.
 
-import type { Point } from "../net/connection";
+import type { Point } from "../net/stroke";
 import type { Outline } from "../tools/tool";
 
 const kAskEveryMs = 80;

@@ -3,7 +3,7 @@
 // pixels.
 
 import { boundingRadius, type CameraMessage, type OrbitCamera } from "../math/camera";
-import type { Point } from "../net/connection";
+import type { Point } from "../net/stroke";
 import { dot, length, subtract, type Vec3 } from "../math/vector";
 
 export interface PinPlace {

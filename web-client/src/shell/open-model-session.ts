@@ -9,13 +9,9 @@
 
 import type { Api, Versioned } from "../net/api";
 import { ApiError } from "../net/api-error";
-import {
-  Connection,
-  type ConnectionState,
-  type Point,
-  type SavingState,
-  type SocketLike,
-} from "../net/connection";
+import { Connection, type ConnectionState, type SavingState } from "../net/connection";
+import type { SocketLike } from "../net/socket";
+import type { Point } from "../net/stroke";
 import type { FrameMessage } from "../net/frame-header";
 import type { GestureHandler, PointerSample } from "../ui/input";
 import type {

@@ -2,7 +2,7 @@
 // camera stays, because its points are pixels of the camera that it began with. Lines are drawn the
 // same way.
 
-import type { Point } from "../net/connection";
+import type { Point } from "../net/stroke";
 import type { PointerSample } from "../ui/input";
 import type { Outline, Tool } from "./tool";
 

@@ -1,7 +1,7 @@
 // A tool is what the left button, the pen or one finger does on the stage.
 
 import type { PointerSample } from "../ui/input";
-import type { Point } from "../net/connection";
+import type { Point } from "../net/stroke";
 
 export type ToolName =
   | "orbit"

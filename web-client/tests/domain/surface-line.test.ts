@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import type { Point } from "../../src/net/connection";
+import type { Point } from "../../src/net/stroke";
 import { markLength } from "../../src/domain/marks";
 import type { MarkPlace } from "../../src/core/protocol.gen";
 import {

@@ -1,7 +1,8 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import golden from "../../../protocol/golden/frame_headers.json";
-import { Connection, type ConnectionCallbacks, type StrokeOptions } from "../../src/net/connection";
+import { Connection, type ConnectionCallbacks } from "../../src/net/connection";
+import type { StrokeOptions } from "../../src/net/stroke";
 import type { ChangeMessage } from "../../src/net/outbox";
 import type { Layer } from "../../src/core/protocol.gen";
 import { FakeSocket, welcome } from "../fake-socket";

@@ -2,7 +2,7 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { LineMeasure } from "../../src/session/line-measure";
 import { beside } from "../../src/ui/beside";
-import type { Point } from "../../src/net/connection";
+import type { Point } from "../../src/net/stroke";
 import type { MarkPlace } from "../../src/core/protocol.gen";
 
 const kLongMs = 10_000;

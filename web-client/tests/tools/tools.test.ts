@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 
-import { StrokeHandle } from "../../src/net/connection";
+import { StrokeHandle } from "../../src/net/stroke";
 import type { ChangeMessage } from "../../src/net/outbox";
 import { BrushTool, type BrushHost } from "../../src/features/painting/brush-tool";
 import { BucketTool } from "../../src/features/painting/bucket-tool";

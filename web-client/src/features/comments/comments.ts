@@ -6,7 +6,7 @@ import { ApiError } from "../../net/api-error";
 import { newId } from "../../core/ids";
 import { type Api, ifVersion } from "../../net/api";
 import type { CameraMessage } from "../../math/camera";
-import type { Point } from "../../net/connection";
+import type { Point } from "../../net/stroke";
 import type { PointerSample } from "../../ui/input";
 import {
   findThreads,

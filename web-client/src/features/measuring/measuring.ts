@@ -6,7 +6,7 @@ import type { Sent } from "../../net/calls";
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
 import { boundingRadius, OrbitCamera, type CameraMessage } from "../../math/camera";
-import type { Point } from "../../net/connection";
+import type { Point } from "../../net/stroke";
 import type { PointerSample } from "../../ui/input";
 import { markLength, partsOfLine } from "../../domain/marks";
 import { legsOf, sum } from "../../math/measured-line";

@@ -1,6 +1,6 @@
 // Brush and eraser: a drag becomes a stroke in the selected layer, sent a batch per drawn picture.
 
-import type { StrokeHandle, Point } from "../../net/connection";
+import type { StrokeHandle, Point } from "../../net/stroke";
 import type { PointerSample } from "../../ui/input";
 import type { Tool } from "../../tools/tool";
 

@@ -2,7 +2,8 @@
 
 import { labelOf } from "../../domain/cells";
 import { newId } from "../../core/ids";
-import type { Connection, Point, StrokeHandle } from "../../net/connection";
+import type { Connection } from "../../net/connection";
+import type { Point, StrokeHandle } from "../../net/stroke";
 import type { PointerSample } from "../../ui/input";
 import { formatArea, metresPer } from "../../domain/measure";
 import type { Applied, Edit, Picked } from "../../core/protocol.gen";

@@ -1,7 +1,7 @@
 // A line on the surface: drawn in one go, or pressed place by place. While one is drawn the camera
 // stays, as with areas.
 
-import type { Point } from "../../net/connection";
+import type { Point } from "../../net/stroke";
 import type { PointerSample } from "../../ui/input";
 import { PlacesTool, type OutlineHost } from "../../tools/outline";
 import type { Outline } from "../../tools/tool";

@@ -5,7 +5,7 @@ import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
 import { readRecord, changeRecord } from "../../net/records";
 import type { CameraMessage } from "../../math/camera";
-import type { Point } from "../../net/connection";
+import type { Point } from "../../net/stroke";
 import type { PointerSample } from "../../ui/input";
 import { markColumns, markLength, marksOf, type MarkKind } from "../../domain/marks";
 import { formatLength, metresPer } from "../../domain/measure";

@@ -15,7 +15,7 @@ import {
   threadsOf,
   withThreadRead,
 } from "../../../src/domain/comments";
-import type { Point } from "../../../src/net/connection";
+import type { Point } from "../../../src/net/stroke";
 import type { Comment } from "../../../src/core/protocol.gen";
 import type { Vec3 } from "../../../src/math/vector";
 import { CommentTool } from "../../../src/features/comments/comment-tool";

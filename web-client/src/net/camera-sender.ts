@@ -1,0 +1,52 @@
+// The camera on its way to the server. Latest wins: at most one camera per drawn picture leaves,
+// always the newest.
+
+import type { CameraMessage } from "../math/camera";
+import type { ClientMessage } from "../core/protocol.gen";
+
+export interface CameraHost {
+  maySend(): boolean;
+  /** So much is unsent that cameras wait. */
+  isBusy(): boolean;
+  send(message: ClientMessage): void;
+  /** Calls back before the next picture is drawn. */
+  nextFrame(callback: () => void): void;
+}
+
+export class CameraSender {
+  /** Number of the newest camera sent; frames echo it. */
+  seq = 0;
+  private _newest: { camera: CameraMessage; moving: boolean } | null = null;
+  private _isScheduled = false;
+
+  constructor(private readonly _host: CameraHost) {}
+
+  set(camera: CameraMessage, moving: boolean): void {
+    this._newest = { camera, moving };
+    this.schedule();
+  }
+
+  forget(): void {
+    this._newest = null;
+  }
+
+  /** The newest, once more after a reconnect. */
+  sendNow(): void {
+    if (!this._newest) return;
+    const { camera, moving } = this._newest;
+    this._newest = { camera, moving: false }; // after a reconnect the picture is a still one
+    this.seq += 1;
+    this._host.send({ op: "camera", seq: this.seq, ...camera, moving });
+  }
+
+  private schedule(): void {
+    if (this._isScheduled || !this._newest) return;
+    this._isScheduled = true;
+    this._host.nextFrame(() => {
+      this._isScheduled = false;
+      if (!this._host.maySend()) return;
+      if (this._host.isBusy()) this.schedule();
+      else this.sendNow();
+    });
+  }
+}
