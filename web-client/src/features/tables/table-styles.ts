@@ -12,63 +12,6 @@ export const tableStyles = css`
   :host(.over) {
     box-shadow: inset 0 0 0 3px var(--accent);
   }
-  .bar {
-    display: flex;
-    align-items: center;
-    gap: 0.375rem;
-    padding: 5px 0.5rem 5px 0.875rem;
-    border-bottom: var(--edge) solid var(--line);
-  }
-  .bar h2 {
-    font-size: 1.02rem;
-    flex: 0 1 auto; /* rather than push the last buttons out of the panel */
-    min-width: 4rem;
-    max-width: 30%;
-  }
-  .bar .count {
-    flex: 0 1 auto;
-    min-width: 0;
-    overflow: hidden;
-    text-overflow: ellipsis;
-    white-space: nowrap;
-  }
-  .bar button,
-  .bar input[type="text"] {
-    min-height: 2rem;
-  }
-  .bar button.icon {
-    width: 2rem;
-  }
-  .filter {
-    position: relative;
-    flex: 1 1 10rem;
-    min-width: 12rem;
-    max-width: 40rem;
-    margin-left: 0.375rem;
-  }
-  .filter input {
-    padding-right: 1.875rem;
-    font: 0.86rem var(--mono);
-  }
-  .filter button {
-    position: absolute;
-    right: 0;
-    top: 0;
-  }
-  .on-model {
-    display: flex;
-    flex: none;
-    align-items: center;
-    gap: 2px;
-    white-space: nowrap;
-  }
-  .on-model button[aria-pressed="true"] {
-    background: var(--accent-soft);
-    color: var(--accent);
-  }
-  .on-model .hint {
-    padding-right: 0.375rem;
-  }
   .chosen > .ellipsis {
     flex: 0 1 auto;
     min-width: 4rem;
@@ -79,20 +22,6 @@ export const tableStyles = css`
   }
   .chosen > button.icon {
     width: 2rem;
-  }
-  .files {
-    display: flex;
-    flex: none;
-    gap: 2px;
-  }
-  .files button {
-    padding: 0 0.5rem;
-    font-size: 0.82rem;
-  }
-  @container (max-width: 1100px) {
-    .bar .words {
-      display: none;
-    }
   }
   .thumbnail {
     height: 1.5rem;
@@ -321,31 +250,5 @@ export const tableStyles = css`
     justify-items: start;
     padding: 1.125rem;
     color: var(--ink-soft);
-  }
-  /* the title with what closes it, then the filter */
-  :host(.narrow) .bar {
-    flex-wrap: wrap;
-    row-gap: 3px;
-  }
-  :host(.narrow) .bar h2 {
-    flex: 1 1 0;
-    min-width: 3.75rem;
-    max-width: none;
-  }
-  :host(.narrow) .bar > .grow {
-    display: none;
-  }
-  :host(.narrow) .bar::after {
-    content: "";
-    order: 1;
-    flex-basis: 100%;
-  }
-  :host(.narrow) .filter {
-    order: 2;
-    max-width: none;
-    margin-left: 0;
-  }
-  :host(.narrow) .on-model {
-    order: 2;
   }
 `;
