@@ -6,7 +6,7 @@ import { property } from "lit/decorators.js";
 import { followSession } from "./follow-session";
 import { icon } from "../ui/icons";
 import { Kept } from "../core/kept";
-import type { ModelSession } from "./model-session";
+import type { ModelSession, SessionPart } from "./model-session";
 import { sharedStyles } from "../ui/styles";
 
 export const foldingStyles = [
@@ -60,11 +60,14 @@ export abstract class FoldingPanel extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   private readonly _open: Kept<boolean>;
 
-  /** `name`: by which the browser keeps whether it is open. */
-  constructor(name: string) {
+  /**
+   * `name`: by which the browser keeps whether it is open. `parts`: of the session, as elements
+   * follow it.
+   */
+  constructor(name: string, ...parts: SessionPart[]) {
     super();
     this._open = new Kept(() => localStorage, `strata.${name}_panel_open`, false);
-    followSession(this);
+    followSession(this, ...parts);
   }
 
   protected abstract readonly heading: string;

@@ -1,14 +1,18 @@
-// Elements that show a ModelSession are drawn again when something in it changes.
+// Elements that show a ModelSession are drawn again when a part of it changes that they show.
 
 import type { ReactiveController, ReactiveControllerHost } from "lit";
-import type { ModelSession } from "./model-session";
+import type { ModelSession, SessionPart } from "./model-session";
 
 /**
  * To be called in the constructor. Follows the session that the element has, for as long as the
- * element is in the page.
+ * element is in the page. `parts`: what it shows, and what that is worked out from; without any it
+ * is drawn again after every change.
  */
-export function followSession(host: ReactiveControllerHost & { session: ModelSession }): void {
-  host.addController(new SessionFollower(host));
+export function followSession(
+  host: ReactiveControllerHost & { session: ModelSession },
+  ...parts: SessionPart[]
+): void {
+  host.addController(new SessionFollower(host, parts));
 }
 
 class SessionFollower implements ReactiveController {
@@ -16,7 +20,10 @@ class SessionFollower implements ReactiveController {
   private _followed: ModelSession | null = null;
   private _unsubscribe: (() => void) | null = null;
 
-  constructor(private readonly _host: ReactiveControllerHost & { session: ModelSession }) {}
+  constructor(
+    private readonly _host: ReactiveControllerHost & { session: ModelSession },
+    private readonly _parts: readonly SessionPart[],
+  ) {}
 
   hostConnected(): void {
     this._connected = true;
@@ -29,7 +36,7 @@ class SessionFollower implements ReactiveController {
     if (!this._connected || session === this._followed) return;
     this._unsubscribe?.();
     this._followed = session;
-    this._unsubscribe = session.subscribe(() => this._host.requestUpdate());
+    this._unsubscribe = session.subscribe(() => this._host.requestUpdate(), this._parts);
   }
 
   hostDisconnected(): void {

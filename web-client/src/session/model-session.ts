@@ -32,6 +32,36 @@ import type { Tours } from "../features/tours/tours";
 import type { ViewControl } from "./view-control";
 import type { Views } from "../features/views/views";
 
+/**
+ * What may change by itself. `session`: the model, the connection, or what this person may do, of
+ * which all elements are told.
+ */
+export type SessionPart =
+  | "session"
+  | "saving"
+  | keyof Pick<
+      ModelSession,
+      | "view"
+      | "layers"
+      | "jobs"
+      | "appearance"
+      | "pointer"
+      | "painting"
+      | "shapes"
+      | "tables"
+      | "editors"
+      | "marks"
+      | "measuring"
+      | "comments"
+      | "activity"
+      | "reviews"
+      | "hovered"
+      | "together"
+      | "views"
+      | "tours"
+      | "tools"
+    >;
+
 export interface ModelSession {
   readonly model: Model | null;
   readonly deleted: boolean;
@@ -68,7 +98,8 @@ export interface ModelSession {
   readonly api: Api;
   readonly modelId: string;
   readonly gestures: GestureHandler;
-  subscribe(listener: () => void): () => void;
+  /** Told of every change, or of those of some parts and of the session itself. */
+  subscribe(listener: () => void, parts?: readonly SessionPart[]): () => void;
   /**
    * Ends the connection; what is not saved is sent when the same person comes back to the model.
    */

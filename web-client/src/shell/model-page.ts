@@ -162,7 +162,14 @@ export class StrataModelPage extends LitElement {
   }
 
   private async open(session: OpenModelSession): Promise<void> {
-    session.subscribe(() => this.onSession(session));
+    session.subscribe(
+      () => this.onSession(session),
+      ["saving", "tools", "layers", "tables", "comments", "reviews"],
+    );
+    session.subscribe(
+      () => this.onPlace(session),
+      ["view", "views", "layers", "appearance", "comments"],
+    );
     try {
       await session.open();
     } catch (error) {
@@ -183,13 +190,18 @@ export class StrataModelPage extends LitElement {
     }
     this.showMeasuring(session);
     if (session.model) document.title = `${session.model.name} – ${texts.product}`;
+    this.requestUpdate();
+  }
+
+  /** Somewhere else on the model, or it is drawn for the first time. */
+  private onPlace(session: OpenModelSession): void {
+    if (session !== this._session) return;
     this.followAddress(session);
     const asksScale = session.model && !session.model.scale_verified && session.canCurate;
     if (asksScale && session.view.framesDrawn > 0 && !this._askedScale) {
       this._askedScale = true;
       this._dialog ??= { dialog: "scale" };
     }
-    this.requestUpdate();
   }
 
   /** What is measured is told in the panel. */

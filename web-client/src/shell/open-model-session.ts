@@ -71,7 +71,8 @@ import { ToolShapes } from "../features/painting/tool-shapes";
 import { Tours } from "../features/tours/tours";
 import { ViewControl, wantsLessMotion } from "../session/view-control";
 import { Views } from "../features/views/views";
-import type { ModelSession } from "../session/model-session";
+import type { ModelSession, SessionPart } from "../session/model-session";
+import { Signals } from "../session/signals";
 
 export class OpenModelSession implements ModelSession {
   model: Model | null = null;
@@ -110,7 +111,7 @@ export class OpenModelSession implements ModelSession {
   onResetFrames: () => void = () => {};
 
   private readonly _connection: Connection;
-  private readonly _listeners = new Set<() => void>();
+  private readonly _signals = new Signals<SessionPart>("session");
   private _etag = "";
   private _preview: Pick<Model, "unit" | "up"> | null = null;
   private _wasOpen = false;
@@ -125,7 +126,7 @@ export class OpenModelSession implements ModelSession {
     makeSocket?: (url: string, protocol: string) => SocketLike,
   ) {
     this._connection = this.makeConnection(makeSocket);
-    const changed = (): void => this.changed();
+    const changes = (part: SessionPart) => (): void => this.changed(part);
     this.view = new ViewControl({
       send: (moving) => {
         this.hovered.waitAgain();
@@ -143,18 +144,18 @@ export class OpenModelSession implements ModelSession {
         this.measuring.cameToRest();
       },
       wentOwnWay: () => this.together.stopFollowing(),
-      changed,
+      changed: changes("view"),
     });
     this.layers = new LayerList(api, modelId, {
       sendOverrides: (overrides) => this._connection.setLayerOverrides(overrides),
-      changed: () => this.targetChanged(),
+      changed: () => this.targetChanged("layers"),
     });
-    this.jobs = new LayerJobs(api, modelId, changed);
+    this.jobs = new LayerJobs(api, modelId, changes("jobs"));
     this.appearance = new Appearance(api, modelId, {
       send: (looks, light) => this._connection.setAppearance(looks, light),
       sendSection: (planes, moving) => this.view.setSection(planes, moving),
       bounds: () => this.model?.bounds ?? null,
-      changed,
+      changed: changes("appearance"),
     });
     this.pointer = new PointerWatch({
       camera: () => this.view.camera,
@@ -167,7 +168,7 @@ export class OpenModelSession implements ModelSession {
       },
       looked: (message) => this.tables.showCard(this.layerWithRecord(message), message),
       learned: () => this.hovered.picked(),
-      changed,
+      changed: changes("pointer"),
     });
     this.painting = new Painting({
       connection: this._connection,
@@ -181,24 +182,24 @@ export class OpenModelSession implements ModelSession {
       },
       mayPaint: () => this.canPaint,
       isLocked: (layer) => this.isLocked(layer),
-      changed,
+      changed: changes("painting"),
     });
     this.shapes = new ToolShapes(api, {
       chosen: () => this.painting.brush.shape,
       choose: (shape) => this.painting.setBrush((brush) => (brush.shape = shape)),
-      changed,
+      changed: changes("shapes"),
     });
     this.tables = new Tables(api, {
       modelId,
       project: () => this.model?.project ?? null,
       highlight: (layerId, what) => this.layers.setHighlight(layerId, what),
       flyTo: (bounds) => this.view.flyTo(bounds),
-      changed,
+      changed: changes("tables"),
     });
     this.editors = new RecordEditors({
       say: (what) => this._connection.editRecord(what),
       nameOf: (user) => this.together.nameOf(user),
-      changed,
+      changed: changes("editors"),
     });
     this.marks = new MarkDrawing(api, {
       view: this.view,
@@ -206,13 +207,13 @@ export class OpenModelSession implements ModelSession {
       painting: this.painting,
       tables: this.tables,
       model: () => this.model,
-      changed,
+      changed: changes("marks"),
     });
     this.measuring = new Measuring(api, {
       view: this.view,
       layers: this.layers,
       model: () => this.model,
-      changed,
+      changed: changes("measuring"),
     });
     this.comments = new Comments(api, modelId, {
       view: this.view,
@@ -221,7 +222,7 @@ export class OpenModelSession implements ModelSession {
       model: () => this.model,
       here: () => this.together.viewers,
       began: () => this.tools.choose("orbit"),
-      changed,
+      changed: changes("comments"),
     });
     this.activity = new Activities(api, {
       view: this.view,
@@ -229,7 +230,7 @@ export class OpenModelSession implements ModelSession {
       tables: this.tables,
       comments: this.comments,
       model: () => this.model,
-      changed,
+      changed: changes("activity"),
     });
     this.reviews = new Reviews(api, modelId, {
       view: this.view,
@@ -238,12 +239,12 @@ export class OpenModelSession implements ModelSession {
       nameOf: (user) => this.together.nameOf(user),
       canPaint: () => this.canPaint,
       canCurate: () => this.canCurate,
-      changed,
+      changed: changes("reviews"),
     });
     this.hovered = new RecordHover({
       here: () => this.recordHere(),
       settled: () => this.pointer.settled,
-      changed,
+      changed: changes("hovered"),
     });
     this.together = new Together({
       session: () => this.session,
@@ -251,7 +252,7 @@ export class OpenModelSession implements ModelSession {
       send: (shown) => this._connection.presence(shown),
       view: this.view,
       ask: (id, x, y) => this._connection.pick(id, x, y),
-      changed,
+      changed: changes("together"),
     });
     this.cursors = new PeopleCursors({
       camera: () => this.view.camera,
@@ -267,9 +268,9 @@ export class OpenModelSession implements ModelSession {
       tables: this.tables,
       whenFree: (action) => this.painting.whenFree(action),
       canCurate: () => this.canCurate,
-      changed,
+      changed: changes("views"),
     });
-    this.tours = new Tours(api, modelId, changed);
+    this.tours = new Tours(api, modelId, changes("tours"));
     this.figures = new Figures(api, this.jobs);
     this.face = new FacePick(api, {
       view: this.view,
@@ -396,7 +397,7 @@ export class OpenModelSession implements ModelSession {
       finishOutline: (path: Point[]) => this.painting.finishOutline(path),
       outlineEnded: () => this.painting.strokeEnded(),
       scale: () => this.view.scale,
-      outlineChanged: () => this.changed(),
+      outlineChanged: () => this.changed("tools"),
     };
     const lineHost = {
       ...outlineHost,
@@ -404,7 +405,7 @@ export class OpenModelSession implements ModelSession {
       finishOutline: (path: Point[]) => this.marks.finishLine(path),
       outlineChanged: () => {
         this.marks.lineChanged(this.tools.outline);
-        this.changed();
+        this.changed("tools");
       },
     };
     return new ToolManager(
@@ -427,16 +428,15 @@ export class OpenModelSession implements ModelSession {
         })),
       ],
       "orbit",
-      () => this.targetChanged(),
+      () => this.targetChanged("tools"),
     );
   }
 
   // ── life
   // ──────────────────────────────────────────────────────────────────────────────────────────────────────────
 
-  subscribe(listener: () => void): () => void {
-    this._listeners.add(listener);
-    return () => this._listeners.delete(listener);
+  subscribe(listener: () => void, parts?: readonly SessionPart[]): () => void {
+    return this._signals.subscribe(listener, parts);
   }
 
   async open(): Promise<void> {
@@ -465,7 +465,7 @@ export class OpenModelSession implements ModelSession {
     this.activity.close();
     this.reviews.close();
     this.tables.close();
-    this._listeners.clear();
+    this._signals.clear();
     this.onFrame = this.onResetFrames = () => {};
     if (this.saving.waiting === 0) {
       this.discard();
@@ -516,7 +516,7 @@ export class OpenModelSession implements ModelSession {
    * Another tool, another layer, or another lock: who cannot paint any more is told so once, before
    * they try.
    */
-  private targetChanged(): void {
+  private targetChanged(part: "layers" | "tools"): void {
     const locked = this.lockedTarget;
     const told = this._toldLocked;
     this._toldLocked = locked?.id ?? null;
@@ -525,11 +525,11 @@ export class OpenModelSession implements ModelSession {
       this.tools.stop();
       this.tellLocked(locked);
     }
-    this.changed();
+    this.changed(part);
   }
 
-  private changed(): void {
-    for (const listener of this._listeners) listener();
+  private changed(part: SessionPart = "session"): void {
+    this._signals.tell(part);
   }
 
   /** The one that is painted on, if there is a record, or the topmost that shows one. */
@@ -732,7 +732,7 @@ export class OpenModelSession implements ModelSession {
       if (this._toldLeft) notices.show("success", texts.saving.left_saved(this.name));
       this.discard();
     }
-    this.changed();
+    this.changed("saving");
   }
 
   /** Once, and only when it takes long: usually all is saved in a moment. */

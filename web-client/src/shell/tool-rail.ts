@@ -37,7 +37,7 @@ export class StrataToolRail extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "tools", "layers", "marks", "tables", "view");
     new ScrollFade(this);
   }
 

@@ -1,3 +1,6 @@
+import type { ReactiveController } from "lit";
+import { followSession } from "../../src/session/follow-session";
+import type { SessionPart } from "../../src/session/model-session";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { OpenModelSession } from "../../src/shell/open-model-session";
@@ -97,6 +100,63 @@ afterEach(() => {
   unsubscribe();
   vi.unstubAllGlobals();
   vi.useRealTimers();
+});
+
+describe("a change", () => {
+  /** How often an element that follows these parts is drawn again. */
+  function follower(...parts: SessionPart[]): { redraws: number; leave(): void } {
+    let controller: ReactiveController | null = null;
+    const drawn = { redraws: 0, leave: () => controller?.hostDisconnected?.() };
+    followSession(
+      {
+        session,
+        addController: (added: ReactiveController) => (controller = added),
+        requestUpdate: () => (drawn.redraws += 1),
+      } as unknown as Parameters<typeof followSession>[0],
+      ...parts,
+    );
+    const follows = controller as ReactiveController | null;
+    follows?.hostConnected?.();
+    follows?.hostUpdate?.();
+    drawn.redraws = 0;
+    return drawn;
+  }
+
+  it("redraws what shows it, and nothing else", async () => {
+    await open();
+    const [all, pointer, list, saving, thread] = [
+      follower(),
+      follower("pointer"),
+      follower("layers", "tables"),
+      follower("saving"),
+      follower("comments"),
+    ];
+    const redraws = (): number[] => {
+      const counts = [all, pointer, list, saving, thread].map((each) => each.redraws);
+      for (const each of [all, pointer, list, saving, thread]) each.redraws = 0;
+      return counts;
+    };
+    session.gestures.hover({ x: 1, y: 1 });
+    expect(redraws()).toEqual([1, 1, 0, 0, 0]);
+    const [layer] = session.layers.all;
+    session.layers.setVisible(layer!, !session.layers.visible(layer!));
+    expect(redraws()).toEqual([1, 0, 1, 0, 0]);
+    session.comments.pinsShown = !session.comments.pinsShown;
+    expect(redraws()).toEqual([2, 0, 0, 0, 2]);
+    const save = paint();
+    const [, , listed, saved, told] = redraws();
+    expect([listed, saved! > 0, told]).toEqual([0, true, 0]);
+    save();
+    expect(redraws()[3]).toBeGreaterThan(0);
+  });
+
+  it("of the session itself redraws all of them, but for those that have left", async () => {
+    await open();
+    const [all, list, gone] = [follower(), follower("layers"), follower("layers")];
+    gone.leave();
+    session.previewScale({ unit: "mm", up: "z" });
+    expect([all.redraws, list.redraws, gone.redraws]).toEqual([1, 1, 0]);
+  });
 });
 
 describe("leaving a model", () => {

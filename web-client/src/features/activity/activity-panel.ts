@@ -29,7 +29,7 @@ export class StrataActivityPanel extends FoldingPanel {
   protected readonly heading = words.title;
 
   constructor() {
-    super("activity");
+    super("activity", "activity", "tables", "layers", "comments");
   }
 
   static override styles = [

@@ -22,7 +22,7 @@ export class StrataLookList extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "appearance");
   }
 
   static override styles = [

@@ -24,7 +24,7 @@ export class StrataViewPanel extends FoldingPanel {
   protected readonly heading = texts.view.title;
 
   constructor() {
-    super("view");
+    super("view", "appearance");
   }
 
   static override styles = [

@@ -24,7 +24,7 @@ export class StrataCommentPanel extends FoldingPanel {
   @state() private _most = kAtOnce;
 
   constructor() {
-    super("comment");
+    super("comment", "comments", "layers", "tables", "together");
   }
 
   static override styles = [

@@ -62,7 +62,7 @@ export class StrataColorDialog extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "layers", "tables");
   }
 
   static override styles = [

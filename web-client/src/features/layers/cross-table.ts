@@ -33,7 +33,7 @@ export class StrataCrossTable extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "layers", "tables");
   }
 
   static override styles = [

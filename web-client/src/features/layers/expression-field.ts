@@ -43,7 +43,7 @@ export class StrataExpressionField extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "layers", "tables");
   }
 
   static override styles = [

@@ -46,7 +46,7 @@ export class StrataLayerPanel extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "layers", "jobs", "tables", "reviews");
   }
 
   static override styles = [

@@ -78,7 +78,7 @@ export class StrataMapDialog extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "painting", "layers", "tables");
   }
 
   static override styles = [

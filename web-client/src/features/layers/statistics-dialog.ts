@@ -33,7 +33,7 @@ export class StrataStatisticsDialog extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "layers", "tables");
   }
 
   static override styles = [

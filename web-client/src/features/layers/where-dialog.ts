@@ -27,7 +27,7 @@ export class StrataWhereDialog extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "painting", "layers", "tables");
   }
 
   static override styles = [

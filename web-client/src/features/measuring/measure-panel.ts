@@ -31,7 +31,7 @@ export class StrataMeasurePanel extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "measuring", "layers", "view");
   }
 
   static override styles = [

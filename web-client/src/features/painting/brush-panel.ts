@@ -34,7 +34,7 @@ export class StrataBrushPanel extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "painting", "layers", "tools", "tables", "marks", "shapes", "view");
   }
 
   static override styles = [

@@ -22,7 +22,7 @@ export class StrataPaintChip extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "painting", "layers", "tools", "tables", "marks");
   }
 
   static override styles = [

@@ -34,7 +34,7 @@ export class StrataShapePicker extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "painting", "shapes");
   }
 
   static override styles = [

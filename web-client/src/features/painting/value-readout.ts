@@ -19,7 +19,7 @@ export class StrataValueReadout extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "pointer", "layers", "tables");
   }
 
   static override styles = [

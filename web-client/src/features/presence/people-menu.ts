@@ -25,7 +25,7 @@ export class StrataPeopleMenu extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "together");
   }
 
   override connectedCallback(): void {

@@ -20,7 +20,7 @@ export class StrataTogetherBar extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "together");
   }
 
   static override styles = [

@@ -23,7 +23,7 @@ export class StrataHoverCard extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "hovered", "pointer", "view", "tools", "layers", "tables");
   }
 
   static override styles = [

@@ -24,7 +24,7 @@ export class StrataRecordCard extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "tables", "layers");
   }
 
   static override styles = [

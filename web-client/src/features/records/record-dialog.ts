@@ -42,7 +42,7 @@ export class StrataRecordDialog extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "tables", "layers", "editors", "together");
   }
 
   static override styles = [

@@ -38,7 +38,7 @@ export class StrataReviewPanel extends FoldingPanel {
   @state() private _reason = "";
 
   constructor() {
-    super("review");
+    super("review", "reviews", "layers", "together");
   }
 
   static override styles = [

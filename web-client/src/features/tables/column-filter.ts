@@ -55,7 +55,7 @@ export class StrataColumnFilter extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "tables", "layers");
   }
 
   static override styles = [

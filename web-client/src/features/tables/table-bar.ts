@@ -27,7 +27,7 @@ export class StrataTableBar extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "tables", "layers");
   }
 
   static override styles = [

@@ -55,7 +55,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "tables", "layers", "editors", "together");
   }
 
   static override styles = [sharedStyles, tableStyles];

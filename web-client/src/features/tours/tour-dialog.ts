@@ -66,7 +66,7 @@ export class StrataTourDialog extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "tours", "views");
   }
 
   static override styles = [

@@ -24,7 +24,7 @@ export class StrataTourList extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "tours");
   }
 
   static override styles = [

@@ -44,7 +44,7 @@ export class StrataTourStopFields extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "tours", "views", "layers", "tables");
   }
 
   static override styles = [

@@ -48,7 +48,7 @@ export class StrataTourStops extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "tours", "views");
   }
 
   static override styles = [

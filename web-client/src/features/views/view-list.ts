@@ -28,7 +28,7 @@ export class StrataViewList extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "views", "view", "layers", "appearance");
   }
 
   static override styles = [

@@ -45,7 +45,7 @@ export class StrataRecordChooser extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "tables", "layers");
   }
 
   static override styles = [

@@ -54,7 +54,7 @@ export class StrataTermChooser extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "tables", "layers");
   }
 
   static override styles = [

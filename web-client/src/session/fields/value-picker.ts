@@ -31,7 +31,7 @@ export class StrataValuePicker extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "painting", "tables", "layers");
   }
 
   static override styles = [
