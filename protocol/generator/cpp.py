@@ -147,7 +147,7 @@ class Writer:
             NOTE,
             "#pragma once\n\n#include <array>\n#include <cstdint>\n#include <map>\n#include <nlohmann/json.hpp>\n"
             "#include <optional>\n#include <string>\n#include <string_view>\n#include <variant>\n#include <vector>\n\n"
-            '#include "domain/scene/camera.h"\n#include "domain/layers/layer.h"\n#include "domain/scene/light.h"\n#include "domain/scene/model.h"\n#include "core/error.h"\n#include "core/uuid.h"\n\n'
+            '#include "core/error.h"\n#include "core/uuid.h"\n#include "domain/layers/layer.h"\n#include "domain/scene/camera.h"\n#include "domain/scene/light.h"\n#include "domain/scene/model.h"\n\n'
             "// Messages and bodies as plain values. `read` takes JSON that `validate` (protocol/validate.h) has let through and\n"
             "// leaves absent members at their defaults; `to_json` leaves unset optional members out; `check` looks at what a\n"
             "// schema cannot say (cameras). Use protocol/parse.h to do all of it at once.\n"
