@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kProjectionSide_px = 4096;  // of the depth buffer that tells what is seen first
 
-TileMap as_tile_map(std::map<TileAddress, TileData> written) {
+TileMap as_tile_map(std::map<TileAddress, TileData>&& written) {
   TileMap tiles;
   for (auto& [address, tile] : written)
     if (tile.valid.any()) tiles[address] = std::make_shared<const TileData>(std::move(tile));
