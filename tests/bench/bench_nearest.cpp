@@ -145,7 +145,7 @@ Measured measure_embree(const mesh::Geometry& geometry,
   const RTCDevice device = rtcNewDevice(nullptr);
   rtcSetDeviceMemoryMonitorFunction(device, count_bytes, &bytes);
   const RTCScene scene = rtcNewScene(device);
-  const Measured measured = measure(
+  Measured measured = measure(
       sets,
       [&] {
         rtcSetSceneFlags(scene, flags);

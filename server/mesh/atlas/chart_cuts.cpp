@@ -109,10 +109,10 @@ bool cut_hollow_charts(const ChartSurface& surface, std::span<const glm::vec2> p
       const float box = outlines[c].size.x * outlines[c].size.y;
       if (charts[c].faces.size() > 1 && box > least_box &&
           area_in_plane(plane, charts[c]) < kLeastFill * box)
-        for (Chart& part : charts[c].faces.size() <= kFewFaces
-                               ? Joiner(surface, plane, charts[c]).join()
-                               : halves_of(charts[c], outlines[c], plane))
-          append_connected_parts(surface, std::move(part), pending, parts);
+        for (const Chart& part : charts[c].faces.size() <= kFewFaces
+                                     ? Joiner(surface, plane, charts[c]).join()
+                                     : halves_of(charts[c], outlines[c], plane))
+          append_connected_parts(surface, part, pending, parts);
       else
         parts.push_back(std::move(charts[c]));
     }

@@ -341,7 +341,7 @@ ChartSurface make_chart_surface(const UnitMesh& mesh, int smoothing) {
   return surface;
 }
 
-void append_connected_parts(const ChartSurface& surface, Chart chart,
+void append_connected_parts(const ChartSurface& surface, const Chart& chart,
                             std::vector<std::uint8_t>& pending, std::vector<Chart>& charts) {
   for (const auto face : chart.faces) pending[face] = 1;
   std::vector<std::uint32_t> part;
@@ -369,8 +369,8 @@ std::optional<std::vector<Chart>> grow_charts(const ChartSurface& surface,
   grower.absorb_tiny();
   std::vector<Chart> connected;
   std::vector<std::uint8_t> pending(surface.mesh.triangle_count(), 0);
-  for (Chart& chart : grower.take())
-    append_connected_parts(surface, std::move(chart), pending, connected);
+  for (const Chart& chart : grower.take())
+    append_connected_parts(surface, chart, pending, connected);
   return connected;
 }
 
@@ -397,7 +397,7 @@ std::optional<std::size_t> split_off(const ChartSurface& surface,
     if (std::erase_if(chart.faces, [&](std::uint32_t face) { return leaves[face] != 0; }) == 0)
       result.push_back(std::move(chart));
     else if (!chart.faces.empty())
-      append_connected_parts(surface, std::move(chart), pending, result);
+      append_connected_parts(surface, chart, pending, result);
   }
   const std::size_t first = result.size();
   Grower grower(surface, options);

@@ -68,7 +68,7 @@ std::optional<std::size_t> split_off(const ChartSurface& surface,
                                      std::vector<Chart>& charts);
 
 // Appends the connected parts of `chart` to `charts`. `pending`: one a face, all 0, and left so.
-void append_connected_parts(const ChartSurface& surface, Chart chart,
+void append_connected_parts(const ChartSurface& surface, const Chart& chart,
                             std::vector<std::uint8_t>& pending, std::vector<Chart>& charts);
 
 }  // namespace strata::mesh
