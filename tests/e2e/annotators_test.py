@@ -20,7 +20,6 @@ import sys
 import threading
 import time
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support.annotators import Annotator
 from support.browsers import join
 from support.cameras import camera_from
@@ -368,7 +367,7 @@ def table(result):
     return "\n".join(lines)
 
 
-def arguments():
+def arguments(words):
     parser = argparse.ArgumentParser()
     parser.add_argument(
         "--seconds", type=float, default=float(os.environ.get("STRATA_ANNOTATORS_SECONDS", "30"))
@@ -395,14 +394,17 @@ def arguments():
     parser.add_argument("--unit", default="mm")
     parser.add_argument("--resolution", type=int, default=2048)
     parser.add_argument("--json", help="write what was measured here")
-    asked = parser.parse_args()
+    asked = parser.parse_args(words)
     asked.window = tuple(map(int, asked.window.split("x")))
     asked.cut_every = tuple(map(float, asked.cut_every.split(",")))
     return asked
 
 
-def main():
-    asked = arguments()
+def test_nothing_is_lost_or_doubled_and_the_texels_are_those_of_a_serial_replay():
+    measure(arguments([]))
+
+
+def measure(asked):
     print(
         f"seed {asked.seed}: {asked.people} people for {asked.seconds:g} s, {asked.turning} of them turn their camera",
         flush=True,
@@ -460,4 +462,5 @@ def main():
             file.write("\n")
 
 
-main()
+if __name__ == "__main__":
+    measure(arguments(sys.argv[1:]))
