@@ -92,6 +92,10 @@ struct Cluster::Impl {
 
   ~Impl() {
     if (keeper.joinable()) {
+      {
+        std::lock_guard lock(mutex);
+        watching = false;  // what stops now was asked to
+      }
       (void)on_keeper([this] { return stop(); });
       {
         std::lock_guard lock(mutex);
