@@ -75,10 +75,23 @@ show_apt_progress() {
   done
 }
 
-# show_ninja_progress MILLISECONDS: reads what Ninja prints with NINJA_STATUS='[%f/%t] '. MILLISECONDS
-# is what a unit takes here by experience, which counts as much as a fifth of the units.
+# unit_weight LINE: a unit of several files takes the compiler as long as some fourteen others.
+unit_weight() { case $1 in *Unity/*) echo 14 ;; *) echo 1 ;; esac; }
+
+# weigh_units: the weight of the lines of `ninja -n` on standard input.
+weigh_units() {
+  local line sum=0
+  while IFS= read -r line; do
+    [[ $line != \[* ]] || sum=$((sum + $(unit_weight "$line")))
+  done
+  echo $sum
+}
+
+# show_ninja_progress WEIGHT MILLISECONDS: reads what Ninja prints with NINJA_STATUS='[%f/%t] '. WEIGHT
+# is that of all units, MILLISECONDS what one of weight 1 takes here by experience, which counts as
+# much as a fifth of the units.
 show_ninja_progress() {
-  local unit_ms=$1 line partial='' finished=0 total=0 begun=$SECONDS known left code
+  local weight=$1 unit_ms=$2 line partial='' finished=0 total=0 done_weight=0 begun=$SECONDS known left code
   while true; do
     code=0
     IFS= read -r -t 1 line || code=$?
@@ -88,11 +101,15 @@ show_ninja_progress() {
       [ $code = 0 ] || [ -n "$partial$line" ] || break
       line=$partial$line partial=''
       printf '%s\n' "$line" >>"$progress_log"
-      [[ ! $line =~ ^\[([0-9]+)/([0-9]+)\]\  ]] || finished=${BASH_REMATCH[1]} total=${BASH_REMATCH[2]}
+      if [[ $line =~ ^\[([0-9]+)/([0-9]+)\]\  ]]; then
+        finished=${BASH_REMATCH[1]} total=${BASH_REMATCH[2]}
+        done_weight=$((done_weight + $(unit_weight "$line")))
+        [ "$done_weight" -le "$weight" ] || weight=$done_weight
+      fi
     fi
     [ "$total" -gt 0 ] || continue
-    known=$((total / 5 + 1))
-    left=$(((known * unit_ms / 1000 + SECONDS - begun) * (total - finished) / (known + finished)))
-    show_progress "$finished of $total units, $((100 * finished / total)) %, about $(duration $(((left + 9) / 10 * 10))) left"
+    known=$((weight / 5 + 1))
+    left=$(((known * unit_ms / 1000 + SECONDS - begun) * (weight - done_weight) / (known + done_weight)))
+    show_progress "$finished of $total units, $((100 * done_weight / weight)) %, about $(duration $(((left + 9) / 10 * 10))) left"
   done
 }

@@ -2,12 +2,13 @@
 """`./run` refuses wrong use with a reason before it installs anything, and its steps show how far they are, in a log and in a terminal."""
 import os
 import pty
+import re
 import subprocess
 import sys
 import tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-NINJA = "[1/4] Building one\n[2/4] Building two\nwarning: of two\n[4/4] Linking\n"
+NINJA = "[1/3] Building one\n[2/3] Building two\nwarning: of two\n[3/3] Linking\n"
 APT = "Reading package lists\ndlstatus:1:12.5:Retrieving file 1\npmstatus:cmake:73.1:Installing cmake\n"
 
 
@@ -51,11 +52,11 @@ def shell(folder, script, text=""):
 def check_log(folder):
     told = shell(
         folder,
-        "progress_log_every=0; number_steps 2; begin_step Server; show_ninja_progress 9000; end_step",
+        "progress_log_every=0; number_steps 2; begin_step Server; show_ninja_progress 3 9000; end_step",
         NINJA,
     ).stderr.splitlines()
-    assert told[0] == "[1/2] Server: 1 of 4 units, 25 %, about 20 s left", told
-    assert told[-2].startswith("[1/2] Server: 4 of 4 units, 100 %"), told
+    assert told[0] == "[1/2] Server: 1 of 3 units, 33 %, about 10 s left", told
+    assert told[-2].startswith("[1/2] Server: 3 of 3 units, 100 %"), told
     assert told[-1].startswith("[1/2] Server: done in "), told
     with open(os.path.join(folder, "build", "setup.log"), encoding="utf-8") as file:
         assert "warning: of two\n" in file.read(), "what the tools print is kept"
@@ -63,12 +64,20 @@ def check_log(folder):
     told = shell(folder, "progress_log_every=0; begin_step Packages; show_apt_progress", APT).stderr
     assert told == "Packages: downloading, 12 %\nPackages: installing, 73 %\n", told
 
-    quiet = shell(folder, "begin_step Server; show_ninja_progress 9000", NINJA).stderr
+    told = shell(
+        folder,
+        "progress_log_every=0; begin_step Server; show_ninja_progress 30 1000",
+        "[1/3] Building one\n[2/3] Building Unity/unity_0_cxx.cxx.o\n[3/3] Building Unity/unity_1_cxx.cxx.o\n",
+    ).stderr.splitlines()
+    percents = [re.search(r" (\d+) %", line).group(1) for line in told]
+    assert percents == ["3", "50", "96"], f"a unit of several files counts for more: {told}"
+
+    quiet = shell(folder, "begin_step Server; show_ninja_progress 3 9000", NINJA).stderr
     assert len(quiet.splitlines()) == 1, "a log gets a line now and then"
 
 
 def check_failure(folder):
-    failing = '(cat; exit 1) | show_ninja_progress 1000 || fail_step "The build failed."'
+    failing = '(cat; exit 1) | show_ninja_progress 3 1000 || fail_step "The build failed."'
     lines = "".join(f"[{i}/100] Building {i}\n" for i in range(1, 50))
     result = shell(
         folder, f"begin_step Server; {failing}", f"{lines}FAILED: a.o\na.cpp:1: error: no\n"
@@ -85,7 +94,7 @@ def check_terminal(folder):
         [
             "bash",
             "-c",
-            f'set -euo pipefail; . "{ROOT}/scripts/setup.sh"; begin_step Server; show_ninja_progress 1000; end_step',
+            f'set -euo pipefail; . "{ROOT}/scripts/setup.sh"; begin_step Server; show_ninja_progress 3 1000; end_step',
         ],
         cwd=folder,
         input=NINJA.encode(),
@@ -98,7 +107,7 @@ def check_terminal(folder):
     told = os.read(control, 65536).decode()
     os.close(control)
     assert told.count("\n") == 1, f"a step is one line: {told!r}"
-    assert "\r\x1b[KServer: 2 of 4 units, 50 %" in told, repr(told)
+    assert "\r\x1b[KServer: 2 of 3 units, 66 %" in told, repr(told)
     assert max(len(each) for each in told.split("\r")) < 80, "a line of a narrow terminal"
 
 
