@@ -79,8 +79,8 @@ double share_of(const query::Quantity& quantity, const query::Quantities& all) {
   return all.surface_m2 > 0 ? std::min(1.0, quantity.area_m2 / all.surface_m2) : 0;
 }
 
-nlohmann::json to_json(const query::Quantities& all, const Layer& layer, const Names& names,
-                       const OfMarks& marks) {
+nlohmann::json quantities_json(const query::Quantities& all, const Layer& layer, const Names& names,
+                               const OfMarks& marks) {
   nlohmann::json list = nlohmann::json::array();
   const auto add_share = [&](nlohmann::json json, const query::Quantity& quantity) {
     json["share"] = share_of(quantity, all);
@@ -203,7 +203,7 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
     names = std::move(*found);
   }
   auto response = STRATA_TRY(format == SheetFormat::json
-                                 ? json_response(to_json(*all, asked.layer, names, marks))
+                                 ? json_response(quantities_json(*all, asked.layer, names, marks))
                                  : quantity_sheet(context,
                                                   to_sheet(*all, asked.layer, names, marks,
                                                            asked.layer.slug + "-quantities"),

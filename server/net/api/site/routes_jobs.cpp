@@ -30,7 +30,7 @@ nlohmann::json job_json(jobs::JobStatus job, const Principal& who) {
       job.problem =
           Error{job.problem->code, job.problem->title, "Curators of the project read why.", {}};
   }
-  return to_json(job);
+  return net::to_json(job);
 }
 
 bool is_over(const jobs::JobStatus& job) {
