@@ -42,7 +42,7 @@ export class StrataCommentCard extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "comments", "view", "layers", "tables", "together");
   }
 
   static override styles = [

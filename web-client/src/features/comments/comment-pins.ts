@@ -32,7 +32,7 @@ export class StrataCommentPins extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "comments", "tools", "view", "layers");
   }
 
   static override styles = [

@@ -89,7 +89,7 @@ export class StrataFigureDialog extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "jobs", "layers", "tables", "views", "view", "appearance", "tools");
   }
 
   static override styles = [sharedStyles, figureStyles];

@@ -42,7 +42,7 @@ export class StrataOnboarding extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "view", "comments");
   }
 
   static override styles = [

@@ -22,7 +22,7 @@ export class StrataPeopleOverlay extends LitElement {
 
   constructor() {
     super();
-    followSession(this);
+    followSession(this, "together", "view");
   }
 
   static override styles = [
