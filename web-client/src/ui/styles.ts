@@ -310,28 +310,16 @@ export const formStyles = css`
  * beside each other is the dialog's.
  */
 export const linkMakingStyles = css`
-  form,
-  .made {
+  form {
     display: grid;
     gap: 0.75rem;
     padding: 0.875rem;
-    border-radius: var(--radius);
-  }
-  form {
     border: var(--edge) solid var(--line);
+    border-radius: var(--radius);
   }
   .fields {
     display: grid;
     gap: 0.75rem;
-  }
-  .made {
-    background: var(--calm-soft);
-  }
-  .made b {
-    overflow-wrap: anywhere;
-  }
-  .made button {
-    justify-self: start;
   }
 `;
 

@@ -3,7 +3,6 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { repeat } from "lit/directives/repeat.js";
 import { ApiError } from "../net/api-error";
 import type { Api } from "../net/api";
 import { formatBytes } from "../domain/measure";
@@ -14,6 +13,7 @@ import { toldRestored } from "./trash";
 import { ask } from "./dialog";
 import { icon, type IconName } from "./icons";
 import { notices } from "./notices";
+import { rowList, rowListStyles, type ListedRow } from "./row-list";
 import { sharedStyles } from "./styles";
 import { texts } from "../texts";
 import { toldAgo, toldDate } from "../domain/times";
@@ -39,58 +39,13 @@ export class StrataTrashDialog extends LitElement {
 
   static override styles = [
     sharedStyles,
+    rowListStyles,
     css`
-      ul {
-        display: grid;
-        margin: 0;
-        padding: 0;
-        list-style: none;
-      }
-      li {
-        display: grid;
-        grid-template-columns: auto minmax(0, 1fr) auto;
-        align-items: center;
-        gap: 4px 0.75rem;
-        padding: 0.625rem 0;
-        border-top: var(--edge) solid var(--line);
-      }
-      li:first-child {
-        border-top: 0;
-      }
-      li > .glyph {
-        color: var(--ink-soft);
-      }
-      .about {
-        display: grid;
-        gap: 2px;
-        min-width: 0;
-      }
-      b {
-        font-weight: 600;
-        overflow-wrap: anywhere;
-        unicode-bidi: plaintext;
-      }
-      .hint {
-        overflow-wrap: anywhere;
-      }
-      .buttons {
-        display: flex;
-        flex-wrap: wrap;
-        gap: 0.5rem;
-      }
       .done {
         color: var(--calm);
       }
       .more {
         justify-self: start;
-      }
-      @media (max-width: 560px) {
-        li {
-          grid-template-columns: auto minmax(0, 1fr);
-        }
-        .buttons {
-          grid-column: 2;
-        }
       }
     `,
   ];
@@ -116,17 +71,11 @@ export class StrataTrashDialog extends LitElement {
 
   private entries({ entries, total }: BinList): TemplateResult {
     if (entries.length === 0) return html`<p>${words.none}</p>`;
-    return html`<ul>
-        ${repeat(
-          entries,
-          ({ id }) => id,
-          (entry) => this.row(entry),
-        )}
-      </ul>
+    return html`${rowList(entries, (entry) => this.row(entry))}
       ${entries.length < total ? html`<button class="more" ?disabled=${this._busy} @click=${() => void this.attempt(() => this.readMore())}>${words.more}</button>` : nothing}`;
   }
 
-  private row(entry: BinEntry): TemplateResult {
+  private row(entry: BinEntry): ListedRow {
     const { kind, name, user, full_name: fullName, deleted, erased, bytes } = entry;
     const where = entry.model_name ?? entry.table_name;
     const facts = [
@@ -139,22 +88,18 @@ export class StrataTrashDialog extends LitElement {
       words.erased_on(toldDate(erased)),
       bytes === undefined ? "" : formatBytes(bytes),
     ];
-    return html`<li data-entry=${entry.id}>
-      ${icon(kIcons[kind])}
-      <div class="about">
-        <b>${name}</b>
-        <span class="hint">${kind === "model" || where === undefined ? words.kinds[kind] : words.where[kind](where)}</span>
-        <span class="hint">${facts.filter(Boolean).join(" · ")}</span>
-      </div>
-      <div class="buttons">
-        <button ?disabled=${this._busy} aria-label=${words.restore_of(name)} @click=${() => void this.restore(entry)}>${icon("undo")}${words.restore}</button>
+    return {
+      name,
+      glyph: icon(kIcons[kind]),
+      about: html`<span class="hint">${kind === "model" || where === undefined ? words.kinds[kind] : words.where[kind](where)}</span>
+        <span class="hint">${facts.filter(Boolean).join(" · ")}</span>`,
+      tools: html`<button ?disabled=${this._busy} aria-label=${words.restore_of(name)} @click=${() => void this.restore(entry)}>${icon("undo")}${words.restore}</button>
         ${
           kind === "record"
             ? nothing
             : html`<button class="icon quiet" ?disabled=${this._busy} aria-label=${words.erase_of(name)} title=${words.erase} @click=${() => void this.erase(entry)}>${icon("trash")}</button>`
-        }
-      </div>
-    </li>`;
+        }`,
+    };
   }
 
   private async read(): Promise<void> {

@@ -3,7 +3,6 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { repeat } from "lit/directives/repeat.js";
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
 import { formatList } from "../../core/locale";
@@ -16,7 +15,8 @@ import {
 } from "../../domain/people";
 import type { Project, ScriptToken, ScriptTokenMade, SignInSession } from "../../core/protocol.gen";
 import { kRoles, type Me, type Role } from "../../core/types";
-import "../../ui/copy-field";
+import "../../ui/made-link";
+import { rowList, rowListStyles, type ListedRow } from "../../ui/row-list";
 import { ask } from "../../ui/dialog";
 import { passwordWords } from "./entry";
 import { icon } from "../../ui/icons";
@@ -52,6 +52,7 @@ export class StrataAccountDialog extends LitElement {
     chipStyles,
     choicesStyles,
     passwordStyles,
+    rowListStyles,
     css`
       section {
         display: grid;
@@ -79,31 +80,6 @@ export class StrataAccountDialog extends LitElement {
       form > button {
         justify-self: start;
       }
-      ul {
-        display: grid;
-        margin: 0;
-        padding: 0;
-        list-style: none;
-      }
-      ul:empty {
-        display: none;
-      }
-      li {
-        display: flex;
-        align-items: center;
-        gap: 0.75rem;
-        padding: 0.4375rem 0;
-      }
-      li + li {
-        border-top: var(--edge) solid var(--line);
-      }
-      li b {
-        font-weight: 600;
-        overflow-wrap: anywhere;
-      }
-      li .hint {
-        display: block;
-      }
       .done {
         color: var(--calm);
       }
@@ -113,16 +89,6 @@ export class StrataAccountDialog extends LitElement {
       .choices small {
         display: block;
         margin-top: 5px;
-      }
-      .made {
-        display: grid;
-        gap: 0.625rem;
-        padding: 0.875rem;
-        border-radius: var(--radius);
-        background: var(--calm-soft);
-      }
-      .made p {
-        overflow-wrap: anywhere;
       }
       pre {
         margin: 0;
@@ -164,9 +130,7 @@ export class StrataAccountDialog extends LitElement {
         ${
           withMore.length > 0
             ? html`<p class="caption" id="in_projects">${words.in_projects}</p>
-              <ul aria-labelledby="in_projects">
-              ${withMore.map((project) => this.projectRow(project))}
-            </ul>`
+              ${rowList(withMore, (project) => this.projectRow(project), { labelledBy: "in_projects" })}`
             : nothing
         }
         ${this.nameForm(me)} ${this.note("name")}
@@ -177,13 +141,7 @@ export class StrataAccountDialog extends LitElement {
       </section>
       <section aria-labelledby="sessions">
         <h3 id="sessions">${words.sessions}</h3>
-        <ul>
-          ${repeat(
-            this._sessions,
-            ({ id }) => id,
-            (session) => this.sessionRow(session),
-          )}
-        </ul>
+        ${rowList(this._sessions, (session) => this.sessionRow(session))}
         ${
           this._sessions.length > 1
             ? html`<button class="end" ?disabled=${this._busy} @click=${() => void this.endOthers()}>${words.sign_out_others}</button>`
@@ -196,13 +154,7 @@ export class StrataAccountDialog extends LitElement {
         <p class="hint">${words.tokens_lead}</p>
         ${this._made ? this.made(this._made) : nothing}
         ${this._tokens?.length === 0 && !this._adding ? html`<p class="hint">${words.no_tokens}</p>` : nothing}
-        <ul>
-          ${repeat(
-            this._tokens ?? [],
-            ({ id }) => id,
-            (token) => this.tokenRow(token),
-          )}
-        </ul>
+        ${rowList(this._tokens ?? [], (token) => this.tokenRow(token))}
         ${
           this._adding
             ? this.tokenForm()
@@ -260,30 +212,28 @@ export class StrataAccountDialog extends LitElement {
   }
 
   /** Where a role comes from, too, so that they know whom to ask. */
-  private projectRow({ name, role, groups }: Project): TemplateResult {
+  private projectRow({ name, role, groups }: Project): ListedRow {
     const told = texts.roles[role ?? "guest"];
-    return html`<li>
-      <div class="grow"><b>${name}</b> <span class="hint">${groups ? words.role_by_groups(told, formatList(groups)) : told}</span></div>
-    </li>`;
+    const where = groups ? words.role_by_groups(told, formatList(groups)) : told;
+    return { name, about: html`<span class="hint">${where}</span>` };
   }
 
-  private sessionRow(session: SignInSession): TemplateResult {
+  private sessionRow(session: SignInSession): ListedRow {
     const { browser, system } = browserOf(session.agent);
     const where = words.browser(browser, system);
     const when = session.last_used
       ? words.last_used(toldTime(session.last_used))
       : words.since(toldTime(session.created));
-    return html`<li>
-      <div class="grow"><b title=${session.agent}>${where}</b> <span class="hint">${when}</span></div>
-      ${
-        session.current
-          ? html`<span class="chip">${words.this_browser}</span>`
-          : html`<button ?disabled=${this._busy} aria-label=${words.sign_out_of(where)} @click=${() => void this.endSession(session)}>${words.sign_out}</button>`
-      }
-    </li>`;
+    return {
+      name: html`<span title=${session.agent}>${where}</span>`,
+      about: html`<span class="hint">${when}</span>`,
+      tools: session.current
+        ? html`<span class="chip">${words.this_browser}</span>`
+        : html`<button ?disabled=${this._busy} aria-label=${words.sign_out_of(where)} @click=${() => void this.endSession(session)}>${words.sign_out}</button>`,
+    };
   }
 
-  private tokenRow(token: ScriptToken): TemplateResult {
+  private tokenRow(token: ScriptToken): ListedRow {
     const expired = token.expires !== undefined && new Date(token.expires) < new Date();
     const until =
       token.expires === undefined
@@ -299,19 +249,18 @@ export class StrataAccountDialog extends LitElement {
         : words.token_only(
             this._projects.find(({ slug }) => slug === token.project)?.name ?? token.project,
           );
-    return html`<li>
-      <div class="grow"><b>${token.name}</b> <span class="hint">${words.token_line(texts.roles[token.role], where, until, used)}</span></div>
-      <button ?disabled=${this._busy} aria-label=${words.token_revoke(token.name)} @click=${() => void this.revoke(token)}>${words.revoke}</button>
-    </li>`;
+    return {
+      name: token.name,
+      about: html`<span class="hint">${words.token_line(texts.roles[token.role], where, until, used)}</span>`,
+      tools: html`<button ?disabled=${this._busy} aria-label=${words.token_revoke(token.name)} @click=${() => void this.revoke(token)}>${words.revoke}</button>`,
+    };
   }
 
   private made({ secret, token }: ScriptTokenMade): TemplateResult {
-    return html`<div class="made" role="status">
-      <p>${words.token_made(token.name)}</p>
-      <strata-copy-field follows_form label=${words.token_made(token.name)} .text=${secret}></strata-copy-field>
+    return html`<strata-made-link heading=${words.token_made(token.name)} text=${secret}>
       <p class="caption">${words.token_example}</p>
       <pre>curl -H "Authorization: Bearer ${secret}" ${location.origin}/api/v1/models</pre>
-    </div>`;
+    </strata-made-link>`;
   }
 
   private rolesOfToken(): Role[] {

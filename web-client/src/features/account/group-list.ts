@@ -3,7 +3,6 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { repeat } from "lit/directives/repeat.js";
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
 import type { Group, Person } from "../../core/protocol.gen";
@@ -12,6 +11,7 @@ import "./group-members-dialog";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
 import "./project-roles-dialog";
+import { rowList, rowListStyles, type ListedRow } from "../../ui/row-list";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
@@ -31,6 +31,7 @@ export class StrataGroupList extends LitElement {
 
   static override styles = [
     sharedStyles,
+    rowListStyles,
     css`
       :host {
         display: grid;
@@ -44,30 +45,6 @@ export class StrataGroupList extends LitElement {
         gap: 6px 10px;
       }
       form .error {
-        grid-column: 1 / -1;
-      }
-      ul {
-        display: grid;
-        margin: 0;
-        padding: 0;
-        list-style: none;
-      }
-      li {
-        display: grid;
-        grid-template-columns: 1fr auto;
-        align-items: center;
-        gap: 2px 12px;
-        padding: 8px 0;
-        border-top: var(--edge) solid var(--line);
-      }
-      li b {
-        font-weight: 600;
-        overflow-wrap: anywhere;
-      }
-      li .hint {
-        display: block;
-      }
-      li > .error {
         grid-column: 1 / -1;
       }
     `,
@@ -114,13 +91,7 @@ export class StrataGroupList extends LitElement {
             ? html`<p class="hint" role="status">${texts.loading}</p>`
             : this._groups.length === 0
               ? html`<p class="hint">${words.none}</p>`
-              : html`<ul aria-label=${words.title}>
-                ${repeat(
-                  this._groups,
-                  ({ id }) => id,
-                  (group) => this.row(group),
-                )}
-              </ul>`
+              : rowList(this._groups, (group) => this.row(group), { label: words.title })
       }
       ${
         this._membersOf
@@ -134,20 +105,20 @@ export class StrataGroupList extends LitElement {
       }`;
   }
 
-  private row(group: Group): TemplateResult {
+  private row(group: Group): ListedRow {
     const { id, name, people, projects } = group;
-    const problem = this._rowProblem?.id === id ? this._rowProblem.text : "";
-    return html`<li>
-      <div><b>${name}</b><span class="hint numeric">${words.about(people, projects)}</span></div>
-      <strata-menu label=${words.options(name)}>
+    return {
+      name,
+      about: html`<span class="hint numeric">${words.about(people, projects)}</span>`,
+      tools: html`<strata-menu label=${words.options(name)}>
         <button class="quiet" role="menuitem" @click=${() => (this._membersOf = group)}>${icon("people")}${words.members}</button>
         <button class="quiet" role="menuitem" @click=${() => (this._rolesOf = group)}>${icon("layers")}${texts.site_people.projects}</button>
         <button class="quiet" role="menuitem" @click=${() => void this.rename(group)}>${icon("edit")}${words.rename}</button>
         <hr />
         <button class="quiet" role="menuitem" @click=${() => void this.deleteGroup(group)}>${icon("trash")}${texts.site_people.delete}</button>
-      </strata-menu>
-      ${problem ? html`<span class="error" role="alert">${problem}</span>` : nothing}
-    </li>`;
+      </strata-menu>`,
+      note: this._rowProblem?.id === id ? { kind: "error", text: this._rowProblem.text } : null,
+    };
   }
 
   /** Of what a dialog changed. */

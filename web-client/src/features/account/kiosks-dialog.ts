@@ -3,13 +3,13 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { repeat } from "lit/directives/repeat.js";
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
 import { kSilentMs, stateOfKiosk } from "../../domain/kiosks";
 import { readNumber } from "../../core/locale";
 import type { Kiosk, KioskMade } from "../../core/protocol.gen";
-import "../../ui/copy-field";
+import "../../ui/made-link";
+import { rowList, rowListStyles, type ListedRow } from "../../ui/row-list";
 import { ask } from "../../ui/dialog";
 import { icon } from "../../ui/icons";
 import { numberInput } from "../../ui/number-input";
@@ -47,6 +47,7 @@ export class StrataKiosksDialog extends LitElement {
     sharedStyles,
     chipStyles,
     linkMakingStyles,
+    rowListStyles,
     numberFieldStyles,
     css`
       .fields {
@@ -55,53 +56,6 @@ export class StrataKiosksDialog extends LitElement {
       }
       button.new {
         justify-self: start;
-      }
-      ul {
-        display: grid;
-        margin: 0;
-        padding: 0;
-        list-style: none;
-      }
-      li {
-        display: grid;
-        grid-template-columns: minmax(0, 1fr) auto;
-        align-items: center;
-        gap: 4px 0.875rem;
-        padding: 0.625rem 0;
-        border-top: var(--edge) solid var(--line);
-      }
-      li:first-child {
-        border-top: 0;
-      }
-      .about {
-        display: grid;
-        gap: 2px;
-        min-width: 0;
-      }
-      .about > .row {
-        flex-wrap: wrap;
-        gap: 4px 0.5rem;
-      }
-      b {
-        font-weight: 600;
-        overflow-wrap: anywhere;
-        unicode-bidi: plaintext;
-      }
-      .hint {
-        overflow-wrap: anywhere;
-      }
-      li .buttons {
-        display: flex;
-        flex-wrap: wrap;
-        gap: 0.5rem;
-      }
-      li .error,
-      li .done {
-        grid-column: 1 / -1;
-        font-size: 0.86rem;
-      }
-      li .done {
-        color: var(--calm);
       }
       .chip.silent,
       .chip.asked {
@@ -118,7 +72,6 @@ export class StrataKiosksDialog extends LitElement {
         color: var(--accent);
       }
       @media (max-width: 560px) {
-        li,
         .fields {
           grid-template-columns: minmax(0, 1fr);
         }
@@ -159,13 +112,7 @@ export class StrataKiosksDialog extends LitElement {
         kiosks
           ? kiosks.length === 0
             ? html`<p>${tour ? words.none_of : words.none}</p>`
-            : html`<ul>
-              ${repeat(
-                [...kiosks].reverse(),
-                ({ id }) => id,
-                (kiosk) => this.row(kiosk),
-              )}
-            </ul>`
+            : rowList([...kiosks].reverse(), (kiosk) => this.row(kiosk))
           : html`<p class="hint" role="status" ?hidden=${this._problem !== ""}>${texts.loading}</p>`
       }
       ${
@@ -177,34 +124,26 @@ export class StrataKiosksDialog extends LitElement {
     </strata-dialog>`;
   }
 
-  private row(kiosk: Kiosk): TemplateResult {
+  private row(kiosk: Kiosk): ListedRow {
     const state = stateOfKiosk(kiosk);
     const ended = state === "revoked" || state === "expired";
-    const note = this._note?.id === kiosk.id ? this._note : null;
-    return html`<li aria-label=${kiosk.name}>
-      <div class="about">
-        <div class="row">
-          <b>${kiosk.name}</b>
-          <span class="chip ${state}">${words.states[state]}</span>
-          ${kiosk.wants_reload && !ended ? html`<span class="chip asked">${words.asked}</span>` : nothing}
-        </div>
-        ${
-          this.tour
-            ? nothing
-            : html`<span class="hint">${kiosk.tour_name} · <a class="text" href=${pathOfModel(kiosk.model)} @click=${this.onLink}>${kiosk.model_name}</a></span>`
-        }
-        <span class="hint">${this.told(kiosk)}</span>
-      </div>
-      ${
-        ended
+    return {
+      name: kiosk.name,
+      label: kiosk.name,
+      beside: html`<span class="chip ${state}">${words.states[state]}</span>
+        ${kiosk.wants_reload && !ended ? html`<span class="chip asked">${words.asked}</span>` : nothing}`,
+      about: html`${
+        this.tour
           ? nothing
-          : html`<div class="buttons">
-            <button ?disabled=${kiosk.wants_reload} aria-label=${words.reload_of(kiosk.name)} @click=${() => void this.reload(kiosk)}>${icon("redo")}${words.reload}</button>
-            <button aria-label=${words.revoke_of(kiosk.name)} @click=${() => void this.revoke(kiosk)}>${words.revoke}</button>
-          </div>`
+          : html`<span class="hint">${kiosk.tour_name} · <a class="text" href=${pathOfModel(kiosk.model)} @click=${this.onLink}>${kiosk.model_name}</a></span>`
       }
-      ${note ? html`<span class=${note.kind} role=${note.kind === "error" ? "alert" : "status"}>${note.text}</span>` : nothing}
-    </li>`;
+        <span class="hint">${this.told(kiosk)}</span>`,
+      tools: ended
+        ? undefined
+        : html`<button ?disabled=${kiosk.wants_reload} aria-label=${words.reload_of(kiosk.name)} @click=${() => void this.reload(kiosk)}>${icon("redo")}${words.reload}</button>
+            <button aria-label=${words.revoke_of(kiosk.name)} @click=${() => void this.revoke(kiosk)}>${words.revoke}</button>`,
+      note: this._note?.id === kiosk.id ? this._note : null,
+    };
   }
 
   private onLink(event: MouseEvent): void {
@@ -248,15 +187,13 @@ export class StrataKiosksDialog extends LitElement {
   }
 
   private link({ path, kiosk }: KioskMade): TemplateResult {
-    const title = words.link(kiosk.name);
-    return html`<div class="made" role="status">
-      <div>
-        <b>${title}</b>
-        <p>${words.link_lead}</p>
-      </div>
-      <strata-copy-field follows_form label=${title} .text=${new URL(path, location.origin).href}></strata-copy-field>
-      <button @click=${() => (this._made = null)}>${words.link_done}</button>
-    </div>`;
+    return html`<strata-made-link
+      heading=${words.link(kiosk.name)}
+      lead=${words.link_lead}
+      text=${new URL(path, location.origin).href}
+      done=${words.link_done}
+      @done=${() => (this._made = null)}
+    ></strata-made-link>`;
   }
 
   private begin(): void {

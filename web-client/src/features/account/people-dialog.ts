@@ -9,7 +9,7 @@ import type { Api } from "../../net/api";
 import { called, findPeople, isUserName, mayChange, rolesToGive } from "../../domain/people";
 import type { Group, Invitation, Person, PersonPatch } from "../../core/protocol.gen";
 import type { Me, Role } from "../../core/types";
-import "../../ui/copy-field";
+import "../../ui/made-link";
 import { ask } from "../../ui/dialog";
 import "./group-list";
 import { icon } from "../../ui/icons";
@@ -411,15 +411,13 @@ export class StrataPeopleDialog extends LitElement {
   }
 
   private link({ path, expires, user }: Invitation): TemplateResult {
-    const title = words.link(called(user));
-    return html`<div class="made" role="status">
-      <div>
-        <b>${title}</b>
-        <p>${words.link_lead(toldTime(expires))}</p>
-      </div>
-      <strata-copy-field follows_form label=${title} .text=${new URL(path, location.origin).href}></strata-copy-field>
-      <button @click=${() => (this._invitation = null)}>${words.link_done}</button>
-    </div>`;
+    return html`<strata-made-link
+      heading=${words.link(called(user))}
+      lead=${words.link_lead(toldTime(expires))}
+      text=${new URL(path, location.origin).href}
+      done=${words.link_done}
+      @done=${() => (this._invitation = null)}
+    ></strata-made-link>`;
   }
 
   private beginToInvite(): void {

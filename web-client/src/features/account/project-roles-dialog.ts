@@ -1,9 +1,8 @@
 // <strata-project-roles-dialog>: what one person may do in each project, beside what they may do
 // everywhere and what their groups give them there; or what a group may do.
 
-import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { repeat } from "lit/directives/repeat.js";
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
 import { formatList } from "../../core/locale";
@@ -11,12 +10,14 @@ import { called, roleByGroups } from "../../domain/people";
 import type { Group, MemberList, Person, Project, ProjectRole } from "../../core/protocol.gen";
 import { kProjectRoles, kRoles } from "../../core/types";
 import "../../ui/dialog";
+import { rowList, rowListStyles, type ListedRow } from "../../ui/row-list";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.project_roles;
 
 interface Row {
+  id: number; // of the project
   project: Project;
   role: ProjectRole | null; // of their own
   by_groups: ReturnType<typeof roleByGroups>;
@@ -32,41 +33,7 @@ export class StrataProjectRolesDialog extends LitElement {
   @state() private _rows: readonly Row[] | null = null;
   @state() private _problem = "";
 
-  static override styles = [
-    sharedStyles,
-    css`
-      ul {
-        display: grid;
-        margin: 0;
-        padding: 0;
-        list-style: none;
-      }
-      li {
-        display: grid;
-        grid-template-columns: 1fr auto;
-        align-items: center;
-        gap: 4px 12px;
-        padding: 8px 0;
-        border-top: var(--edge) solid var(--line);
-      }
-      li b {
-        font-weight: 600;
-        overflow-wrap: anywhere;
-      }
-      li select {
-        width: auto;
-      }
-      li .error,
-      li .done,
-      li .hint {
-        grid-column: 1 / 3;
-        font-size: 0.86rem;
-      }
-      li .done {
-        color: var(--calm);
-      }
-    `,
-  ];
+  static override styles = [sharedStyles, rowListStyles];
 
   override connectedCallback(): void {
     super.connectedCallback();
@@ -86,6 +53,7 @@ export class StrataProjectRolesDialog extends LitElement {
         ),
       );
       this._rows = projects.map((project, i) => ({
+        id: project.id,
         project,
         ...this.rolesIn(members[i]!),
         note: null,
@@ -116,29 +84,23 @@ export class StrataProjectRolesDialog extends LitElement {
           ? html`<p class="error" role="alert">${this._problem}</p>
             <button @click=${() => void this.read()}>${texts.try_again}</button>`
           : this._rows
-            ? html`<ul>
-              ${repeat(
-                this._rows,
-                ({ project }) => project.id,
-                (row) => this.row(row),
-              )}
-            </ul>`
+            ? rowList(this._rows, (row) => this.row(row))
             : html`<p class="hint" role="status">${texts.loading}</p>`
       }
     </strata-dialog>`;
   }
 
-  private row(row: Row): TemplateResult {
+  private row(row: Row): ListedRow {
     const { project, role, note } = row;
-    return html`<li>
-      <b>${project.name}</b>
-      <select aria-label=${words.role_in(project.name)} @change=${(event: Event) => void this.change(row, event.target as HTMLSelectElement)}>
+    return {
+      name: project.name,
+      about: this.origin(row),
+      tools: html`<select aria-label=${words.role_in(project.name)} @change=${(event: Event) => void this.change(row, event.target as HTMLSelectElement)}>
         <option value="" ?selected=${role === null}>${this.group ? words.group_none : words.none}</option>
         ${kProjectRoles.map((each) => html`<option value=${each} ?selected=${each === role}>${texts.roles[each]}</option>`)}
-      </select>
-      ${this.origin(row)}
-      ${note ? html`<span class=${note.kind} role=${note.kind === "error" ? "alert" : "status"}>${note.text}</span>` : nothing}
-    </li>`;
+      </select>`,
+      note,
+    };
   }
 
   /** What counts there, where that is what a group gives. */
@@ -155,7 +117,7 @@ export class StrataProjectRolesDialog extends LitElement {
     const role = kProjectRoles.find((each) => each === select.value) ?? null;
     const say = (now: ProjectRole | null, kind: "error" | "done", text: string): void => {
       this._rows = (this._rows ?? []).map((row) =>
-        row.project.id === project.id ? { ...row, role: now, note: { kind, text } } : row,
+        row.id === project.id ? { ...row, role: now, note: { kind, text } } : row,
       );
     };
     try {

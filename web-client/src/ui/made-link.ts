@@ -1,0 +1,47 @@
+// <strata-made-link>: a link or a secret that was just made, to be copied now: it is not shown again.
+// What is slotted stands below it. Says "done" where it is put away, with a button named `done`.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import "./copy-field";
+import { sharedStyles } from "./styles";
+
+@customElement("strata-made-link")
+export class StrataMadeLink extends LitElement {
+  @property() heading = "";
+  @property() lead = "";
+  @property() text = "";
+  @property() done = "";
+
+  static override styles = [
+    sharedStyles,
+    css`
+      :host {
+        display: block;
+      }
+      div[role] {
+        display: grid;
+        gap: 0.75rem;
+        padding: 0.875rem;
+        border-radius: var(--radius);
+        background: var(--calm-soft);
+        overflow-wrap: anywhere;
+      }
+      button {
+        justify-self: start;
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    return html`<div role="status">
+      <div>
+        <b>${this.heading}</b>
+        ${this.lead ? html`<p>${this.lead}</p>` : nothing}
+      </div>
+      <strata-copy-field follows_form label=${this.heading} .text=${this.text}></strata-copy-field>
+      <slot></slot>
+      ${this.done ? html`<button @click=${() => this.dispatchEvent(new CustomEvent("done"))}>${this.done}</button>` : nothing}
+    </div>`;
+  }
+}

@@ -1,0 +1,110 @@
+// The list of a dialog: of each thing what it is called, what is said of it, what can be done with
+// it, and what became of that.
+
+import { css, html, nothing, type TemplateResult } from "lit";
+import { repeat } from "lit/directives/repeat.js";
+
+export interface Note {
+  kind: "error" | "done";
+  text: string;
+}
+
+export interface ListedRow {
+  name: unknown;
+  /** For who hears of the row as a whole. */
+  label?: string;
+  /** Before the name. */
+  glyph?: unknown;
+  /** After the name. */
+  beside?: unknown;
+  /** Below it. */
+  about?: unknown;
+  tools?: unknown;
+  note?: Note | null;
+}
+
+/** With `rowListStyles`. `label`: the list's own name, or that of an element by its id. */
+export const rowList = <T extends { id: number | string }>(
+  things: readonly T[],
+  row: (thing: T) => ListedRow,
+  { label, labelledBy }: { label?: string; labelledBy?: string } = {},
+): TemplateResult =>
+  html`<ul class="rows" aria-label=${label ?? nothing} aria-labelledby=${labelledBy ?? nothing}>
+    ${repeat(
+      things,
+      ({ id }) => id,
+      (thing) => listed(row(thing)),
+    )}
+  </ul>`;
+
+const listed = ({ name, label, glyph, beside, about, tools, note }: ListedRow): TemplateResult =>
+  html`<li aria-label=${label ?? nothing}>
+    ${glyph ?? nothing}
+    <div class="about">
+      <div class="row"><b>${name}</b>${beside ?? nothing}</div>
+      ${about ?? nothing}
+    </div>
+    ${tools ? html`<div class="buttons">${tools}</div>` : nothing}
+    ${note ? html`<span class=${note.kind} role=${note.kind === "error" ? "alert" : "status"}>${note.text}</span>` : nothing}
+  </li>`;
+
+export const rowListStyles = css`
+  .rows {
+    display: grid;
+    margin: 0;
+    padding: 0;
+    list-style: none;
+  }
+  .rows:empty {
+    display: none;
+  }
+  .rows > li {
+    display: flex;
+    flex-wrap: wrap;
+    align-items: center;
+    gap: 4px 0.75rem;
+    padding: 0.5rem 0;
+  }
+  .rows > li + li {
+    border-top: var(--edge) solid var(--line);
+  }
+  .rows > li > .glyph {
+    flex: none;
+    color: var(--ink-soft);
+  }
+  .rows .about {
+    display: grid;
+    flex: 1 1 12rem;
+    gap: 2px;
+    min-width: 0;
+  }
+  .rows .about > .row {
+    flex-wrap: wrap;
+    gap: 4px 0.5rem;
+  }
+  .rows b {
+    font-weight: 600;
+    overflow-wrap: anywhere;
+    unicode-bidi: plaintext;
+  }
+  .rows .hint {
+    overflow-wrap: anywhere;
+  }
+  .rows .buttons {
+    display: flex;
+    flex-wrap: wrap;
+    align-items: center;
+    gap: 0.5rem;
+  }
+  .rows select {
+    width: auto;
+  }
+  .rows > li > .error,
+  .rows > li > .done {
+    flex-basis: 100%;
+    font-size: 0.86rem;
+  }
+  .rows > li > .done {
+    color: var(--calm);
+  }
+`;
