@@ -8,7 +8,7 @@ import { ApiError } from "../net/api-error";
 import { type Api, kAsItIs } from "../net/api";
 import { labelOf } from "../domain/cells";
 import type { Project, TourEntry } from "../core/protocol.gen";
-import type { Column, Layer, Me, Model, Role } from "../core/types";
+import type { Column, Me, Model, Role } from "../core/types";
 import { kPaintingTools, type ToolName } from "../tools/tool";
 import "../ui/account-menu";
 import "../ui/status-page";
@@ -30,6 +30,7 @@ import "../features/layers/layer-panel";
 import "../features/painting/paint-chip";
 import { modelStyles } from "./model-styles";
 import "../features/measuring/measure-panel";
+import { modelDialog, type OpenDialog } from "./open-dialog";
 import { OpenModelSession } from "./open-model-session";
 import { notices } from "../ui/notices";
 import { hasPart, loadPartLater } from "./page-parts";
@@ -65,15 +66,6 @@ import { wantsLessMotion } from "../session/view-control";
 import type { ViewRequest } from "../session/requests";
 import "../features/appearance/view-panel";
 
-type OpenDialog =
-  | LayerPanelRequest
-  | TablePanelRequest
-  | ViewRequest
-  | WhereRequest
-  | Extract<TourRequest, { dialog: "kiosks" }>
-  | { dialog: "scale" | "help" | "about" | "orthophoto" }
-  | null;
-
 const kNarrow = 820; // pixels of a window where the panel lies over the model
 // pixels where words have their usual size; it grows with them
 const kPanelWidth = { least: 270, first: 330, most: 620 };
@@ -89,7 +81,7 @@ export class StrataModelPage extends LitElement {
   @property({ attribute: "model_id" }) modelId = "";
   /** All that this person sees. */
   @property({ attribute: false }) projects: readonly Project[] = [];
-  @state() private _dialog: OpenDialog = null;
+  @state() private _dialog: OpenDialog | null = null;
   // beside dialogs: while a stop is tried, views may be kept
   @state() private _tourEditor: { tour: TourEntry | null } | null = null;
   @state() private _missing: { heading: string; lead: string } | null = null;
@@ -475,105 +467,16 @@ export class StrataModelPage extends LitElement {
     </section>`;
   }
 
-  private dialog(session: OpenModelSession): TemplateResult {
-    const closed = (): void => {
-      this._dialog = null;
-    };
-    const dialog = this._dialog;
-    if (dialog && !hasPart("model_dialogs", this)) return html``;
-    switch (dialog?.dialog) {
-      case undefined:
-        return html``;
-      case "create":
-        return html`<strata-layer-dialog .session=${session} @closed=${closed}></strata-layer-dialog>`;
-      case "template":
-        return html`<strata-template-dialog .session=${session} @closed=${closed}></strata-template-dialog>`;
-      case "terms":
-        return html`<strata-terms-dialog .session=${session} .table=${dialog.table} .file=${dialog.file} @closed=${closed}></strata-terms-dialog>`;
-      case "transfer":
-        return html`<strata-transfer-dialog .session=${session} @closed=${closed}></strata-transfer-dialog>`;
-      case "edit":
-        return html`<strata-layer-dialog .session=${session} .layer=${newest(session, dialog.layer)} @closed=${closed}></strata-layer-dialog>`;
-      case "colors":
-        return html`<strata-color-dialog .session=${session} .layer=${newest(session, dialog.layer)} @closed=${closed}></strata-color-dialog>`;
-      case "statistics":
-        return html`<strata-statistics-dialog
-          .session=${session}
-          .layer=${newest(session, dialog.layer)}
-          @closed=${closed}
-        ></strata-statistics-dialog>`;
-      case "where":
-        return html`<strata-where-dialog
-          .session=${session}
-          .layer=${newest(session, dialog.layer)}
-          @closed=${closed}
-        ></strata-where-dialog>`;
-      case "record":
-        return html`<strata-record-dialog
-          .session=${session}
-          .layer=${newest(session, dialog.layer)}
-          .key=${dialog.key}
-          @closed=${closed}
-        ></strata-record-dialog>`;
-      case "delete-record":
-        return html`<strata-delete-record-dialog
-          .session=${session}
-          .table=${dialog.layer.table ?? 0}
-          .key=${dialog.key}
-          @closed=${closed}
-        ></strata-delete-record-dialog>`;
-      case "column": {
-        const table = session.tables.find(dialog.table);
-        if (!table) return html``;
-        return html`<strata-column-dialog .session=${session} .table=${table} .column=${dialog.column} @closed=${closed}></strata-column-dialog>`;
-      }
-      case "csv":
-        return html`<strata-csv-dialog .session=${session} .table=${dialog.table} .file=${dialog.file} @closed=${closed}></strata-csv-dialog>`;
-      case "photos":
-        return html`<strata-photos-dialog .session=${session} .table=${dialog.table} .files=${dialog.files} @closed=${closed}></strata-photos-dialog>`;
-      case "map":
-        return html`<strata-map-dialog
-          .session=${session}
-          .layer=${newest(session, dialog.layer)}
-          @closed=${closed}
-        ></strata-map-dialog>`;
-      case "view":
-        return html`<strata-view-dialog .session=${session} .view=${dialog.view} @closed=${closed}></strata-view-dialog>`;
-      case "figure":
-        return html`<strata-figure-dialog
-          .session=${session}
-          .view=${dialog.view}
-          @aside=${this.makeRoom}
-          @correct=${() => (this._dialog = { dialog: "scale" })}
-          @closed=${closed}
-        ></strata-figure-dialog>`;
-      case "kiosks":
-        return session.model
-          ? html`<strata-kiosks-dialog
-              .api=${session.api}
-              .tour=${{ project: session.model.project, model: session.model.slug, ...dialog.tour }}
-              @closed=${closed}
-              @signed-out=${() => this.dispatchEvent(new CustomEvent("signed-out"))}
-            ></strata-kiosks-dialog>`
-          : html``;
-      case "orthophoto":
-        return html`<strata-orthophoto-dialog .session=${session} @closed=${closed}></strata-orthophoto-dialog>`;
-      case "scale":
-        return html`<strata-scale-dialog .session=${session} @closed=${closed}></strata-scale-dialog>`;
-      case "help":
-        return html`<strata-help-sheet @closed=${closed} @tour=${() => void this._tour?.start()}></strata-help-sheet>`;
-      case "about":
-        return session.model
-          ? html`<strata-about-sheet
-              .model=${session.model}
-              .viewer=${session.role}
-              .correctable=${session.canCurate}
-              @download-for=${(event: CustomEvent<Model["source_download"]>) => void this.sayWhoDownloads(event.detail)}
-              @closed=${closed}
-              @correct=${() => (this._dialog = { dialog: "scale" })}
-            ></strata-about-sheet>`
-          : html``;
-    }
+  private dialog(session: OpenModelSession): TemplateResult | typeof nothing {
+    if (!this._dialog || !hasPart("model_dialogs", this)) return nothing;
+    return modelDialog(this._dialog, {
+      session,
+      show: (dialog) => (this._dialog = dialog),
+      aside: () => this.makeRoom(),
+      signedOut: () => this.dispatchEvent(new CustomEvent("signed-out")),
+      startTour: () => void this._tour?.start(),
+      sayWhoDownloads: (who) => void this.sayWhoDownloads(who),
+    });
   }
 
   private show(dialog: "help" | "figure"): void {
@@ -689,7 +592,3 @@ function giveBackKeyboard(event: MouseEvent): void {
   for (const element of event.composedPath())
     if (element instanceof HTMLButtonElement) element.blur();
 }
-
-/** The layer as it is now: the request may be older. */
-const newest = (session: OpenModelSession, layer: Layer): Layer =>
-  session.layers.all.find((each) => each.id === layer.id) ?? layer;

@@ -1,0 +1,129 @@
+// Which dialog of a model's page is drawn for what was asked. Their elements come with the part
+// `model_dialogs`.
+
+import { html, nothing, type TemplateResult } from "lit";
+import type { Layer, Model } from "../core/types";
+import type { LayerPanelRequest } from "../features/layers/layer-panel";
+import type { WhereRequest } from "../features/painting/brush-panel";
+import type { ModelSession } from "../session/model-session";
+import type { TablePanelRequest, TourRequest, ViewRequest } from "../session/requests";
+
+export type OpenDialog =
+  | LayerPanelRequest
+  | TablePanelRequest
+  | ViewRequest
+  | WhereRequest
+  | Extract<TourRequest, { dialog: "kiosks" }>
+  | { dialog: "scale" | "help" | "about" | "orthophoto" };
+
+/** The page's part in it. */
+export interface DialogHost {
+  session: ModelSession;
+  /** In place of the one that is open; null: none. */
+  show(dialog: OpenDialog | null): void;
+  /** Something on the model is looked at. */
+  aside(): void;
+  signedOut(): void;
+  startTour(): void;
+  sayWhoDownloads(who: Model["source_download"]): void;
+}
+
+export function modelDialog(dialog: OpenDialog, host: DialogHost): TemplateResult | typeof nothing {
+  const { session } = host;
+  const closed = (): void => host.show(null);
+  switch (dialog.dialog) {
+    case "create":
+      return html`<strata-layer-dialog .session=${session} @closed=${closed}></strata-layer-dialog>`;
+    case "template":
+      return html`<strata-template-dialog .session=${session} @closed=${closed}></strata-template-dialog>`;
+    case "terms":
+      return html`<strata-terms-dialog .session=${session} .table=${dialog.table} .file=${dialog.file} @closed=${closed}></strata-terms-dialog>`;
+    case "transfer":
+      return html`<strata-transfer-dialog .session=${session} @closed=${closed}></strata-transfer-dialog>`;
+    case "edit":
+      return html`<strata-layer-dialog .session=${session} .layer=${newest(session, dialog.layer)} @closed=${closed}></strata-layer-dialog>`;
+    case "colors":
+      return html`<strata-color-dialog .session=${session} .layer=${newest(session, dialog.layer)} @closed=${closed}></strata-color-dialog>`;
+    case "statistics":
+      return html`<strata-statistics-dialog
+        .session=${session}
+        .layer=${newest(session, dialog.layer)}
+        @closed=${closed}
+      ></strata-statistics-dialog>`;
+    case "where":
+      return html`<strata-where-dialog
+        .session=${session}
+        .layer=${newest(session, dialog.layer)}
+        @closed=${closed}
+      ></strata-where-dialog>`;
+    case "record":
+      return html`<strata-record-dialog
+        .session=${session}
+        .layer=${newest(session, dialog.layer)}
+        .key=${dialog.key}
+        @closed=${closed}
+      ></strata-record-dialog>`;
+    case "delete-record":
+      return html`<strata-delete-record-dialog
+        .session=${session}
+        .table=${dialog.layer.table ?? 0}
+        .key=${dialog.key}
+        @closed=${closed}
+      ></strata-delete-record-dialog>`;
+    case "column": {
+      const table = session.tables.find(dialog.table);
+      if (!table) return nothing;
+      return html`<strata-column-dialog .session=${session} .table=${table} .column=${dialog.column} @closed=${closed}></strata-column-dialog>`;
+    }
+    case "csv":
+      return html`<strata-csv-dialog .session=${session} .table=${dialog.table} .file=${dialog.file} @closed=${closed}></strata-csv-dialog>`;
+    case "photos":
+      return html`<strata-photos-dialog .session=${session} .table=${dialog.table} .files=${dialog.files} @closed=${closed}></strata-photos-dialog>`;
+    case "map":
+      return html`<strata-map-dialog
+        .session=${session}
+        .layer=${newest(session, dialog.layer)}
+        @closed=${closed}
+      ></strata-map-dialog>`;
+    case "view":
+      return html`<strata-view-dialog .session=${session} .view=${dialog.view} @closed=${closed}></strata-view-dialog>`;
+    case "figure":
+      return html`<strata-figure-dialog
+        .session=${session}
+        .view=${dialog.view}
+        @aside=${host.aside}
+        @correct=${() => host.show({ dialog: "scale" })}
+        @closed=${closed}
+      ></strata-figure-dialog>`;
+    case "kiosks":
+      return session.model
+        ? html`<strata-kiosks-dialog
+            .api=${session.api}
+            .tour=${{ project: session.model.project, model: session.model.slug, ...dialog.tour }}
+            @closed=${closed}
+            @signed-out=${() => host.signedOut()}
+          ></strata-kiosks-dialog>`
+        : nothing;
+    case "orthophoto":
+      return html`<strata-orthophoto-dialog .session=${session} @closed=${closed}></strata-orthophoto-dialog>`;
+    case "scale":
+      return html`<strata-scale-dialog .session=${session} @closed=${closed}></strata-scale-dialog>`;
+    case "help":
+      return html`<strata-help-sheet @closed=${closed} @tour=${() => host.startTour()}></strata-help-sheet>`;
+    case "about":
+      return session.model
+        ? html`<strata-about-sheet
+            .model=${session.model}
+            .viewer=${session.role}
+            .correctable=${session.canCurate}
+            @download-for=${(event: CustomEvent<Model["source_download"]>) => host.sayWhoDownloads(event.detail)}
+            @closed=${closed}
+            @correct=${() => host.show({ dialog: "scale" })}
+          ></strata-about-sheet>`
+        : nothing;
+  }
+}
+
+/** The layer as it is now: the request may be older. */
+const newest = (session: ModelSession, layer: Layer): Layer =>
+  session.layers.all.find((each) => each.id === layer.id) ?? layer;
