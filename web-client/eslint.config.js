@@ -3,7 +3,9 @@ import eslint from "@eslint/js";
 import tseslint from "typescript-eslint";
 
 export default tseslint.config(
-  { ignores: ["dist/**", "node_modules/**", "src/core/protocol.gen.ts", "src/net/contract.gen.ts"] },
+  {
+    ignores: ["dist/**", "node_modules/**", "src/core/protocol.gen.ts", "src/net/contract.gen.ts"],
+  },
   eslint.configs.recommended,
   {
     files: ["**/*.ts"],
