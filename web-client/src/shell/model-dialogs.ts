@@ -22,3 +22,5 @@ import "../features/tours/tour-dialog";
 import "../features/layers/transfer-dialog";
 import "../features/views/view-dialog";
 import "../features/layers/where-dialog";
+
+export { modelDialog } from "./open-dialog";

@@ -30,10 +30,10 @@ import "../features/layers/layer-panel";
 import "../features/painting/paint-chip";
 import { modelStyles } from "./model-styles";
 import "../features/measuring/measure-panel";
-import { modelDialog, type OpenDialog } from "./open-dialog";
+import type { OpenDialog } from "./open-dialog";
 import { OpenModelSession } from "./open-model-session";
 import { notices } from "../ui/notices";
-import { hasPart, loadPartLater } from "./page-parts";
+import { hasPart, loadPartLater, partOf } from "./page-parts";
 import "../features/records/record-card";
 import "../features/presence/people-menu";
 import { isOneOfSeveral, seesToKiosks } from "../features/home/project-list";
@@ -469,6 +469,7 @@ export class StrataModelPage extends LitElement {
 
   private dialog(session: OpenModelSession): TemplateResult | typeof nothing {
     if (!this._dialog || !hasPart("model_dialogs", this)) return nothing;
+    const { modelDialog } = partOf("model_dialogs") as typeof import("./model-dialogs");
     return modelDialog(this._dialog, {
       session,
       show: (dialog) => (this._dialog = dialog),

@@ -24,14 +24,14 @@ export function setPartLoads(known: PartLoads): void {
   loads = known;
 }
 
-const here = new Set<PagePart>();
+const here = new Map<PagePart, unknown>();
 const loading = new Map<PagePart, Promise<void>>();
 
 function load(part: PagePart): Promise<void> {
   const underWay = loading.get(part);
   if (underWay) return underWay;
   const loaded = loads[part]()
-    .then(() => void here.add(part))
+    .then((module) => void here.set(part, module))
     .finally(() => loading.delete(part));
   loading.set(part, loaded);
   return loaded;
@@ -58,6 +58,9 @@ export function hasPart(part: PagePart, host: { requestUpdate(): void }): boolea
   );
   return false;
 }
+
+/** What a part that is here exports. */
+export const partOf = (part: PagePart): unknown => here.get(part);
 
 /**
  * Loads it while the person looks at something else. Nothing is said when it fails: it is asked for
