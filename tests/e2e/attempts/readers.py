@@ -8,7 +8,7 @@ import time
 from attempts.tools import M, statuses
 from support.cameras import camera_from
 from support.meshes import folded_grid
-from support.process_memory import PeakGrowth
+from support.process_memory import PeakGrowth, rests
 from support.strata_server import LONG_S, StrataServer, wait_for
 
 
@@ -145,6 +145,8 @@ def budgets(server, section, viewer):
 
 def empty_layer(server, section, viewer):
     server.ok("POST", M + "/layers", {"name": "Vast", "type": "u8", "resolution": 16384})
+    # The surface map that a new layer makes the server bake is not the question's.
+    wait_for(lambda: rests(server), "a server that computes nothing")
     with PeakGrowth(server) as growth:
         answer = server.get(M + "/layers/vast/statistics", token=viewer)
     section.tried(

@@ -1,4 +1,6 @@
-"""Memory of a running server, in MB."""
+"""Memory of a running server, in MB, and whether it works."""
+import os
+import time
 
 
 def _of(process, name):
@@ -8,6 +10,19 @@ def _of(process, name):
 
 def resident_mb(server):
     return _of(server.process, "VmRSS")
+
+
+def _processor_s(server):
+    with open(f"/proc/{server.process.pid}/stat", encoding="ascii") as file:
+        fields = file.read().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def rests(server, over_s=1.0):
+    """Whether it takes less than a tenth of a processor over that time: no bake is under way."""
+    first = _processor_s(server)
+    time.sleep(over_s)
+    return _processor_s(server) - first < over_s / 10
 
 
 class PeakGrowth:
