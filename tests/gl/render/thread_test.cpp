@@ -19,10 +19,11 @@ using render::Step;
 // Keeps the thread's first step until released, so that a test can fill the lanes before anything
 // runs.
 struct Gate {
-  std::promise<void> open;
+  std::promise<void> open, reached;
   std::shared_future<void> opened{open.get_future()};
   Job job() {
     return {[this] {
+              reached.set_value();
               opened.wait();
               return Step::done;
             },
@@ -56,6 +57,11 @@ class Lanes : public testing::Test {
     };
     hooks.abort_frames = [](const Error&) {};
     ASSERT_TRUE(thread_->start(std::move(hooks)));
+  }
+  // The thread stands there when this returns: what is posted next waits with everything else.
+  void hold_at(Gate& gate) {
+    ASSERT_TRUE(thread_->post(Lane::ordered, gate.job()));
+    gate.reached.get_future().wait();
   }
   void note(const std::string& what) {
     std::lock_guard lock(mutex_);
@@ -96,7 +102,7 @@ class Lanes : public testing::Test {
 TEST_F(Lanes, edits_go_before_frames_and_frames_before_background) {
   start();
   Gate gate;
-  thread_->post(Lane::ordered, gate.job());
+  hold_at(gate);
   thread_->post(Lane::background, noted("background", 2));
   {
     std::lock_guard lock(mutex_);
@@ -113,7 +119,7 @@ TEST_F(Lanes, edits_go_before_frames_and_frames_before_background) {
 TEST_F(Lanes, an_edit_runs_between_the_slices_of_a_long_background_job) {
   start();
   Gate gate;
-  thread_->post(Lane::ordered, gate.job());
+  hold_at(gate);
   thread_->post(Lane::background, {[this, left = std::make_shared<int>(3)] {
                                      note("slice");
                                      if (*left == 3) {
@@ -129,7 +135,7 @@ TEST_F(Lanes, an_edit_runs_between_the_slices_of_a_long_background_job) {
 TEST_F(Lanes, nothing_overtakes_an_edit_that_waits_for_the_gpu_but_a_frame) {
   start();
   Gate gate;
-  thread_->post(Lane::ordered, gate.job());
+  hold_at(gate);
   auto frame_ran = std::make_shared<bool>(false);
   thread_->post(Lane::ordered, {[this, frame_ran] {
                                   if (!*frame_ran) return Step::waiting;
@@ -154,7 +160,7 @@ TEST_F(Lanes, nothing_overtakes_an_edit_that_waits_for_the_gpu_but_a_frame) {
 TEST_F(Lanes, an_edit_that_yields_shares_the_gpu_with_frames_and_uploads_but_not_with_other_edits) {
   start();
   Gate gate;
-  thread_->post(Lane::ordered, gate.job());
+  hold_at(gate);
   thread_->post(Lane::ordered, {[this, left = std::make_shared<int>(4)] {
                                   note("slice");
                                   return --*left > 0 ? Step::yield : Step::done;
@@ -175,7 +181,7 @@ TEST_F(Lanes, an_edit_that_yields_shares_the_gpu_with_frames_and_uploads_but_not
 TEST_F(Lanes, a_small_frame_whose_turn_it_is_goes_between_the_slices_of_a_long_one) {
   start();
   Gate gate;
-  thread_->post(Lane::ordered, gate.job());
+  hold_at(gate);
   {
     std::lock_guard lock(mutex_);
     frames_.push_back({[this, left = std::make_shared<int>(3)] {
@@ -233,7 +239,7 @@ TEST_F(Lanes, a_full_lane_refuses_but_not_what_must_not_be_lost) {
 TEST_F(Lanes, a_lost_context_answers_all_that_waits_and_goes_on) {
   start();
   Gate gate;
-  thread_->post(Lane::ordered, gate.job());
+  hold_at(gate);
   thread_->post(Lane::ordered, noted("edit"));
   thread_->post(Lane::background, noted("upload"));
   lost_ = true;
@@ -262,7 +268,7 @@ TEST_F(Lanes, the_thread_is_not_ready_while_a_lost_context_cannot_be_replaced) {
 TEST_F(Lanes, stopping_answers_what_waits) {
   start();
   Gate gate;
-  thread_->post(Lane::ordered, gate.job());
+  hold_at(gate);
   thread_->post(Lane::ordered, noted("edit"));
   std::thread stopper([&] { thread_->stop(); });
   std::this_thread::yield();
