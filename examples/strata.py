@@ -12,6 +12,7 @@ that an administrator made for scripts. Copy this file and change it as you need
 
 import json
 import pathlib
+import re
 import time
 import urllib.error
 import urllib.parse
@@ -36,6 +37,9 @@ class Strata:
 
     def request(self, method: str, path: str, body=None, content_type: str | None = None) -> bytes:
         """Sends bytes as they are, text as UTF-8, anything else as JSON."""
+        return self._answer(method, path, body, content_type)[0]
+
+    def _answer(self, method: str, path: str, body=None, content_type: str | None = None):
         headers = {"Authorization": "Bearer " + self.token}
         data = None
         if body is not None:
@@ -52,7 +56,7 @@ class Strata:
         asked = urllib.request.Request(self.base + path, data=data, headers=headers, method=method)
         try:
             with urllib.request.urlopen(asked, timeout=300) as answer:
-                return answer.read()
+                return answer.read(), answer.headers
         except urllib.error.HTTPError as refusal:
             text = refusal.read()
             try:
@@ -67,15 +71,18 @@ class Strata:
     def post(self, path: str, body, content_type: str | None = None):
         return json.loads(self.request("POST", path, body, content_type))
 
-    def all(self, path: str, name: str) -> list:
-        """A whole list, page by page: `name` is its member in the answers."""
+    def all(self, path: str, name: str, page: int = 500) -> list:
+        """A whole list, page by page: `name` is its member in the answers. Each page says in its
+        header `Link` where the next one begins, so that nothing is left out or comes twice while
+        others write."""
         found: list = []
-        join = "&" if "?" in path else "?"
-        while True:
-            page = self.get(f"{path}{join}limit=500&offset={len(found)}")
-            found += page[name]
-            if not page[name] or len(found) >= page.get("total", len(found)):
-                return found
+        following: str | None = f"{path}{'&' if '?' in path else '?'}limit={page}"
+        while following:
+            text, headers = self._answer("GET", following)
+            found += json.loads(text)[name]
+            link = re.search(r'<(?:[^>]*/api/v1)?([^>]*)>; *rel="next"', headers.get("Link", ""))
+            following = link[1] if link else None
+        return found
 
     def wait_for(self, job: str, every_s: float = 0.2) -> dict:
         """The job when it has ended. Raises what went wrong in it."""

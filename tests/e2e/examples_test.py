@@ -47,6 +47,7 @@ def test_the_client_tells_what_was_refused_and_reads_lists_whole(server, monkeyp
         "damage",
         "moisture",
     ]
+    assert len(site.all("/models/wall/layers", "layers", page=1)) == 2, "from two pages"
     with pytest.raises(Problem) as refused:
         site.get("/models/no-such-model")
     assert (refused.value.status, refused.value.type) == (404, "/problems#not_found")
