@@ -2,9 +2,9 @@
 
 #include <utility>
 
+#include "room/caches/await.h"
 #include "room/edit.h"
 #include "room/edits.h"
-#include "room/open/await.h"
 
 namespace strata::app {
 

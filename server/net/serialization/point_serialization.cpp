@@ -50,8 +50,6 @@ protocol::Picked to_picked(const query::SurfacePoint& point, const std::optional
 
 namespace {
 
-std::string number(double value) { return csv_number(value, ','); }
-
 std::string point_header(const std::vector<std::string>& layers) {
   std::vector<std::string> cells{"hit",      "x",        "y",        "z", "normal_x",
                                  "normal_y", "normal_z", "distance", "u", "v"};
@@ -131,7 +129,7 @@ std::string profile_csv(const query::Profile& profile, Unit unit,
                         const std::vector<std::string>& layers) {
   std::string text = "along_mm," + point_header(layers);
   for (const auto& sample : profile.samples) {
-    text += number(in_millimetres(sample.along, unit)) + ",";
+    text += csv_number(in_millimetres(sample.along, unit), ',') + ",";
     append_point(sample.point, layers, text);
   }
   return text;

@@ -10,8 +10,6 @@
 namespace strata::net {
 namespace {
 
-std::string number(double value) { return csv_number(value, ','); }
-
 nlohmann::json vec3(const glm::dvec3& v) { return nlohmann::json::array({v.x, v.y, v.z}); }
 
 }  // namespace
@@ -83,14 +81,14 @@ nlohmann::json to_json(const query::CrossTable& table) {
 std::string cross_table_csv(const query::CrossTable& table, const std::string& rows,
                             const std::string& columns) {
   const auto key_text = [](const query::CrossTable::Key& key) {
-    return key ? number(*key) : std::string("-");
+    return key ? csv_number(*key, ',') : std::string("-");
   };
   std::vector<std::string> cells{rows + " / " + columns};
   for (const auto& column : table.columns) cells.push_back(key_text(column));
   std::string text = csv_line(cells, ',');
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     cells.assign(1, key_text(table.rows[row]));
-    for (const double area : table.area_m2[row]) cells.push_back(number(area));
+    for (const double area : table.area_m2[row]) cells.push_back(csv_number(area, ','));
     text += csv_line(cells, ',');
   }
   return text;

@@ -7,7 +7,7 @@
 #include "core/no_such.h"
 #include "core/text/slug.h"
 #include "media/picture.h"
-#include "room/open/await.h"
+#include "room/caches/await.h"
 #include "store/content/looks.h"
 
 namespace strata::room {

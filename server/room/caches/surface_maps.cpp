@@ -2,7 +2,7 @@
 
 #include <boost/asio/post.hpp>
 
-#include "room/open/await.h"
+#include "room/caches/await.h"
 
 namespace strata::room {
 

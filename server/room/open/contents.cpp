@@ -4,7 +4,7 @@
 #include <future>
 #include <iterator>
 
-#include "room/open/await.h"
+#include "room/caches/await.h"
 #include "room/pipeline/provisional.h"
 #include "room/pipeline/tile_changes.h"
 #include "store/content/layers.h"

@@ -7,7 +7,7 @@
 #include "domain/layers/layer.h"
 #include "domain/layers/tile_mirror.h"
 #include "mesh/surface/geometry.h"
-#include "room/open/layer_state.h"
+#include "room/pipeline/layer_state.h"
 #include "store/store.h"
 
 namespace strata::room {

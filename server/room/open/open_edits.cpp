@@ -2,9 +2,9 @@
 
 #include <boost/asio/post.hpp>
 
-#include "room/open/strand.h"
 #include "room/pipeline/edit_pipeline.h"
 #include "room/pipeline/retired_keys.h"
+#include "room/pipeline/strand.h"
 #include "room/pipeline/tile_changes.h"
 #include "store/content/layers.h"
 #include "store/store.h"

@@ -7,9 +7,9 @@
 
 #include "core/log.h"
 #include "room/open/open_participants.h"
-#include "room/open/strand.h"
 #include "room/pipeline/edit_pipeline.h"
 #include "room/pipeline/expression_binding.h"
+#include "room/pipeline/strand.h"
 #include "store/content/bin.h"
 #include "store/content/layers.h"
 #include "store/store.h"

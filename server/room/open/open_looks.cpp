@@ -3,7 +3,7 @@
 #include "core/no_such.h"
 #include "room/caches/surface_image_cache.h"
 #include "room/open/open_participants.h"
-#include "room/open/strand.h"
+#include "room/pipeline/strand.h"
 #include "store/content/looks.h"
 #include "store/store.h"
 

@@ -5,9 +5,9 @@
 
 #include "domain/people/question.h"
 #include "media/picture_writer.h"
-#include "room/open/await.h"
-#include "room/open/gpu_problem.h"
+#include "room/caches/await.h"
 #include "room/open/open_pictures.h"
+#include "room/pipeline/gpu_problem.h"
 #include "room/pipeline/provisional.h"
 #include "store/journal/journal_reads.h"
 
@@ -73,10 +73,7 @@ Result<void> OpenRoom::PicturesPart::draw(const PictureRequest& asked,
         shown.push_back(std::move(candidate));
     sort_as_shown(shown, asked.shown);
   }
-  if (asked.at && *asked.at > room_.durable_)
-    return fail(ErrorCode::invalid, "Sequence not reached",
-                "The newest durable edit of this model is " + std::to_string(room_.durable_) + ".",
-                "at");
+  STRATA_TRY(room_.check_durable(asked.at));
 
   Borrowed borrowed{room_.services_.renderer, 0, {}};
   const auto model = room_.model_handle();

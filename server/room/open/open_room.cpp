@@ -5,7 +5,6 @@
 
 #include "core/log.h"
 #include "core/text/slug.h"
-#include "room/open/gpu_problem.h"
 #include "room/open/open_edits.h"
 #include "room/open/open_layers.h"
 #include "room/open/open_looks.h"
@@ -13,7 +12,8 @@
 #include "room/open/open_pictures.h"
 #include "room/open/open_queries.h"
 #include "room/open/open_surface.h"
-#include "room/open/strand.h"
+#include "room/pipeline/gpu_problem.h"
+#include "room/pipeline/strand.h"
 #include "store/content/looks.h"
 #include "store/content/models.h"
 #include "store/journal/journal_reads.h"
@@ -134,11 +134,15 @@ std::optional<LayerState> OpenRoom::layer_state(std::int64_t id) const {
   return found == layers_.end() ? std::nullopt : std::optional(found->second);
 }
 
+Result<void> OpenRoom::check_durable(At at) const {
+  if (!at || *at <= durable_) return {};
+  return fail(ErrorCode::invalid, "Sequence not reached",
+              "The newest durable edit of this model is " + std::to_string(durable_) + ".", "at");
+}
+
 Result<TileMirror::Snapshot> OpenRoom::tiles_at(const LayerState& state, At at) const {
   if (!at) return state.mirror->snapshot();
-  if (*at > durable_)
-    return fail(ErrorCode::invalid, "Sequence not reached",
-                "The newest durable edit of this model is " + std::to_string(durable_) + ".", "at");
+  STRATA_TRY(check_durable(at));
   return services_.store.journal().load_tiles(state.layer, at);
 }
 

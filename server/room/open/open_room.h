@@ -24,10 +24,10 @@
 #include "room/caches/surface_lookup.h"
 #include "room/caches/surface_maps.h"
 #include "room/open/contents.h"
-#include "room/open/layer_state.h"
-#include "room/open/strand.h"
 #include "room/pipeline/edit_pipeline.h"
+#include "room/pipeline/layer_state.h"
 #include "room/pipeline/retired_keys.h"
+#include "room/pipeline/strand.h"
 #include "room/room.h"
 #include "room/rooms.h"
 #include "stream/viewer.h"
@@ -130,6 +130,8 @@ class OpenRoom final : public Room,
   std::uint64_t mirror_bytes() const;  // with `mutex_` held
   std::vector<Layer> layer_list() const;
   Result<LayerState> state(const std::string& ref) const;
+  // Refused (invalid, `at`): a sequence that is not durable yet.
+  Result<void> check_durable(At at) const;
   Result<TileMirror::Snapshot> tiles_at(const LayerState& state, At at) const;
   Result<std::vector<query::LayerView>> layer_views(const std::vector<std::string>& refs,
                                                     At at) const;

@@ -4,8 +4,8 @@
 #include "domain/layers/mask_texels.h"
 #include "mesh/texels/slot_bits.h"
 #include "query/maps/dabs.h"
-#include "room/open/gpu_problem.h"
 #include "room/open/open_surface.h"
+#include "room/pipeline/gpu_problem.h"
 #include "room/pipeline/seen_texels.h"
 
 namespace strata::room {

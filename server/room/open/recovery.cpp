@@ -1,7 +1,7 @@
 // How an open room recovers: its copies on the GPU are made anew after a lost context, its mirrors
 // after the journal turned out to hold more than they do. Both happen while the pipeline is paused
 // and nothing is under way, so nothing else changes the layers. What fails is tried again until the
-// room is shut; who waits for it is refused after each try.
+// room is closed; who waits for it is refused after each try.
 #include <boost/asio/post.hpp>
 
 #include "core/log.h"

@@ -9,7 +9,7 @@
 
 #include "core/log.h"
 #include "core/overloaded.h"
-#include "room/open/gpu_problem.h"
+#include "room/pipeline/gpu_problem.h"
 #include "room/pipeline/provisional.h"
 #include "store/journal/journal_reads.h"
 

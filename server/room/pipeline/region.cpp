@@ -5,8 +5,8 @@
 #include "domain/layers/mask_texels.h"
 #include "mesh/texels/slot_bits.h"
 #include "query/conditions/flood.h"
-#include "room/open/gpu_problem.h"
 #include "room/pipeline/expression_binding.h"
+#include "room/pipeline/gpu_problem.h"
 
 namespace strata::room {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "room/open/await.h"
+#include "room/caches/await.h"
 
 namespace strata::room {
 namespace {

@@ -10,7 +10,6 @@
 #include "net/live/live_sockets.h"
 #include "net/serialization/people_serialization.h"
 #include "net/transport/server_options.h"
-#include "room/room.h"
 #include "room/rooms.h"
 #include "store/content/projects.h"
 #include "store/people/accounts.h"

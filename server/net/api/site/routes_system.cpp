@@ -10,7 +10,6 @@
 #include "net/http/worker_pool.h"
 #include "net/transport/server_options.h"
 #include "render/renderer.h"
-#include "room/room.h"
 #include "room/rooms.h"
 #include "store/store.h"
 

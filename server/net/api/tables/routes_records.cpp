@@ -18,7 +18,6 @@
 #include "net/serialization/sheet_response.h"
 #include "net/serialization/table_serialization.h"
 #include "net/transport/server_options.h"
-#include "room/room.h"
 #include "room/rooms.h"
 #include "store/store.h"
 #include "store/tables/records.h"

@@ -21,7 +21,6 @@
 #include "net/live/table_events.h"
 #include "net/serialization/table_serialization.h"
 #include "net/transport/server_options.h"
-#include "room/room.h"
 #include "room/rooms.h"
 #include "store/content/projects.h"
 #include "store/store.h"
