@@ -8,7 +8,7 @@ namespace strata {
 
 // A shape for the brush, of the whole site (media/shape_texture.h). Its shape never changes, so
 // that a stroke's record means the same for ever; a deleted tool is no longer listed or found by
-// its slug, but its id goes on standing for its shape.
+// its slug, but its id still names its shape.
 struct Tool {
   std::int64_t id = 0;
   std::string name;

@@ -24,8 +24,8 @@ struct Attachment {
   Visibility visibility = Visibility::everyone;
 };
 
-// As domain/people/visibility has it; who may attach files sees those that they attached
-// themselves, too.
+// By its visibility (domain/people/visibility.h). Annotators also see the files that they attached
+// themselves.
 inline bool sees(const Author& who, const Attachment& attachment) {
   return sees(who.role, attachment.visibility) ||
          (who.role >= Role::annotator && who.user == attachment.user);
