@@ -128,7 +128,7 @@ Result<std::vector<render::LookStyle>> SurfaceImageCache::wait(
   return styles;
 }
 
-void SurfaceImageCache::request(std::int64_t id, Loaded loaded) {
+void SurfaceImageCache::request(std::int64_t id, const Loaded& loaded) {
   std::optional<Result<render::LookHandle>> known;
   {
     std::lock_guard lock(mutex_);
@@ -140,7 +140,7 @@ void SurfaceImageCache::request(std::int64_t id, Loaded loaded) {
     } else if (slot.damage) {
       known = tl::unexpected(*slot.damage);
     } else {
-      if (loaded) slot.waiting.push_back(std::move(loaded));
+      if (loaded) slot.waiting.push_back(loaded);
       if (std::exchange(slot.loading, true)) return;
     }
   }
@@ -210,11 +210,11 @@ void SurfaceImageCache::add(std::int64_t id, int largest_side,
     if (stopped_) return;
     model = model_;
   }
-  renderer_.add_look(
-      model, *image,
-      [self = shared_from_this(), id, model, largest_side](Result<render::LookHandle> handle) {
-        self->on_added(id, model, largest_side, handle);
-      });
+  renderer_.add_look(model, *image,
+                     [self = shared_from_this(), id, model,
+                      largest_side](const Result<render::LookHandle>& handle) {
+                       self->on_added(id, model, largest_side, handle);
+                     });
 }
 
 void SurfaceImageCache::on_added(std::int64_t id, render::ModelHandle model, int largest_side,

@@ -65,7 +65,7 @@ class SurfaceImageCache : public std::enable_shared_from_this<SurfaceImageCache>
   std::vector<Look> by_order() const;
   // under the mutex
   std::vector<LookView> shown(const std::optional<std::vector<LookView>>& wanted) const;
-  void request(std::int64_t id, Loaded loaded);
+  void request(std::int64_t id, const Loaded& loaded);
   void load(std::int64_t id, int largest_side);
   Result<Bytes> encoded_bytes(std::int64_t id);
   // what its sides are to be divided by

@@ -102,18 +102,18 @@ void SurfaceMaps::start(int resolution) {
       self->entries_[resolution].baked = map;
       self->entries_[resolution].share = std::move(*share);
     }
-    self->upload(resolution, std::move(map), model);
+    self->upload(resolution, map, model);
   });
 }
 
-void SurfaceMaps::upload(int resolution, MapPtr map, render::ModelHandle model) {
+void SurfaceMaps::upload(int resolution, const MapPtr& map, render::ModelHandle model) {
   renderer_.add_surface_map(
       model, map, [self = shared_from_this(), resolution, map, model](Result<void> done) {
         self->finish(resolution, done ? Result<MapPtr>(map) : tl::unexpected(done.error()), model);
       });
 }
 
-void SurfaceMaps::finish(int resolution, Result<MapPtr> result, render::ModelHandle model) {
+void SurfaceMaps::finish(int resolution, const Result<MapPtr>& result, render::ModelHandle model) {
   std::vector<Ready> waiting;
   {
     std::unique_lock lock(mutex_);
@@ -122,9 +122,9 @@ void SurfaceMaps::finish(int resolution, Result<MapPtr> result, render::ModelHan
     // more, with the new one.
     if (entry.baked && model_ != model) {
       model = model_;
-      MapPtr again = entry.baked;
+      const MapPtr again = entry.baked;
       lock.unlock();
-      return upload(resolution, std::move(again), model);
+      return upload(resolution, again, model);
     }
     entry.working = false;
     entry.on_gpu = result.has_value();

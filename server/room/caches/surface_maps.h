@@ -60,8 +60,8 @@ class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
   using Entries = std::map<int, Entry>;
   Entries::const_iterator oldest() const;  // with the lock held
   void start(int resolution);              // with the lock held
-  void upload(int resolution, MapPtr map, render::ModelHandle model);
-  void finish(int resolution, Result<MapPtr> result, render::ModelHandle model);
+  void upload(int resolution, const MapPtr& map, render::ModelHandle model);
+  void finish(int resolution, const Result<MapPtr>& result, render::ModelHandle model);
 
   const std::shared_ptr<const mesh::Geometry> geometry_;
   render::Renderer& renderer_;
