@@ -16,10 +16,11 @@ as_root() {
   else die "This step needs root: $* — run as root, or install sudo."; fi
 }
 
-# A package is there when dpkg says so; asking for all at once takes a few milliseconds.
+# A package is there when dpkg says so; asking for all at once takes a few milliseconds. On an empty machine dpkg-query has
+# never heard of most of them, and fails.
 missing_packages() {
   local installed package
-  installed=$(dpkg-query -W -f='${Package} ${Status}\n' "$@" 2>/dev/null | awk '/install ok installed/ {print $1}')
+  installed=$({ dpkg-query -W -f='${Package} ${Status}\n' "$@" 2>/dev/null || true; } | awk '/install ok installed/ {print $1}')
   for package in "$@"; do grep -qx -- "$package" <<<"$installed" || echo "$package"; done
 }
 
