@@ -46,7 +46,9 @@ install_packages() {
     echo 'create_main_cluster = false' | as_root tee /etc/postgresql-common/createcluster.conf >/dev/null
   fi
   update_package_lists
-  as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -o Dpkg::Use-Pty=0 -o APT::Status-Fd=1 \
+  # Progress has a descriptor of its own: apt closes it for dpkg, whose scripts would be left without standard output.
+  # shellcheck disable=SC2016  # the inner shell expands its parameters
+  as_root env DEBIAN_FRONTEND=noninteractive sh -c 'exec apt-get "$@" 3>&1' apt-get -q -o Dpkg::Use-Pty=0 -o APT::Status-Fd=3 \
     install -y --no-install-recommends --no-remove "${missing[@]}" 2>&1 | show_apt_progress ||
     fail_step "Could not install: ${missing[*]}."
   end_step
