@@ -1,45 +1,52 @@
 #include "core/digest.h"
 
-#include <openssl/crypto.h>
 #include <openssl/evp.h>
 
-#include <array>
+#include <algorithm>
+
+#include "core/text/hex.h"
 
 namespace strata {
-namespace {
 
-std::array<unsigned char, 32> sha256(std::string_view text) {
-  std::array<unsigned char, 32> hash{};
-  unsigned int size = 0;
-  EVP_Digest(text.data(), text.size(), hash.data(), &size, EVP_sha256(), nullptr);
+struct Sha256Stream::Impl {
+  EVP_MD_CTX* context = EVP_MD_CTX_new();
+  ~Impl() { EVP_MD_CTX_free(context); }
+};
+
+Sha256Stream::Sha256Stream() : impl_(std::make_unique<Impl>()) {
+  EVP_DigestInit_ex(impl_->context, EVP_sha256(), nullptr);
+}
+Sha256Stream::~Sha256Stream() = default;
+
+void Sha256Stream::add(std::span<const std::uint8_t> bytes) {
+  EVP_DigestUpdate(impl_->context, bytes.data(), bytes.size());
+}
+
+Sha256 Sha256Stream::finish() {
+  Sha256 hash{};
+  EVP_DigestFinal_ex(impl_->context, hash.data(), nullptr);
   return hash;
 }
 
-}  // namespace
-
-std::string sha256_hex(std::string_view text) {
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::string hex;
-  for (unsigned char byte : sha256(text)) {
-    hex += kDigits[byte >> 4];
-    hex += kDigits[byte & 15];
-  }
-  return hex;
+Sha256 sha256(std::span<const std::uint8_t> bytes) {
+  Sha256Stream stream;
+  stream.add(bytes);
+  return stream.finish();
 }
 
+Sha256 sha256(std::string_view text) {
+  return sha256(std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+}
+
+std::string sha256_hex(std::string_view text) { return to_hex(sha256(text)); }
+
 Uuid uuid_of_text(std::string_view text) {
-  const auto hash = sha256(text);
+  const Sha256 hash = sha256(text);
   Uuid uuid;
-  for (std::size_t i = 0; i < uuid.bytes.size(); ++i) uuid.bytes[i] = hash[i];
+  std::copy_n(hash.begin(), uuid.bytes.size(), uuid.bytes.begin());
   uuid.bytes[6] = static_cast<std::uint8_t>((uuid.bytes[6] & 0x0f) | 0x80);
   uuid.bytes[8] = static_cast<std::uint8_t>((uuid.bytes[8] & 0x3f) | 0x80);
   return uuid;
-}
-
-bool equal_in_constant_time(std::string_view a, std::string_view b) {
-  // Hashes first: neither the length nor the place of the first difference shows in the time.
-  const auto hash_a = sha256(a), hash_b = sha256(b);
-  return CRYPTO_memcmp(hash_a.data(), hash_b.data(), hash_a.size()) == 0;
 }
 
 }  // namespace strata

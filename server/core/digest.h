@@ -1,5 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -7,13 +11,26 @@
 
 namespace strata {
 
+using Sha256 = std::array<std::uint8_t, 32>;
+
+class Sha256Stream {
+ public:
+  Sha256Stream();
+  ~Sha256Stream();
+  void add(std::span<const std::uint8_t> bytes);
+  Sha256 finish();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+Sha256 sha256(std::span<const std::uint8_t> bytes);
+Sha256 sha256(std::string_view text);
 std::string sha256_hex(std::string_view text);
 
 // A UUID (version 8: hashed by SHA-256) that is the same for the same text: a caller's
 // Idempotency-Key becomes the id of its edit.
 Uuid uuid_of_text(std::string_view text);
-
-// Takes the same time wherever the texts differ; for secrets.
-bool equal_in_constant_time(std::string_view a, std::string_view b);
 
 }  // namespace strata

@@ -1,57 +1,39 @@
 #include "core/uuid.h"
 
-#include <random>
+#include <algorithm>
+#include <boost/uuid/random_generator.hpp>
+#include <boost/uuid/uuid.hpp>
+#include <boost/uuid/uuid_io.hpp>
+
+#include "core/text/hex.h"
 
 namespace strata {
 
 Uuid random_uuid() {
-  thread_local std::random_device device;
+  thread_local boost::uuids::random_generator generate;  // asks the system for each
   Uuid uuid;
-  for (std::size_t i = 0; i < uuid.bytes.size(); i += 4) {
-    const std::uint32_t word = device();
-    for (std::size_t k = 0; k < 4; ++k)
-      uuid.bytes[i + k] = static_cast<std::uint8_t>(word >> (8 * k));
-  }
-  uuid.bytes[6] = static_cast<std::uint8_t>((uuid.bytes[6] & 0x0f) | 0x40);  // version 4
-  uuid.bytes[8] = static_cast<std::uint8_t>((uuid.bytes[8] & 0x3f) | 0x80);  // RFC 4122 variant
+  std::ranges::copy(generate(), uuid.bytes.begin());
   return uuid;
 }
 
 std::optional<Uuid> parse_uuid(std::string_view text) {
+  // Boost's reader takes other forms as well, and throws.
   if (text.size() != 36) return std::nullopt;
   Uuid uuid;
-  std::size_t nibble = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (i == 8 || i == 13 || i == 18 || i == 23) {
-      if (c != '-') return std::nullopt;
-      continue;
-    }
-    int digit = 0;
-    if (c >= '0' && c <= '9')
-      digit = c - '0';
-    else if (c >= 'a' && c <= 'f')
-      digit = c - 'a' + 10;
-    else if (c >= 'A' && c <= 'F')
-      digit = c - 'A' + 10;
-    else
-      return std::nullopt;
-    uuid.bytes[nibble / 2] = static_cast<std::uint8_t>(uuid.bytes[nibble / 2] << 4 | digit);
-    ++nibble;
+  for (std::size_t i = 0, at = 0; i < uuid.bytes.size(); ++i, at += 2) {
+    if (i == 4 || i == 6 || i == 8 || i == 10)
+      if (text[at++] != '-') return std::nullopt;
+    const int high = hex_digit_value(text[at]), low = hex_digit_value(text[at + 1]);
+    if (high < 0 || low < 0) return std::nullopt;
+    uuid.bytes[i] = static_cast<std::uint8_t>(high << 4 | low);
   }
   return uuid;
 }
 
 std::string to_string(const Uuid& uuid) {
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  text.reserve(36);
-  for (std::size_t i = 0; i < uuid.bytes.size(); ++i) {
-    if (i == 4 || i == 6 || i == 8 || i == 10) text += '-';
-    text += kDigits[uuid.bytes[i] >> 4];
-    text += kDigits[uuid.bytes[i] & 15];
-  }
-  return text;
+  boost::uuids::uuid same;
+  std::ranges::copy(uuid.bytes, same.begin());
+  return boost::uuids::to_string(same);
 }
 
 }  // namespace strata

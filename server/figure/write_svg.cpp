@@ -1,9 +1,9 @@
 // Sheets as SVG, in millimetres: groups with names, words as text, so that all can be edited.
 // (cairo's SVG draws letters as shapes.)
-#include <sodium.h>
 
 #include <fstream>
 
+#include "core/text/base64.h"
 #include "core/text/number_text.h"
 #include "figure/text.h"
 #include "figure/writers.h"
@@ -23,26 +23,13 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-std::string hex(const Rgba& color) {
-  char text[8];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", color[0], color[1], color[2]);
-  return text;
-}
-
-std::string base64(const std::vector<std::uint8_t>& bytes) {
-  std::string text(sodium_base64_encoded_len(bytes.size(), sodium_base64_VARIANT_ORIGINAL), '\0');
-  sodium_bin2base64(text.data(), text.size(), bytes.data(), bytes.size(),
-                    sodium_base64_VARIANT_ORIGINAL);
-  text.pop_back();  // its end
-  return text;
-}
-
 void write(std::ostream& out, const Path& path) {
   out << "<path d=\"";
   for (std::size_t i = 0; i < path.points.size(); ++i)
     out << (i == 0 ? "M" : "L") << short_number(path.points[i].x) << ' '
         << short_number(path.points[i].y);
-  out << (path.closed ? "Z" : "") << "\" fill=\"" << (path.fill ? hex(*path.fill) : "none") << '"';
+  out << (path.closed ? "Z" : "") << "\" fill=\"" << (path.fill ? rgb_text(*path.fill) : "none")
+      << '"';
   if (path.fill && (*path.fill)[3] < 255)
     out << " fill-opacity=\"" << short_number((*path.fill)[3] / 255.0) << '"';
   if (path.stroke_mm > 0)
@@ -67,7 +54,7 @@ void write(std::ostream& out, const Words& words) {
 Result<void> write_svg(const Sheet& sheet, const Picture& drawing, const Document& document,
                        const std::filesystem::path& path, Progress& progress) {
   progress.report(0.1, "Packing the drawing");
-  const std::string jpeg = base64(drawing_jpeg(drawing));
+  const std::string jpeg = to_base64(drawing_jpeg(drawing));
   if (progress.cancelled()) return cancelled_problem();
   progress.report(0.7, "Writing the file");
   std::ofstream out(path, std::ios::binary);

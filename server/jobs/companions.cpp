@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/mapped_file.h"
+#include "core/text/ascii.h"
 
 namespace strata::jobs {
 namespace {
@@ -16,18 +17,8 @@ namespace fs = std::filesystem;
 // of a material library, a glTF's JSON, a PLY's header
 constexpr std::size_t kLargestText = std::size_t{64} << 20;
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::ranges::transform(result, result.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r\"");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
-}
+// A name may stand between quotation marks.
+constexpr std::string_view kAroundNames = " \t\r\"";
 
 // A file that `reference` may mean, as a path below the folder.
 std::optional<fs::path> below(const fs::path& folder, std::string_view reference) {
@@ -44,7 +35,7 @@ std::optional<fs::path> below(const fs::path& folder, std::string_view reference
 
 // Names may hold spaces and follow options: the longest end of the line that is a file.
 std::optional<fs::path> file_at_end(const fs::path& folder, std::string_view words) {
-  for (words = trimmed(words); !words.empty(); words = trimmed(words)) {
+  for (words = trimmed(words, kAroundNames); !words.empty(); words = trimmed(words, kAroundNames)) {
     if (auto file = below(folder, words)) return file;
     const auto space = words.find_first_of(" \t");
     if (space == std::string_view::npos) return std::nullopt;
@@ -60,7 +51,7 @@ void each_line(std::string_view text, const std::function<bool(const std::string
     const auto end = std::min(text.find('\n'), text.size());
     const std::string_view line = trimmed(text.substr(0, end));
     const auto word_end = std::min(line.find_first_of(" \t"), line.size());
-    if (word_end > 0 && word_end < 32 && wanted(lower(line.substr(0, word_end))))
+    if (word_end > 0 && word_end < 32 && wanted(to_lower(line.substr(0, word_end))))
       take(line.substr(word_end));
     text.remove_prefix(std::min(end + 1, text.size()));
   }
@@ -99,8 +90,9 @@ struct Collector {
     each_line(
         header, [](const std::string& word) { return word == "comment"; },
         [&](std::string_view rest) {
-          rest = trimmed(rest);
-          if (lower(rest.substr(0, 11)) == "texturefile") add(file_at_end(folder, rest.substr(11)));
+          rest = trimmed(rest, kAroundNames);
+          if (to_lower(rest.substr(0, 11)) == "texturefile")
+            add(file_at_end(folder, rest.substr(11)));
         });
   }
 

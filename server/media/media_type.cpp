@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "core/text/ascii.h"
+
 namespace strata {
 namespace {
 
@@ -43,14 +45,6 @@ constexpr std::array kMagics = {
 
 bool has_at(std::string_view text, std::size_t offset, std::string_view part) {
   return text.size() >= offset + part.size() && text.substr(offset, part.size()) == part;
-}
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return out;
 }
 
 // Formats that share a container.
@@ -146,7 +140,7 @@ std::string_view markup_type(std::string_view text) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n\f"), text.size()));
   if (!text.starts_with('<')) return {};
-  const std::string small = lower(text);
+  const std::string small = to_lower(text);
   if (small.starts_with("<svg")) return "image/svg+xml";
   const bool is_xml =
       small.starts_with("<?xml") || small.starts_with("<!--") || small.starts_with("<!doctype svg");
@@ -168,7 +162,7 @@ std::string sniff_media_type(std::span<const std::uint8_t> bytes, std::string_vi
   if (const auto type = markup_type(head); !type.empty()) return std::string(type);
   const auto dot = name.rfind('.');
   const std::string ending =
-      dot == std::string_view::npos ? std::string() : lower(name.substr(dot + 1));
+      dot == std::string_view::npos ? std::string() : to_lower(name.substr(dot + 1));
   if (ending == "csv") return "text/csv";
   if (ending == "json" || ending == "geojson") return "application/json";
   if (ending == "md") return "text/markdown";

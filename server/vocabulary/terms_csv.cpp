@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/text/ascii.h"
 #include "core/text/csv.h"
 
 namespace strata {
@@ -14,12 +15,6 @@ constexpr std::pair<const char*, std::string Term::*> kParts[] = {
     {"uri", &Term::uri},        {"color", &Term::color},
     {"pattern", &Term::pattern}};
 
-std::string trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return std::string(text);
-}
-
 // What the cells below one of the first row are: a part of a term, or labels in a language.
 struct Head {
   std::string slug;
@@ -28,7 +23,7 @@ struct Head {
 };
 
 std::optional<Head> head_of(const std::string& cell) {
-  Head head{trimmed(cell), nullptr, {}};
+  Head head{std::string(trimmed(cell)), nullptr, {}};
   std::transform(head.slug.begin(), head.slug.end(), head.slug.begin(), [](char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   });
@@ -86,7 +81,7 @@ Result<TermList> read_terms_csv(std::string_view text) {
     term.line = row.line;
     for (std::size_t c = 0; c < std::min(row.cells.size(), heads.size()); ++c) {
       const Head& head = heads[c];
-      std::string value = unguard_formula(trimmed(row.cells[c]));
+      std::string value = unguard_formula(std::string(trimmed(row.cells[c])));
       if (head.part)
         term.*head.part = std::move(value);
       else if (!value.empty())

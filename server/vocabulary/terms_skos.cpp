@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/text/ascii.h"
 #include "core/text/utf8.h"
 
 namespace strata {
@@ -11,13 +12,6 @@ namespace {
 const std::string kSkos = "http://www.w3.org/2004/02/skos/core#";
 const std::string kType = "http://www.w3.org/1999/02/22-rdf-syntax-ns#type";
 constexpr std::size_t kMostConceptBytes = 256u << 20;  // of all that is kept of a text
-
-std::string trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r\n";
-  const auto first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(kBlank) - first + 1));
-}
 
 using ByLanguage = std::map<std::string, std::set<std::string>>;
 struct Concept {
@@ -62,7 +56,7 @@ class Concepts {
   }
 
   void take_text(const Triple& triple, std::string_view name) {
-    const std::string text = trimmed(triple.object);
+    const std::string text(trimmed(triple.object));
     if (text.empty()) return;
     if (name == "notation") {
       add(of(triple.subject).notations, text);

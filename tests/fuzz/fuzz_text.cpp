@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/text/percent.h"
 #include "core/text/utf8.h"
 #include "core/uuid.h"
 #include "net/http/http_types.h"
@@ -42,8 +43,7 @@ void read_target(std::string_view text) {
   for (const auto& segment : request.segments) demand(is_text(segment));
   for (const auto& [key, value] : request.query) {
     demand(is_text(key) && is_text(value));
-    target += (target.size() == 1 ? "?" : "&") + net::percent_encode(key) + "=" +
-              net::percent_encode(value);
+    target += (target.size() == 1 ? "?" : "&") + percent_encode(key) + "=" + percent_encode(value);
   }
   net::Request again;
   demand(net::parse_target(target, again).has_value());

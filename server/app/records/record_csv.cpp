@@ -4,6 +4,7 @@
 #include <array>
 #include <set>
 
+#include "core/text/ascii.h"
 #include "core/text/csv.h"
 #include "core/text/number_text.h"
 #include "domain/tables/column_value.h"
@@ -29,12 +30,6 @@ bool is_called(const Column& column, const std::string& head) {
   if (column.slug == head || column.name == head) return true;
   return std::any_of(column.labels.begin(), column.labels.end(),
                      [&](const auto& label) { return label.second == head; });
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-  return text;
 }
 
 // What each cell of a row is: a column, or one of the words.

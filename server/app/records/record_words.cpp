@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/text/ascii.h"
 #include "core/text/number_text.h"
 #include "core/text/slug.h"
 #include "domain/tables/column_value.h"
@@ -45,11 +46,7 @@ std::map<std::int64_t, std::string> titles_of(store::Store& store, const store::
 }  // namespace
 
 // What tells words apart when they are read again: cells lose blanks at their ends.
-std::string RecordWords::bare(const std::string& word) {
-  const auto first = word.find_first_not_of(' ');
-  return first == std::string::npos ? std::string()
-                                    : word.substr(first, word.find_last_not_of(' ') - first + 1);
-}
+std::string RecordWords::bare(const std::string& word) { return std::string(trimmed(word)); }
 
 void RecordWords::add(std::int64_t key, const std::string& word) {
   if (bare(word).empty() || is_all_digits(bare(word))) return;

@@ -4,20 +4,14 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/text/hex.h"
+
 namespace strata {
 namespace {
 
 constexpr std::size_t kMaxPoints = 4096;
 
-std::string format_color(const Rgba& color) {
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::string text = "#";
-  for (auto byte : color) {
-    text += kDigits[byte >> 4];
-    text += kDigits[byte & 15];
-  }
-  return text;
-}
+std::string format_color(const Rgba& color) { return "#" + to_hex(color); }
 
 constexpr const char* kPatterns[] = {"solid", "hatch", "dots", "outline"};
 
@@ -71,6 +65,8 @@ Rgba mix(const Rgba& a, const Rgba& b, double t) {
 
 }  // namespace
 
+std::string rgb_text(const Rgba& color) { return "#" + to_hex(std::span(color).first<3>()); }
+
 Result<Rgba> parse_color(const nlohmann::json& json, const std::string& field) {
   auto wrong = [&] {
     return fail(ErrorCode::invalid, "Not a colour", "A colour is \"#rrggbb\" or \"#rrggbbaa\".",
@@ -81,17 +77,9 @@ Result<Rgba> parse_color(const nlohmann::json& json, const std::string& field) {
   if ((text.size() != 7 && text.size() != 9) || text[0] != '#') return wrong();
   Rgba color{0, 0, 0, 255};
   for (std::size_t i = 1; i < text.size(); i += 2) {
-    int byte = 0;
-    for (std::size_t k = i; k < i + 2; ++k) {
-      const char c = static_cast<char>(std::tolower(static_cast<unsigned char>(text[k])));
-      if (c >= '0' && c <= '9')
-        byte = byte * 16 + (c - '0');
-      else if (c >= 'a' && c <= 'f')
-        byte = byte * 16 + (c - 'a' + 10);
-      else
-        return wrong();
-    }
-    color[i / 2] = static_cast<std::uint8_t>(byte);
+    const int high = hex_digit_value(text[i]), low = hex_digit_value(text[i + 1]);
+    if (high < 0 || low < 0) return wrong();
+    color[i / 2] = static_cast<std::uint8_t>(high << 4 | low);
   }
   return color;
 }

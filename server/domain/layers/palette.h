@@ -53,7 +53,9 @@ constexpr double kWidestSpacing_mm = 60'000;  // of a pattern
 // Of records that have no value in the column that colours, where the palette says nothing.
 constexpr Rgba kNoValueColor{154, 154, 154, 128};
 
-// `#rrggbb` or `#rrggbbaa`.
+// `#rrggbb`, without the opacity.
+std::string rgb_text(const Rgba& color);
+// Either `#rrggbb` or `#rrggbbaa`.
 Result<Rgba> parse_color(const nlohmann::json& json, const std::string& field);
 Result<Palette> palette_from_json(const nlohmann::json& json, const std::string& field = "palette");
 nlohmann::json to_json(const Palette& palette);

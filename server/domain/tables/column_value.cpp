@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/text/ascii.h"
 #include "core/text/csv.h"
 #include "core/text/edtf.h"
 #include "core/text/timestamp.h"
@@ -62,13 +63,6 @@ Result<std::string> check_text(const Column& column, const json& value, const ch
                   "UTF-8 of at most " + std::to_string(kLongestText) + " bytes, without U+0000",
                   field);
   return text;
-}
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r\n";
-  const std::size_t first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
 Result<json> check_url(const Column& column, const std::string& text, const std::string& field) {

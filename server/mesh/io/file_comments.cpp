@@ -4,6 +4,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/text/ascii.h"
 #include "core/text/utf8.h"
 
 namespace strata::mesh {
@@ -14,20 +15,14 @@ constexpr std::size_t kStlHeader = 80;
 
 bool is_blank_or_control(char c) { return static_cast<unsigned char>(c) <= ' '; }
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank_or_control(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank_or_control(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 class Comments {
  public:
   void add(std::string_view text) {
-    text = trimmed(text);
+    std::string clean(text);
+    std::ranges::replace_if(clean, is_blank_or_control, ' ');
+    text = trimmed(clean).substr(0, kLongestComment);
     if (text.empty() || list_.size() >= kMostComments) return;
-    std::string clean;
-    for (const char c : text.substr(0, kLongestComment)) clean += is_blank_or_control(c) ? ' ' : c;
-    list_.push_back(mended_utf8(clean));
+    list_.push_back(mended_utf8(text));
   }
   std::vector<std::string> take() { return std::move(list_); }
 

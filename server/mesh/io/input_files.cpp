@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/text/ascii.h"
 #include "core/text/utf8.h"
 #include "mesh/io/load_formats.h"
 #include "mesh/io/unpack.h"
@@ -15,12 +16,6 @@ namespace {
 constexpr std::string_view kTaken =
     "send PLY, OBJ, STL, glTF or GLB, alone, with its textures, or as a zip of them";
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return result;
-}
-
 std::string_view last_part(std::string_view path) {
   const auto slash = path.find_last_of("/\\");
   return slash == std::string_view::npos ? path : path.substr(slash + 1);
@@ -29,7 +24,7 @@ std::string_view last_part(std::string_view path) {
 std::string ending(std::string_view filename) {
   const std::string_view name = last_part(filename);
   const auto dot = name.find_last_of('.');
-  return dot == std::string_view::npos || dot == 0 ? std::string() : lower(name.substr(dot));
+  return dot == std::string_view::npos || dot == 0 ? std::string() : to_lower(name.substr(dot));
 }
 
 // How many parts of two paths are the same, counted from their ends.
@@ -37,7 +32,7 @@ int common_parts(std::string_view a, std::string_view b) {
   int parts = 0;
   while (!a.empty() && !b.empty()) {
     const std::string_view x = last_part(a), y = last_part(b);
-    if (lower(x) != lower(y)) break;
+    if (to_lower(x) != to_lower(y)) break;
     ++parts;
     a.remove_suffix(std::min(a.size(), x.size() + 1));
     b.remove_suffix(std::min(b.size(), y.size() + 1));

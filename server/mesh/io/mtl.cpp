@@ -6,17 +6,12 @@
 #include <string_view>
 #include <utility>
 
+#include "core/text/ascii.h"
 #include "mesh/io/obj_lines.h"
 #include "mesh/io/plain_text.h"
 
 namespace strata::mesh {
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 // Up to `most` numbers off the front of `line`; how many there were.
 int take_numbers(std::string_view& line, std::array<double, 3>& numbers, int most) {

@@ -1,6 +1,7 @@
 #include "net/auth/auth.h"
 
 #include "core/digest.h"
+#include "core/secret.h"
 #include "net/http/origin.h"
 #include "store/people/accounts.h"
 #include "store/people/kiosks.h"

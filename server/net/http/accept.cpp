@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "core/text/ascii.h"
 #include "net/http/http_types.h"
 
 namespace strata::net {
@@ -11,7 +12,7 @@ namespace {
 // Of a list that `separator` divides: the next part, which is taken away from it.
 std::string_view next_of(std::string_view& list, char separator) {
   const auto end = std::min(list.find(separator), list.size());
-  const std::string_view part = trim_blanks(list.substr(0, end));
+  const std::string_view part = trimmed(list.substr(0, end));
   list.remove_prefix(std::min(end + 1, list.size()));
   return part;
 }
@@ -41,12 +42,6 @@ int closeness(const std::string& range, const std::string& type) {
 
 }  // namespace
 
-std::string_view trim_blanks(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
 std::vector<Accepted> accepted_values(std::string_view header) {
   std::vector<Accepted> values;
   while (!header.empty()) {
@@ -58,8 +53,8 @@ std::vector<Accepted> accepted_values(std::string_view header) {
 }
 
 bool accepts_type(std::string_view accept, std::string_view content_type) {
-  if (trim_blanks(accept).empty()) return true;
-  const std::string type = to_lower(trim_blanks(content_type.substr(0, content_type.find(';'))));
+  if (trimmed(accept).empty()) return true;
+  const std::string type = to_lower(trimmed(content_type.substr(0, content_type.find(';'))));
   int closest = 0;
   double quality = 0;
   for (const Accepted& range : accepted_values(accept))

@@ -19,6 +19,4 @@ std::vector<Accepted> accepted_values(std::string_view header);
 // `application/json` also takes `application/…+json`.
 bool accepts_type(std::string_view accept, std::string_view content_type);
 
-std::string_view trim_blanks(std::string_view text);  // spaces and tabs at both ends
-
 }  // namespace strata::net

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <variant>
 
+#include "core/text/ascii.h"
 #include "net/http/accept.h"
 
 namespace strata::net {
@@ -20,7 +21,7 @@ constexpr int kGzipLevel = 5;
 constexpr int kBrotliQuality = 4;  // likewise
 
 bool is_text(std::string_view content_type) {
-  const std::string type = to_lower(trim_blanks(content_type.substr(0, content_type.find(';'))));
+  const std::string type = to_lower(trimmed(content_type.substr(0, content_type.find(';'))));
   return type.starts_with("text/") || type == "application/json" || type.ends_with("+json") ||
          type.ends_with("+xml") || type == "application/xml" || type == "application/javascript";
 }

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "core/digest.h"
+#include "core/text/ascii.h"
 #include "core/uuid.h"
 #include "domain/layers/layer.h"
 #include "domain/scene/look.h"
@@ -33,12 +34,6 @@ std::string tag_of(std::string_view text) {
 std::string_view without_weakness(std::string_view tag) {
   if (tag.starts_with("W/")) tag.remove_prefix(2);
   return tag;
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
 }
 
 // Parts of a text from outside cannot run into one another.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/text/ascii.h"
 #include "core/text/filename.h"
 #include "net/http/http_types.h"
 
@@ -26,13 +27,6 @@ std::size_t find(std::string_view text, std::string_view what, std::size_t from,
     from += kWindowBytes;
   }
   return std::string_view::npos;
-}
-
-std::string_view trimmed(std::string_view text) {
-  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
 }
 
 // Folders that the sender names are kept: files of one scan call each other by them. Nothing leads

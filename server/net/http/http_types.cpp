@@ -1,5 +1,6 @@
 #include "net/http/http_types.h"
 
+#include "core/text/percent.h"
 #include "core/text/utf8.h"
 #include "protocol/parse.h"
 #include "protocol/problem.h"
@@ -9,17 +10,6 @@
 #include <charconv>
 
 namespace strata::net {
-namespace {
-
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
-}  // namespace
-
 std::string_view name(Method method) {
   static constexpr std::string_view kNames[] = {"GET",   "HEAD",   "POST",    "PUT",
                                                 "PATCH", "DELETE", "OPTIONS", "?"};
@@ -152,46 +142,21 @@ void Respond::operator()(Response response) const {
   if (!state_->answered.exchange(true)) state_->send(std::move(response));
 }
 
-std::optional<std::string> percent_decode(std::string_view text, bool plus_is_space) {
-  std::string out;
-  out.reserve(text.size());
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    char c = text[i];
-    if (c == '%') {
-      if (i + 2 >= text.size()) return std::nullopt;
-      const int high = hex_digit(text[i + 1]), low = hex_digit(text[i + 2]);
-      if (high < 0 || low < 0) return std::nullopt;
-      c = static_cast<char>(high * 16 + low);
-      i += 2;
-    } else if (c == '+' && plus_is_space) {
-      c = ' ';
-    }
-    if (c == '\0') return std::nullopt;
-    out += c;
-  }
-  return out;
-}
-
 void name_download(Response& response, const std::string& filename) {
   std::string value = "attachment; filename*=UTF-8''";
   response.with("Content-Disposition", value.append(percent_encode(filename)));
 }
 
-std::string percent_encode(std::string_view text) {
-  static constexpr char kDigits[] = "0123456789ABCDEF";
-  std::string out;
-  for (unsigned char c : text) {
-    if ((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-' ||
-        c == '.' || c == '_' || c == '~') {
-      out += static_cast<char>(c);
-    } else {
-      out += '%';
-      out += kDigits[c >> 4];
-      out += kDigits[c & 15];
-    }
-  }
-  return out;
+namespace {
+
+// As forms send it: a plus is a space.
+std::optional<std::string> query_text(std::string_view text) {
+  std::string spaced(text);
+  std::ranges::replace(spaced, '+', ' ');
+  return percent_decode(spaced);
 }
+
+}  // namespace
 
 Result<void> parse_target(std::string_view target, Request& request) {
   auto wrong = [](std::string detail) {
@@ -204,12 +169,12 @@ Result<void> parse_target(std::string_view target, Request& request) {
   const std::string_view path = target.substr(0, question);
   for (std::size_t begin = 1; begin <= path.size();) {
     const std::size_t end = std::min(path.find('/', begin), path.size());
-    auto segment = percent_decode(path.substr(begin, end - begin), false);
+    auto segment = percent_decode(path.substr(begin, end - begin));
     if (!segment) return wrong("The path has a percent escape that is not one.");
     request.segments.push_back(std::move(*segment));
     begin = end + 1;
   }
-  auto decoded = percent_decode(path, false);
+  auto decoded = percent_decode(path);
   if (!decoded) return wrong("The path has a percent escape that is not one.");
   if (!is_utf8(*decoded)) return wrong("The path is not UTF-8.");
   request.path = std::move(*decoded);
@@ -221,9 +186,9 @@ Result<void> parse_target(std::string_view target, Request& request) {
     begin = end + 1;
     if (pair.empty()) continue;
     const auto equals = pair.find('=');
-    auto key = percent_decode(pair.substr(0, equals), true);
-    auto value = percent_decode(
-        equals == std::string_view::npos ? std::string_view() : pair.substr(equals + 1), true);
+    auto key = query_text(pair.substr(0, equals));
+    auto value =
+        query_text(equals == std::string_view::npos ? std::string_view() : pair.substr(equals + 1));
     if (!key || !value) return wrong("The query has a percent escape that is not one.");
     if (!is_utf8(*key) || !is_utf8(*value)) return wrong("The query is not UTF-8.");
     if (!request.query.emplace(*key, std::move(*value)).second)

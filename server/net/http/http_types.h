@@ -131,8 +131,6 @@ class Respond {
 // Splits and decodes a request target. Refused: bad percent escapes, NUL, what is not UTF-8, a
 // query parameter given twice.
 Result<void> parse_target(std::string_view target, Request& request);
-std::optional<std::string> percent_decode(std::string_view text, bool plus_is_space);
-std::string percent_encode(std::string_view text);
 
 // `lang`, a language tag in lower case; empty: any. Refused (422, `lang`): one that is too long.
 Result<std::string> asked_language(const Request& request);

@@ -1,10 +1,10 @@
 #include "net/http/page.h"
 
-#include <openssl/evp.h>
-
 #include <algorithm>
 
 #include "core/digest.h"
+#include "core/text/base64.h"
+#include "core/text/percent.h"
 #include "store/content/projects.h"
 
 namespace strata::net {
@@ -12,33 +12,15 @@ namespace {
 
 constexpr std::size_t kLongestCursor = 6000;  // beside the rest of a head of 8 KiB
 
-// RFC 4648, section 5, without padding.
-std::string base64url(std::string_view bytes) {
-  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
-  const int size = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                                   reinterpret_cast<const unsigned char*>(bytes.data()),
-                                   static_cast<int>(bytes.size()));
-  text.resize(static_cast<std::size_t>(size));
-  while (text.ends_with('=')) text.pop_back();
-  std::ranges::replace(text, '+', '-');
-  std::ranges::replace(text, '/', '_');
-  return text;
+std::span<const std::uint8_t> bytes_of(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-std::optional<std::string> bytes_of_base64url(std::string text) {
-  const std::string sent = text;
-  std::ranges::replace(text, '-', '+');
-  std::ranges::replace(text, '_', '/');
-  const std::size_t missing = (4 - text.size() % 4) % 4;
-  text.append(missing, '=');
-  std::string bytes(3 * text.size() / 4 + 1, '\0');
-  const int size = EVP_DecodeBlock(reinterpret_cast<unsigned char*>(bytes.data()),
-                                   reinterpret_cast<const unsigned char*>(text.data()),
-                                   static_cast<int>(text.size()));
-  if (size < static_cast<int>(missing)) return std::nullopt;
-  bytes.resize(static_cast<std::size_t>(size) - missing);
-  // one text alone stands for the bytes
-  return base64url(bytes) == sent ? std::optional(bytes) : std::nullopt;
+// One cursor alone stands for a text: other spellings are refused.
+std::optional<std::string> text_of_cursor(const std::string& cursor) {
+  const auto bytes = from_base64(cursor);
+  if (!bytes || to_base64url(*bytes) != cursor) return std::nullopt;
+  return std::string(bytes->begin(), bytes->end());
 }
 
 bool is_of_page(const std::string& parameter) {
@@ -67,7 +49,7 @@ std::string text_of(const nlohmann::json& json) {
 // As `cursor_of` writes it, to the character.
 Result<ListPlace> place_in(const Request& request, const std::string& cursor) {
   if (cursor.empty() || cursor.size() > kLongestCursor) return wrong_place();
-  const auto text = bytes_of_base64url(cursor);
+  const auto text = text_of_cursor(cursor);
   if (!text) return wrong_place();
   auto read = nlohmann::json::parse(*text, nullptr, false);
   if (!read.is_array() || read.size() < 2 || read.front() != list_mark(request) ||
@@ -137,7 +119,7 @@ Result<Page> page_of(const Request& request, int default_limit) {
 std::optional<std::string> cursor_of(const Request& request, const ListPlace& place) {
   nlohmann::json marked = nlohmann::json::array({list_mark(request)});
   for (const auto& value : place) marked.push_back(value);
-  std::string cursor = base64url(text_of(marked));
+  std::string cursor = to_base64url(bytes_of(text_of(marked)));
   return cursor.size() <= kLongestCursor ? std::optional(std::move(cursor)) : std::nullopt;
 }
 

@@ -8,12 +8,6 @@
 namespace strata::net {
 namespace {
 
-std::string hex(const Rgba& color) {
-  char text[8];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", color[0], color[1], color[2]);
-  return text;
-}
-
 nlohmann::json json_of(const app::MapContents::Polygons& polygons, app::MapKind kind) {
   nlohmann::json columns = nlohmann::json::array();
   for (const query::MapColumn& column : polygons.columns)
@@ -37,8 +31,9 @@ nlohmann::json json_of(const app::MapContents::Raster& raster) {
                       {"has_colors", !raster.tiff || raster.tiff->has_colors},
                       {"is_rgb", !raster.tiff || raster.tiff->is_rgb}};
   for (const query::FoundColor& found : raster.colors)
-    json["colors"].push_back(
-        {{"color", hex(found.color)}, {"share", found.share}, {"background", found.is_background}});
+    json["colors"].push_back({{"color", rgb_text(found.color)},
+                              {"share", found.share},
+                              {"background", found.is_background}});
   if (raster.tiff) {
     if (raster.tiff->has_numbers) json["bands"] = raster.tiff->bands;
     if (raster.tiff->has_numbers) json["type"] = name(raster.tiff->type);

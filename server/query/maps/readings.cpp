@@ -7,15 +7,15 @@
 #include <optional>
 #include <string>
 
+#include "core/text/ascii.h"
+
 namespace strata::query {
 namespace {
 
 constexpr std::array<std::string_view, 4> kColumns{"x", "y", "z", "value"};
 
-std::string_view trimmed(std::string_view text) {
-  const auto is_blank = [](char c) { return c == ' ' || c == '\r'; };
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+std::string_view cell_of(std::string_view text) {
+  text = trimmed(text);
   if (text.size() >= 2 && text.front() == '"' && text.back() == '"')
     text = text.substr(1, text.size() - 2);
   return text;
@@ -25,7 +25,7 @@ std::vector<std::string_view> fields_of(std::string_view line, char separator) {
   std::vector<std::string_view> fields;
   for (std::size_t begin = 0;;) {
     const auto end = line.find(separator, begin);
-    fields.push_back(trimmed(line.substr(begin, end - begin)));
+    fields.push_back(cell_of(line.substr(begin, end - begin)));
     if (end == std::string_view::npos) return fields;
     begin = end + 1;
   }
@@ -41,13 +41,6 @@ char separator_of(std::string_view names) {
   for (const char separator : {'\t', ';', ','})
     if (names.find(separator) != std::string_view::npos) return separator;
   return ',';
-}
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return result;
 }
 
 std::optional<double> number_of(std::string_view text) {
@@ -80,7 +73,7 @@ Result<std::vector<Reading>> parse_readings(std::string_view csv) {
       columns = names.size();
       for (std::size_t i = 0; i < kColumns.size(); ++i) {
         const auto found = std::find_if(names.begin(), names.end(),
-                                        [&](auto name) { return lower(name) == kColumns[i]; });
+                                        [&](auto name) { return to_lower(name) == kColumns[i]; });
         if (found == names.end())
           return refuse(line_number, "there is no column '" + std::string(kColumns[i]) +
                                          "'; the first line names the columns x, y, z and value.");

@@ -11,8 +11,9 @@
 #include <thread>
 #include <vector>
 
+#include "core/digest.h"
+#include "core/text/hex.h"
 #include "store/cluster/cluster_process.h"
-#include "store/pg/hash.h"
 #include "store/pg/pg.h"
 
 namespace strata::store {

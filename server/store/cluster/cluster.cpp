@@ -17,11 +17,12 @@
 #include <mutex>
 #include <thread>
 
+#include "core/digest.h"
 #include "core/log.h"
+#include "core/text/hex.h"
 #include "core/text/slug.h"
 #include "store/cluster/cluster_process.h"
 #include "store/cluster/sql_readers.h"
-#include "store/pg/hash.h"
 #include "store/pg/pg.h"
 
 namespace strata::store {

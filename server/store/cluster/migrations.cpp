@@ -5,9 +5,10 @@
 #include <map>
 #include <sstream>
 
+#include "core/digest.h"
 #include "core/log.h"
+#include "core/text/hex.h"
 #include "core/text/slug.h"
-#include "store/pg/hash.h"
 
 namespace strata::store {
 namespace {

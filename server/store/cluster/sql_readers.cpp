@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "store/pg/hash.h"
+#include "core/secret.h"
 #include "store/pg/pg.h"
 
 namespace strata::store {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/digest.h"
 #include "domain/scene/look.h"
-#include "store/pg/hash.h"
 #include "store/pg/pg.h"
 
 namespace strata::store {

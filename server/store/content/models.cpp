@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/progress.h"
+#include "core/text/hex.h"
 #include "domain/scene/up.h"
 #include "store/content/look_rows.h"
 #include "store/content/looks.h"

@@ -1,6 +1,7 @@
 #include "store/people/kiosks.h"
 
-#include "store/pg/hash.h"
+#include "core/digest.h"
+#include "core/secret.h"
 #include "store/store_impl.h"
 
 namespace strata::store {

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 
+#include "core/digest.h"
+#include "core/secret.h"
 #include "store/people/accounts.h"
 #include "store/people/members.h"
 #include "store/people/tokens.h"
-#include "store/pg/hash.h"
 #include "store/store_impl.h"
 
 // Who is changed, or gets or loses a secret, is locked first (`lock_person`): what is said of them

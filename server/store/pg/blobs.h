@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "store/pg/hash.h"
+#include "core/digest.h"
 #include "store/pg/pool.h"
 
 namespace strata::store {

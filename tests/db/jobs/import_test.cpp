@@ -6,6 +6,8 @@
 #include <fstream>
 #include <thread>
 
+#include "core/digest.h"
+#include "core/text/hex.h"
 #include "jobs/import_job.h"
 #include "media/picture.h"
 #include "mesh/io/load.h"
@@ -15,7 +17,6 @@
 #include "store/content/models.h"
 #include "store/content/projects.h"
 #include "store/journal/journal_reads.h"
-#include "store/pg/hash.h"
 #include "store/pg/pg.h"
 #include "strata_dirs.h"
 #include "support/test_cluster.h"
@@ -110,7 +111,7 @@ TEST_F(Import, a_real_scan_becomes_a_model_that_holds_all_of_it) {
 
   ASSERT_EQ(model->source_files.size(), 1u);
   EXPECT_EQ(model->source_files[0].name, "Gárgola 7.PLY");
-  EXPECT_EQ(model->source_files[0].sha256, store::to_hex(store::sha256(read_file(file))));
+  EXPECT_EQ(model->source_files[0].sha256, to_hex(sha256(read_file(file))));
 }
 
 TEST_F(Import, texture_coordinates_that_can_carry_layers_are_kept) {
@@ -150,14 +151,14 @@ TEST_F(Import, a_textured_scan_keeps_its_files_and_its_picture_becomes_the_first
   EXPECT_EQ(model->name, "pot");
   ASSERT_EQ(model->source_files.size(), 3u);
   EXPECT_EQ(model->source_files[2].name, "skin.png");
-  EXPECT_EQ(model->source_files[2].sha256, store::to_hex(store::sha256(png)));
+  EXPECT_EQ(model->source_files[2].sha256, to_hex(sha256(png)));
   const auto looks = store_->looks().of_model(model->id);
   ASSERT_TRUE(looks);
   ASSERT_EQ(looks->size(), 1u);
   EXPECT_EQ((*looks)[0].name, "Base colour");
   EXPECT_EQ((*looks)[0].media_type, "image/png");
   EXPECT_EQ((*looks)[0].width, 64);
-  EXPECT_EQ((*looks)[0].sha256, store::to_hex(store::sha256(png))) << "byte for byte";
+  EXPECT_EQ((*looks)[0].sha256, to_hex(sha256(png))) << "byte for byte";
 }
 
 TEST_F(Import, a_zip_is_kept_as_it_is_and_what_is_in_it_is_imported) {

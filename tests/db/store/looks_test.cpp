@@ -2,9 +2,10 @@
 
 #include <thread>
 
+#include "core/digest.h"
+#include "core/text/hex.h"
 #include "store/content/looks.h"
 #include "store/content/models.h"
-#include "store/pg/hash.h"
 #include "store/pg/pg.h"
 #include "support/test_cluster.h"
 

@@ -6,10 +6,11 @@
 #include <random>
 #include <thread>
 
+#include "core/digest.h"
+#include "core/text/hex.h"
 #include "db/journal_painter.h"
 #include "store/content/models.h"
 #include "store/journal/journal_reads.h"
-#include "store/pg/hash.h"
 #include "store/pg/pg.h"
 
 namespace strata::store {

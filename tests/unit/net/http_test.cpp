@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "core/byte_budget.h"
-#include "core/digest.h"
 #include "core/uuid.h"
 #include "net/api/docs_page.h"
 #include "net/api/metrics.h"
@@ -304,19 +303,6 @@ TEST(WorkerPool, refuses_when_too_much_waits_and_ends_what_it_took) {
   pool.stop();
   EXPECT_EQ(done, 2);
   EXPECT_FALSE(pool.post([] {}));
-}
-
-// --- ids and secrets
-
-TEST(Digest, the_same_key_makes_the_same_valid_uuid) {
-  const Uuid a = uuid_of_text("key"), b = uuid_of_text("key"), c = uuid_of_text("other");
-  EXPECT_EQ(a, b);
-  EXPECT_NE(a, c);
-  EXPECT_EQ(parse_uuid(to_string(a)), a);
-  EXPECT_EQ(sha256_hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  EXPECT_TRUE(equal_in_constant_time("abc", "abc"));
-  EXPECT_FALSE(equal_in_constant_time("abc", "abd"));
-  EXPECT_FALSE(equal_in_constant_time("abc", "abcd"));
 }
 
 // --- the page's files

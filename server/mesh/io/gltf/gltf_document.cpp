@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/text/percent.h"
 #include "mesh/io/gltf/gltf_uri.h"
 #include "mesh/io/gltf/meshopt_stream.h"
 #include "mesh/io/load_formats.h"
@@ -174,7 +175,7 @@ Result<std::span<const std::uint8_t>> GltfDocument::buffer(std::uint64_t index) 
     }
     bytes = decoded->second;
   } else {
-    const std::string path = decode_percent(uri);
+    const std::string path = percent_decode_leniently(uri);
     const auto* file = files_->find(path);
     if (!file)
       return refuse_file("The glTF keeps its data in \"" + path.substr(0, 200) +
@@ -246,7 +247,7 @@ Result<GltfDocument::Image> GltfDocument::image(std::uint64_t index) {
                          " of the glTF is a data URI that cannot be decoded.");
     image.bytes = std::move(*data);
   } else if (!uri.empty()) {
-    const std::string path = decode_percent(uri);
+    const std::string path = percent_decode_leniently(uri);
     if (const auto* file = files_->find(path); file) {
       image.bytes.assign(file->bytes.begin(), file->bytes.end());
     } else {

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -12,6 +11,5 @@ namespace strata::mesh {
 inline bool is_data_uri(std::string_view uri) { return uri.starts_with("data:"); }
 // Nothing: it is not base64.
 std::optional<std::vector<std::uint8_t>> decode_data_uri(std::string_view uri);
-std::string decode_percent(std::string_view uri);
 
 }  // namespace strata::mesh

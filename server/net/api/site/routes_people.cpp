@@ -1,4 +1,5 @@
 // Accounts: who there is, what they may do, and how they come in.
+#include "core/text/percent.h"
 #include "core/text/timestamp.h"
 #include "domain/people/role.h"
 #include "net/api/route_help.h"

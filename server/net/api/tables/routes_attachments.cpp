@@ -6,6 +6,7 @@
 #include "app/change_notifier.h"
 #include "core/no_such.h"
 #include "core/text/filename.h"
+#include "core/text/percent.h"
 #include "domain/people/role.h"
 #include "domain/tables/attachment.h"
 #include "domain/tables/table.h"

@@ -151,13 +151,6 @@ Result<Response> import_terms(const RouteContext& context, const Request& reques
 
 // --- reading
 
-std::string hex_of(const Rgba& color) {
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string text = "#";
-  for (int i = 0; i < 3; ++i) text.append({kDigits[color[i] >> 4], kDigits[color[i] & 15]});
-  return text;
-}
-
 // Which of the terms are told: those that have the words, and those above them.
 std::vector<bool> with_those_above(const std::vector<ListedTerm>& terms,
                                    const std::vector<bool>& match) {
@@ -197,7 +190,7 @@ Response tree_response(const Request& request, const std::string& language,
                     {"match", static_cast<bool>(match[i])},
                     {"definition", term.definition},
                     {"uri", term.uri},
-                    {"color", hex_of(color_of(palette, static_cast<double>(listed.key)))},
+                    {"color", rgb_text(color_of(palette, static_cast<double>(listed.key)))},
                     {"pattern", term.pattern}});
     if (listed.depth > 0) list.back()["parent"] = *listed.parent;
   }

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace strata {
+
+// 32 random bytes in base64url without padding: 43 characters.
+std::string random_token();
+
+// Takes the same time wherever the texts differ.
+bool equal_in_constant_time(std::string_view a, std::string_view b);
+
+}  // namespace strata

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace strata {
+
+// RFC 4648. The first with padding, the second for addresses: `-` and `_`, without padding.
+std::string to_base64(std::span<const std::uint8_t> bytes);
+std::string to_base64url(std::span<const std::uint8_t> bytes);
+
+// Either alphabet, with or without padding. Bits left over at the end are ignored, as browsers do.
+std::optional<std::vector<std::uint8_t>> from_base64(std::string_view text);
+
+}  // namespace strata
