@@ -10,12 +10,12 @@ constexpr std::chrono::minutes kAfterFailure{1};  // the database may be back by
 
 }  // namespace
 
-TrashPurger::TrashPurger(store::Bin& bin, std::chrono::days keep)
-    : bin_(bin), keep_(keep), thread_([this] { run(); }) {}
+TrashPurger::TrashPurger(store::Trash& trash, std::chrono::days keep)
+    : trash_(trash), keep_(keep), thread_([this] { run(); }) {}
 
-void TrashPurger::look() {
+void TrashPurger::check_now() {
   const std::lock_guard lock(mutex_);
-  look_ = true;
+  must_check_ = true;
   wake_.notify_all();
 }
 
@@ -38,13 +38,13 @@ void TrashPurger::run() {
   for (;;) {
     {
       std::unique_lock lock(mutex_);
-      wake_.wait_for(lock, pause, [this] { return stopping_ || look_; });
+      wake_.wait_for(lock, pause, [this] { return stopping_ || must_check_; });
       if (stopping_) return;
-      look_ = false;
+      must_check_ = false;
     }
-    auto expired = bin_.expire(keep_);
+    auto expired = trash_.expire(keep_);
     Result<bool> some = expired ? Result<bool>(true) : tl::unexpected(expired.error());
-    while (some && *some && !is_stopping()) some = bin_.erase_some();
+    while (some && *some && !is_stopping()) some = trash_.erase_some();
     pause = some ? std::chrono::minutes(kBetweenLooks) : kAfterFailure;
     if (!some && !is_stopping())
       log::warning("the Bin could not be emptied, trying again: " + some.error().detail);

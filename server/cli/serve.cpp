@@ -24,7 +24,7 @@
 namespace strata::cli {
 namespace {
 
-constexpr int kMostBinDays = 36500;
+constexpr int kMaxTrashDays = 36500;
 
 struct ServeOptions {
   DataOptions data;
@@ -32,7 +32,7 @@ struct ServeOptions {
   std::vector<std::string> origins;
   std::filesystem::path tls_cert, tls_key;
   std::uint64_t gpu_memory = 0, memory = 0;
-  int bin_days = net::ServerOptions{}.bin_days;
+  int trash_days = net::ServerOptions{}.trash_days;
   bool debug = false;
 };
 
@@ -190,7 +190,7 @@ int run(ServeOptions options) {
   server_options.tls_chain = options.tls_cert;
   server_options.tls_key = options.tls_key;
   server_options.owner_token = owner_token();
-  server_options.bin_days = options.bin_days;
+  server_options.trash_days = options.trash_days;
   auto server = net::Server::start(server_options, store, rooms, jobs, **renderer);
   if (!server) return report(server.error());
 
@@ -263,10 +263,10 @@ Command add_serve(CLI::App& app) {
       ->transform(CLI::AsSizeValue(false));
   command
       ->add_option(
-          "--bin-days", options->bin_days,
+          "--bin-days", options->trash_days,
           "Days for which deleted layers and models can be restored; 0: they are erased at once")
       ->envname("STRATA_BIN_DAYS")
-      ->check(CLI::Range(0, kMostBinDays))
+      ->check(CLI::Range(0, kMaxTrashDays))
       ->capture_default_str();
   command->add_flag("--gl-debug", options->debug, "Ask the driver for debug messages (slow)");
   return [options] { return run(*options); };

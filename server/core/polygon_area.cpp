@@ -7,7 +7,7 @@
 namespace strata {
 namespace {
 
-constexpr std::size_t kMostRows = 4096;
+constexpr std::size_t kMaxRows = 4096;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ PolygonArea::PolygonArea(const std::vector<std::vector<glm::dvec2>>& rings)
       high_ = glm::max(high_, a);
       if (a.y != b.y) edges.push_back(a.y < b.y ? Edge{a, b} : Edge{b, a});
     }
-  rows_.assign(std::clamp<std::size_t>(edges.size(), 1, kMostRows) + 1, 0);
+  rows_.assign(std::clamp<std::size_t>(edges.size(), 1, kMaxRows) + 1, 0);
   for (const Edge& edge : edges)
     for (int row = row_of(edge.lower.y); row <= row_of(edge.upper.y); ++row)
       ++rows_[static_cast<std::size_t>(row) + 1];

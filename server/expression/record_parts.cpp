@@ -7,7 +7,7 @@ namespace {
 
 using Op = Expression::Op;
 
-constexpr std::uint32_t kMostDense = 1u << 16;  // keys are mostly counted up: half a MiB at most
+constexpr std::uint32_t kMaxDense = 1u << 16;  // keys are mostly counted up: half a MiB at most
 
 // The one layer whose record the expression reads; nothing where it reads a layer itself, or
 // several.
@@ -87,10 +87,10 @@ Result<SplitExpression> split_records(const Expression& expression, const std::s
 RecordNumbers::RecordNumbers(const std::vector<KeyNumber>& numbers) {
   std::uint32_t last = 0;
   for (const KeyNumber& each : numbers)
-    if (each.key < kMostDense) last = std::max(last, each.key + 1);
+    if (each.key < kMaxDense) last = std::max(last, each.key + 1);
   dense_.assign(last, kUnknown);
   for (const KeyNumber& each : numbers)
-    if (each.key < kMostDense)
+    if (each.key < kMaxDense)
       dense_[each.key] = each.number;
     else
       sparse_.push_back(each);

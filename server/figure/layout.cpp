@@ -14,7 +14,7 @@ constexpr double kMargin = 10, kGap = 4;
 constexpr double kTitle = 4.2, kText = 2.8, kSmall = 2.2;  // letters
 constexpr double kLine = 1.45;                             // of their size
 constexpr double kFrame = 0.2, kThin = 0.12;               // strokes
-constexpr int kMostTitleLines = 2, kMostCaptionLines = 8, kMostCreditLines = 3;
+constexpr int kMaxTitleLines = 2, kMaxCaptionLines = 8, kMaxCreditLines = 3;
 constexpr double kScaleWidth = 80, kScaleHeight = 16;
 constexpr double kLegendColumn = 56, kSwatchWidth = 6, kSwatchHeight = 3, kEntry = 4.2,
                  kTitleGap = 1.2;
@@ -355,9 +355,9 @@ SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions,
   sheet_.size = paper;
   const double width = paper.x - 2 * kMargin;
   const double text_width = std::max(40.0, width - kScaleWidth - kGap);
-  const auto title = wrapped(captions.title, kTitle, true, text_width, kMostTitleLines);
-  const auto caption = wrapped(captions.caption, kText, false, text_width, kMostCaptionLines);
-  const auto credit = wrapped(captions.credit, kSmall, false, text_width, kMostCreditLines);
+  const auto title = wrapped(captions.title, kTitle, true, text_width, kMaxTitleLines);
+  const auto caption = wrapped(captions.caption, kText, false, text_width, kMaxCaptionLines);
+  const auto credit = wrapped(captions.credit, kSmall, false, text_width, kMaxCreditLines);
   const double text_height =
       height_of(title, kTitle) + height_of(caption, kText) + height_of(credit, kSmall) + 2;
   const double strip = std::max(text_height, kScaleHeight);

@@ -7,7 +7,7 @@
 namespace strata::gl {
 namespace {
 
-constexpr std::size_t kSmallest = std::size_t{64} << 10;
+constexpr std::size_t kMin = std::size_t{64} << 10;
 
 }  // namespace
 
@@ -41,7 +41,7 @@ void Readback::submit() {
 }
 
 Result<Readback> ReadbackPool::begin(std::size_t bytes) {
-  const std::size_t capacity = std::bit_ceil(std::max(bytes, kSmallest));
+  const std::size_t capacity = std::bit_ceil(std::max(bytes, kMin));
   Readback readback;
   readback.size_ = bytes;
   const auto fitting = std::find_if(free_.begin(), free_.end(),

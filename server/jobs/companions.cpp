@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // of a material library, a glTF's JSON, a PLY's header
-constexpr std::size_t kLargestText = std::size_t{64} << 20;
+constexpr std::size_t kMaxText = std::size_t{64} << 20;
 
 // A name may stand between quotation marks.
 constexpr std::string_view kAroundNames = " \t\r\"";
@@ -69,7 +69,7 @@ struct Collector {
 
   void add_textures(const fs::path& library) {
     const auto text = MappedFile::open(folder / library);
-    if (!text || text->view().size() > kLargestText) return;
+    if (!text || text->view().size() > kMaxText) return;
     const auto is_map = [](const std::string& word) {
       return word.starts_with("map_") || word == "norm" || word == "bump";
     };
@@ -86,7 +86,7 @@ struct Collector {
 
   void add_ply(std::string_view text) {
     const std::string_view header =
-        text.substr(0, std::min(text.find("end_header"), std::min(text.size(), kLargestText)));
+        text.substr(0, std::min(text.find("end_header"), std::min(text.size(), kMaxText)));
     each_line(
         header, [](const std::string& word) { return word == "comment"; },
         [&](std::string_view rest) {
@@ -98,7 +98,7 @@ struct Collector {
 
   void add_gltf(std::string_view text) {
     const auto json =
-        nlohmann::json::parse(text.substr(0, std::min(text.size(), kLargestText)), nullptr, false);
+        nlohmann::json::parse(text.substr(0, std::min(text.size(), kMaxText)), nullptr, false);
     if (!json.is_object()) return;
     for (const char* list : {"buffers", "images"}) {
       const auto entries = json.find(list);

@@ -23,8 +23,8 @@ namespace {
 
 // Layers of any size from here on fit the atlas: its gaps are made for the coarsest.
 constexpr int kLowestResolution = 2048;
-constexpr int kHighestResolution = 16384;
-constexpr std::size_t kLongestName = 200;
+constexpr int kMaxResolution = 16384;
+constexpr std::size_t kMaxNameLength = 200;
 
 // Shares of the whole import, as measured on scans of 100 000 to 1 000 000 triangles.
 constexpr double kRead = 0.15, kUnfolded = 0.7, kPainted = 0.77, kBuilt = 0.85;
@@ -92,7 +92,7 @@ Result<mesh::Atlas> atlas_for(const mesh::TriangleMesh& mesh, std::vector<Repair
 }  // namespace
 
 Result<void> check(const ImportRequest& request) {
-  if (request.name.size() > kLongestName)
+  if (request.name.size() > kMaxNameLength)
     return fail(ErrorCode::invalid, "Name too long", "A name has at most 200 bytes.", "name");
   if (!request.up.empty() && !is_up(request.up))
     return fail(ErrorCode::invalid, "Unknown direction", "`up` is one of x, y, z, -x, -y and -z.",
@@ -104,7 +104,7 @@ Result<void> check(const ImportRequest& request) {
     return fail(ErrorCode::invalid, "Distance not usable",
                 "The distance to weld within is a number of 0 or more.", "weld");
   const int resolution = request.resolution;
-  if (resolution != 0 && (resolution < kLowestResolution || resolution > kHighestResolution ||
+  if (resolution != 0 && (resolution < kLowestResolution || resolution > kMaxResolution ||
                           !std::has_single_bit(unsigned(resolution))))
     return fail(ErrorCode::invalid, "Resolution not usable",
                 "The resolution of layers is 2048, 4096, 8192 or 16384.", "resolution");
@@ -113,7 +113,7 @@ Result<void> check(const ImportRequest& request) {
 }
 
 Result<Model> import_model(store::Store& store, const ImportRequest& request, Progress& progress,
-                           const store::FirstAnswer<Model>& answer, MemoryLedger* memory) {
+                           const store::IdempotentResponse<Model>& answer, MemoryLedger* memory) {
   STRATA_TRY(check(request));
   const ImportFile& scan = request.files[*mesh::pick_scan(names_of(request.files))];
   const auto project = STRATA_TRY(store.projects().find(request.project));
@@ -144,8 +144,8 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
   auto base_color =
       STRATA_TRY(mesh::bake_base_color(loaded.mesh, atlas, loaded.repairs, progress, memory));
   if (auto& color = base_color)
-    fresh.looks.push_back({"Base colour", std::string(media_type(color->format)),
-                           std::move(color->bytes), color->width, color->height});
+    fresh.images.push_back({"Base colour", std::string(media_type(color->format)),
+                            std::move(color->bytes), color->width, color->height});
 
   progress.begin_stage(kPainted, kBuilt);
   progress.report(0, "Building the model");

@@ -8,7 +8,7 @@
 #include "core/progress.h"
 #include "domain/scene/model.h"
 #include "mesh/io/input_files.h"
-#include "store/content/first_answer.h"
+#include "store/content/idempotent_response.h"
 #include "store/store.h"
 
 namespace strata::jobs {
@@ -41,7 +41,7 @@ Result<void> check(const ImportRequest& request);
 // they become the base colour is reserved in `memory` (null: not counted); where it has no room the
 // base colour is smaller, and `repairs` says so.
 Result<Model> import_model(store::Store& store, const ImportRequest& request, Progress& progress,
-                           const store::FirstAnswer<Model>& answer = {},
+                           const store::IdempotentResponse<Model>& answer = {},
                            MemoryLedger* memory = nullptr);
 
 // The demo project: the pot of mesh::make_demo_pot with two filled layers, `cracks` and `pieces`

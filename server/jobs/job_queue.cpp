@@ -39,7 +39,7 @@ Error lost_problem(JobKind kind) {
           "The server was restarted before this was finished. Layers that it had begun are on the model, hidden and incomplete: delete "
           "them and start it again.",
           {}};
-    case JobKind::look:
+    case JobKind::image:
       return {
           ErrorCode::unavailable,
           kTitle,
@@ -87,7 +87,7 @@ JobStatus status_of(const store::StoredJob& stored) {
     status.result.emplace(stored.result.value("model", std::int64_t{0}));
     status.result->layers = stored.result.value("layers", std::vector<std::int64_t>());
     if (stored.result.contains("look"))
-      status.result->look = stored.result["look"].get<std::int64_t>();
+      status.result->image = stored.result["look"].get<std::int64_t>();
     status.result->report = stored.result.value("report", nlohmann::json());
   }
   return status;
@@ -109,7 +109,7 @@ store::StoredJob stored_of(const JobStatus& status) {
   if (!status.result) return stored;
   stored.result = {{"model", status.result->model}};
   if (!status.result->layers.empty()) stored.result["layers"] = status.result->layers;
-  if (status.result->look) stored.result["look"] = *status.result->look;
+  if (status.result->image) stored.result["look"] = *status.result->image;
   if (!status.result->report.is_null()) stored.result["report"] = status.result->report;
   return stored;
 }

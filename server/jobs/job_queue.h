@@ -18,7 +18,7 @@ class Jobs;
 namespace strata::jobs {
 
 // What a job makes.
-enum class JobKind { import, layers, look, figure };
+enum class JobKind { import, layers, image, figure };
 enum class JobState { queued, running, done, failed, cancelled };
 
 // What a job made.
@@ -26,8 +26,8 @@ struct JobResult {
   JobResult(std::int64_t the_model)
       : model(the_model) {}  // NOLINT(google-explicit-constructor): most make only that
   std::int64_t model = 0;
-  std::vector<std::int64_t> layers;  // new ones on it
-  std::optional<std::int64_t> look;  // a new one on it
+  std::vector<std::int64_t> layers;   // new ones on it
+  std::optional<std::int64_t> image;  // a new one on it
   // what else is to be told, see the schema `TransferReport`; null: nothing
   nlohmann::json report;
   std::shared_ptr<const TemporaryFile> file;

@@ -55,7 +55,7 @@ int orthophoto_resolution(const Model& model, const query::WorldFile& world) {
   int resolution = model.atlas.lowest_resolution;
   double texel_area = model.area / (std::max(model.atlas.coverage, 1e-6) *
                                     std::pow(static_cast<double>(resolution), 2));
-  for (; resolution < kLargestOrthophotoLook && texel_area > pixel_area(world); texel_area /= 4)
+  for (; resolution < kMaxOrthophotoSurfaceImage && texel_area > pixel_area(world); texel_area /= 4)
     resolution *= 2;
   return resolution;
 }
@@ -64,8 +64,7 @@ OrthophotoSampler::OrthophotoSampler(Picture picture, const query::WorldFile& wo
                                      double texel_area)
     : finder_(picture.width, picture.height, world), height_(picture.height), scale_(1) {
   const int side = std::max(picture.width, picture.height);
-  auto image =
-      render::make_look_image(std::move(picture.rgba), picture.width, picture.height, side);
+  auto image = render::make_mipmaps(std::move(picture.rgba), picture.width, picture.height, side);
   std::size_t level = 0;
   for (double area = 4 * pixel_area(world); area <= texel_area && level + 1 < image.levels.size();
        area *= 4) {
@@ -101,7 +100,7 @@ std::optional<std::uint32_t> OrthophotoSampler::color_at(const glm::dvec2& place
   return bits;
 }
 
-Picture orthophoto_look(const TileMap& colors, const mesh::SurfaceMap& map) {
+Picture orthophoto_surface_image(const TileMap& colors, const mesh::SurfaceMap& map) {
   Picture picture = empty_picture(map.resolution);
   for (const auto& [address, tile] : colors)
     for_each_pixel_of(address, tile->valid, map.resolution,

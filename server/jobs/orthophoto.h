@@ -8,14 +8,14 @@
 #include "media/picture.h"
 #include "mesh/texels/surface_map.h"
 #include "query/rasters/placed_picture.h"
-#include "render/memory/look_image.h"
+#include "render/memory/mipmapped_picture.h"
 
 namespace strata::jobs {
 
 // An orthophoto that becomes a look: its colours, carried along its plane onto the surface, as a
 // picture on the atlas.
 
-constexpr int kLargestOrthophotoLook = 8192;  // texels a side: what looks have on the GPU
+constexpr int kMaxOrthophotoSurfaceImage = 8192;  // texels a side: what looks have on the GPU
 
 // Texels a side at which a texel holds no more surface than a pixel, from the atlas' lowest
 // resolution to the largest.
@@ -34,13 +34,13 @@ class OrthophotoSampler {
  private:
   query::PixelFinder finder_;
   int height_;
-  render::LookImage::Level level_;  // lowest row first
-  double scale_;                    // its pixels to those of the picture
+  render::MipmappedPicture::Level level_;  // lowest row first
+  double scale_;                           // its pixels to those of the picture
 };
 
 // The picture of u32 texels as `color_at` gives them, top row first. Surface that is not set is
 // clear, in colours that go on from what is; off the surface colours and cover go on from the
 // islands: so neither seams nor borders show where it is filtered.
-Picture orthophoto_look(const TileMap& colors, const mesh::SurfaceMap& map);
+Picture orthophoto_surface_image(const TileMap& colors, const mesh::SurfaceMap& map);
 
 }  // namespace strata::jobs

@@ -248,8 +248,8 @@ class Measure {
 
 // Of what was painted, by a part of the tiles' texels at even steps.
 ValueRange range_of(const TileMap& tiles, ValueType type) {
-  constexpr std::size_t kMostValues = 1'000'000;
-  const std::size_t step = std::max<std::size_t>(1, tiles.size() * kTexelsPerTile / kMostValues);
+  constexpr std::size_t kMaxValues = 1'000'000;
+  const std::size_t step = std::max<std::size_t>(1, tiles.size() * kTexelsPerTile / kMaxValues);
   std::vector<float> values;
   double least = INFINITY, most = -INFINITY;
   for (const auto& [address, tile] : tiles)

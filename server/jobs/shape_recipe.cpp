@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 12> kNames{
 
 constexpr double kEdgesPerRadius = 4;
 constexpr int kDefaultRays = 64;
-constexpr int kFewestRays = 16, kMostRays = 1024;
+constexpr int kMinRays = 16, kMaxRays = 1024;
 
 bool takes_radius(ShapeKind kind) {
   return kind >= ShapeKind::mean_curvature && kind <= ShapeKind::roughness;
@@ -199,7 +199,7 @@ Result<ShapeRecipe> completed(ShapeRecipe recipe, const Model& model) {
   }
   if (recipe.kind == ShapeKind::ambient_occlusion) {
     if (!recipe.rays) recipe.rays = kDefaultRays;
-    if (*recipe.rays < kFewestRays || *recipe.rays > kMostRays)
+    if (*recipe.rays < kMinRays || *recipe.rays > kMaxRays)
       return fail(ErrorCode::invalid, "Out of range", "From 16 to 1024 rays a point.",
                   "compute.rays");
   }

@@ -256,7 +256,7 @@ Result<Picture> decode_coarse(std::span<const std::uint8_t> bytes, int side) {
   if (info.format != PictureFormat::jpeg) return decode_picture(bytes);
   int divisor = 1;
   while (divisor < 8 && std::max(info.width, info.height) / (2 * divisor) >= side) divisor *= 2;
-  return decode_jpeg(bytes, kLargestPictureSide, divisor);
+  return decode_jpeg(bytes, kMaxPictureSide, divisor);
 }
 
 std::vector<std::uint8_t> encode_jpeg(std::span<const std::uint8_t> rgba, int width, int height,

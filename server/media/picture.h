@@ -30,8 +30,9 @@ std::string_view media_type(PictureFormat format);  // "image/jpeg", "image/png"
 // fields of its header make sense.
 std::optional<PictureFormat> picture_format(std::span<const std::uint8_t> bytes);
 
-// Looks are JPEG or PNG, which every browser shows. Others are stored as the PNG of their pixels.
-inline bool is_look_format(PictureFormat format) {
+// SurfaceImages are JPEG or PNG, which every browser shows. Others are stored as the PNG of their
+// pixels.
+inline bool is_surface_image_format(PictureFormat format) {
   return format == PictureFormat::jpeg || format == PictureFormat::png;
 }
 
@@ -40,18 +41,18 @@ struct PictureInfo {
   int width = 0, height = 0;
 };
 
-constexpr int kLargestPictureSide = 16384;
+constexpr int kMaxPictureSide = 16384;
 
 // The size, from the header alone. unsupported: none of the formats, by its name where it is a
 // known one; invalid: damaged, or a side of more than `largest_side`.
 Result<PictureInfo> inspect_picture(std::span<const std::uint8_t> bytes,
-                                    int largest_side = kLargestPictureSide);
+                                    int largest_side = kMaxPictureSide);
 
 // Whole, as RGBA8. Refused as above, where the data ends before the picture does, and where it is
 // of a kind that is not read (invalid, which names it). Sizes are checked before anything is
 // allocated; takes at most twice the pixels' memory.
 Result<Picture> decode_picture(std::span<const std::uint8_t> bytes,
-                               int largest_side = kLargestPictureSide);
+                               int largest_side = kMaxPictureSide);
 
 // The same, but a JPEG may come smaller, by halves, as long as its longer side keeps `side` pixels:
 // it then takes little memory.

@@ -22,7 +22,7 @@
 namespace strata {
 namespace {
 
-static_assert(STBI_MAX_DIMENSIONS == kLargestPictureSide);
+static_assert(STBI_MAX_DIMENSIONS == kMaxPictureSide);
 
 // Numbers of a header, the lowest byte first; nothing beyond its end.
 std::uint32_t number(std::span<const std::uint8_t> bytes, std::size_t at, int size) {

@@ -7,7 +7,7 @@
 namespace strata {
 namespace {
 
-constexpr int kMostSamples = 8;
+constexpr int kMaxSamples = 8;
 
 tl::unexpected<Error> damaged(const TiffMemory& file) {
   return damaged_picture(PictureFormat::tiff,
@@ -36,7 +36,7 @@ Result<PictureInfo> describe(TIFF* tiff, int largest_side) {
         PictureFormat::tiff,
         what + "; save it with 8 bits a sample, as RGB, without alpha or with it");
   };
-  if (samples < 1 || samples > kMostSamples)
+  if (samples < 1 || samples > kMaxSamples)
     return unread("it has " + std::to_string(samples) + " samples a pixel");
   if (kind == SAMPLEFORMAT_IEEEFP) return unread("its samples are floating-point numbers");
   if (kind == SAMPLEFORMAT_INT) return unread("its samples are signed numbers");

@@ -6,7 +6,7 @@
 namespace strata {
 namespace {
 
-constexpr double kLeastShare = 0.5;  // of a cell that is the tool
+constexpr double kMinShare = 0.5;  // of a cell that is the tool
 
 bool has_transparency(const Picture& picture) {
   for (std::size_t i = 3; i < picture.rgba.size(); i += 4)
@@ -69,7 +69,7 @@ Result<ShapeBits> shape_of(const Picture& picture, std::optional<ShapePart> part
       const double x0 = left + x * cell, y0 = top + y * cell, x1 = x0 + cell, y1 = y0 + cell;
       const double sum =
           sums.up_to(x1, y1) - sums.up_to(x0, y1) - sums.up_to(x1, y0) + sums.up_to(x0, y0);
-      if (sum < kLeastShare * 255 * cell * cell) continue;
+      if (sum < kMinShare * 255 * cell * cell) continue;
       const auto bit = static_cast<std::size_t>(y * kShapeSide + x);
       bits[bit / 64] |= std::uint64_t{1} << (bit % 64);
       any = true;

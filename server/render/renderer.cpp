@@ -189,14 +189,14 @@ void Renderer::remove_model(ModelHandle model) {
   impl_->post_removal([model](GpuScene& scene) { scene.remove_model(model); });
 }
 
-void Renderer::add_look(ModelHandle model, std::shared_ptr<const LookImage> image,
-                        Done<LookHandle> done) {
+void Renderer::add_surface_image(ModelHandle model, std::shared_ptr<const MipmappedPicture> image,
+                                 Done<SurfaceImageHandle> done) {
   impl_->post(Lane::background,
-              std::make_shared<LookUpload>(model, std::move(image), std::move(done)));
+              std::make_shared<SurfaceImageUpload>(model, std::move(image), std::move(done)));
 }
 
-void Renderer::remove_look(LookHandle look) {
-  impl_->post_removal([look](GpuScene& scene) { scene.remove_look(look); });
+void Renderer::remove_surface_image(SurfaceImageHandle handle) {
+  impl_->post_removal([handle](GpuScene& scene) { scene.remove_surface_image(handle); });
 }
 
 void Renderer::add_surface_map(ModelHandle model, std::shared_ptr<const mesh::SurfaceMap> map,

@@ -18,8 +18,8 @@
 #include "domain/scene/stroke.h"
 #include "mesh/surface/geometry.h"
 #include "mesh/texels/surface_map.h"
-#include "render/memory/look_image.h"
-#include "render/view/marks.h"
+#include "render/memory/mipmapped_picture.h"
+#include "render/view/drawn_features.h"
 
 namespace strata::render {
 
@@ -28,7 +28,7 @@ namespace strata::render {
 using ModelHandle = std::uint64_t;
 using LayerHandle = std::uint64_t;
 using ViewHandle = std::uint64_t;
-using LookHandle = std::uint64_t;
+using SurfaceImageHandle = std::uint64_t;
 
 // Where strokes are painted: a compute pass, or a kernel on the CPU, which is several times faster
 // where the GPU is a CPU.
@@ -84,21 +84,21 @@ struct LayerStyle {  // one layer in a view, bottom to top
   bool operator==(const LayerStyle&) const = default;
 };
 
-struct LookStyle {
+struct SurfaceImageStyle {
   // one picture of the surface in a view, bottom to top, over the colours of the vertices
-  LookHandle look = 0;
+  SurfaceImageHandle image = 0;
   float opacity = 1;
-  bool operator==(const LookStyle&) const = default;
+  bool operator==(const SurfaceImageStyle&) const = default;
 };
-constexpr std::size_t kMaxLooksShown = 4;
+constexpr std::size_t kMaxSurfaceImagesShown = 4;
 
 // Told apart by the object: nothing of it may change. Null: none.
-using MarksShown = std::shared_ptr<const std::vector<DrawnMark>>;
+using FeaturesShown = std::shared_ptr<const std::vector<DrawnFeature>>;
 
 struct ViewStyle {  // what a view shows of its model
   std::vector<LayerStyle> layers;
-  std::vector<LookStyle> looks;  // kMaxLooksShown at most
-  MarksShown marks;              // over the layers, the last ones on top
+  std::vector<SurfaceImageStyle> images;  // kMaxSurfaceImagesShown at most
+  FeaturesShown features;                 // over the layers, the last ones on top
   Light light;
   Background background{};
   double unit_mm = 1000;  // length of the model's unit, for patterns of palettes
@@ -177,8 +177,9 @@ class Renderer {
 
   void add_model(ModelGeometry geometry, Done<ModelHandle> done);
   void remove_model(ModelHandle model);  // and its layers, looks, surface maps and views
-  void add_look(ModelHandle model, std::shared_ptr<const LookImage> image, Done<LookHandle> done);
-  void remove_look(LookHandle look);
+  void add_surface_image(ModelHandle model, std::shared_ptr<const MipmappedPicture> image,
+                         Done<SurfaceImageHandle> done);
+  void remove_surface_image(SurfaceImageHandle handle);
   // Needed before strokes at this resolution; baked by the caller, uploaded in slices.
   void add_surface_map(ModelHandle model, std::shared_ptr<const mesh::SurfaceMap> map,
                        Done<void> done);

@@ -77,7 +77,7 @@ nlohmann::json to_json(const EditAnswer& answer) {
   return json;
 }
 
-EditAnswer first_answer(const store::JournalRow& row) {
+EditAnswer idempotent_response(const store::JournalRow& row) {
   return {row.sequence, row.answer.value("texels_changed", std::uint64_t{0}),
           row.answer.value("area_m2", 0.0), true, row.answer.value("provisional", false)};
 }

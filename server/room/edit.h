@@ -102,6 +102,6 @@ bool computes(const EditRequest& edit);
 Result<void> check_not_locked(const Layer& layer, Role role, bool computing = false);
 
 // What a repeat of an edit in the journal is told.
-EditAnswer first_answer(const store::JournalRow& row);
+EditAnswer idempotent_response(const store::JournalRow& row);
 
 }  // namespace strata::room

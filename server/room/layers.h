@@ -10,8 +10,8 @@
 #include "domain/people/visibility.h"
 #include "domain/tables/table.h"
 #include "expression/expression.h"
-#include "store/content/bin.h"
-#include "store/content/first_answer.h"
+#include "store/content/idempotent_response.h"
+#include "store/content/trash.h"
 
 namespace strata::room {
 
@@ -23,20 +23,22 @@ class Layers {
   virtual std::vector<Layer> all() const = 0;                    // by order
   virtual Result<Layer> find(const std::string& ref) const = 0;  // id or slug
   // A database layer that names no table gets one of its own name with `columns`.
-  virtual Result<Layer> create(Layer layer, const store::FirstAnswer<Layer>& answer = {},
+  virtual Result<Layer> create(Layer layer, const store::IdempotentResponse<Layer>& answer = {},
                                std::vector<Column> columns = {}) = 0;
   // Of a layer that it locks every edit that had begun is durable, or refused, when it returns.
-  virtual Result<Layer> update(Layer layer, const store::FirstAnswer<Layer>& answer = {}) = 0;
+  virtual Result<Layer> update(Layer layer,
+                               const store::IdempotentResponse<Layer>& answer = {}) = 0;
   // The layer with room for larger keys or values, its history too; `layer` as it was read. Refused
   // (invalid, `type`): a type that it does not widen to, and a computed layer.
   virtual Result<Layer> widen(const Layer& layer, ValueType type,
-                              const store::FirstAnswer<Layer>& answer = {}) = 0;
+                              const store::IdempotentResponse<Layer>& answer = {}) = 0;
   // for ever
-  virtual Result<void> erase(std::int64_t id, const store::FirstAnswer<>& answer = {}) = 0;
+  virtual Result<void> erase(std::int64_t id, const store::IdempotentResponse<>& answer = {}) = 0;
   // Into the trash, and out of it: who restored layers hear of is one that is made.
-  virtual Result<void> put_in_trash(std::int64_t id, const store::FirstAnswer<>& answer) = 0;
-  virtual Result<store::BinRestored> restore(
-      const store::BinEntry& entry, const store::FirstAnswer<store::BinRestored>& answer) = 0;
+  virtual Result<void> put_in_trash(std::int64_t id, const store::IdempotentResponse<>& answer) = 0;
+  virtual Result<store::TrashRestored> restore(
+      const store::TrashEntry& entry,
+      const store::IdempotentResponse<store::TrashRestored>& answer) = 0;
   // A ComputeEdit of the layer was durable with this sequence, and the tables that its expression
   // reads stood there before it.
   virtual Result<Layer> mark_computed(std::int64_t id, const std::string& expression,

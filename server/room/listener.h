@@ -9,8 +9,8 @@
 #include "core/uuid.h"
 #include "domain/layers/layer.h"
 #include "domain/layers/review.h"
-#include "domain/scene/look.h"
 #include "domain/scene/model.h"
+#include "domain/scene/surface_image.h"
 #include "room/edit_answer.h"
 
 namespace strata::room {
@@ -42,7 +42,7 @@ class Listener {
   virtual void edits_unsaved(const std::vector<Edit>& edits, const Error& why) = 0;
   enum class LayerChange { created, changed, deleted };
   virtual void layer_changed(LayerChange change, const Layer& layer) = 0;
-  virtual void look_changed(LayerChange change, const Look& look) = 0;
+  virtual void surface_image_changed(LayerChange change, const SurfaceImage& image) = 0;
   virtual void model_changed(const Model& model) = 0;
   virtual void model_deleted() = 0;  // nothing else follows
   virtual void presence_changed() = 0;

@@ -38,25 +38,26 @@ class FilteredLayers final : public Layers {
   }
 
   // Of layers that were found here.
-  Result<Layer> create(Layer layer, const store::FirstAnswer<Layer>& answer,
+  Result<Layer> create(Layer layer, const store::IdempotentResponse<Layer>& answer,
                        std::vector<Column> columns) override {
     return layers_.create(std::move(layer), answer, std::move(columns));
   }
-  Result<Layer> update(Layer layer, const store::FirstAnswer<Layer>& answer) override {
+  Result<Layer> update(Layer layer, const store::IdempotentResponse<Layer>& answer) override {
     return layers_.update(std::move(layer), answer);
   }
   Result<Layer> widen(const Layer& layer, ValueType type,
-                      const store::FirstAnswer<Layer>& answer) override {
+                      const store::IdempotentResponse<Layer>& answer) override {
     return layers_.widen(layer, type, answer);
   }
-  Result<void> erase(std::int64_t id, const store::FirstAnswer<>& answer) override {
+  Result<void> erase(std::int64_t id, const store::IdempotentResponse<>& answer) override {
     return layers_.erase(id, answer);
   }
-  Result<void> put_in_trash(std::int64_t id, const store::FirstAnswer<>& answer) override {
+  Result<void> put_in_trash(std::int64_t id, const store::IdempotentResponse<>& answer) override {
     return layers_.put_in_trash(id, answer);
   }
-  Result<store::BinRestored> restore(
-      const store::BinEntry& entry, const store::FirstAnswer<store::BinRestored>& answer) override {
+  Result<store::TrashRestored> restore(
+      const store::TrashEntry& entry,
+      const store::IdempotentResponse<store::TrashRestored>& answer) override {
     return layers_.restore(entry, answer);
   }
   Result<Layer> mark_computed(std::int64_t id, const std::string& expression, std::int64_t sequence,
@@ -241,12 +242,13 @@ class RoleFilteredRoom final : public Room {
         queries_(room_->queries(), layers_, role),
         pictures_(room_->pictures(), layers_, role),
         participants_(room_->participants(), role) {
-    parts_ = {&layers_,   &edits_,         &queries_,     &room_->surface(),
-              &pictures_, &room_->looks(), &participants_};
+    parts_ = {&layers_,          &edits_,    &queries_,
+              &room_->surface(), &pictures_, &room_->surface_images(),
+              &participants_};
   }
 
   Model model() const override { return room_->model(); }
-  Result<Model> update_model(Model model, const store::FirstAnswer<Model>& answer) override {
+  Result<Model> update_model(Model model, const store::IdempotentResponse<Model>& answer) override {
     return room_->update_model(std::move(model), answer);
   }
 

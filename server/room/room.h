@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #include "domain/scene/model.h"
-#include "store/content/first_answer.h"
+#include "store/content/idempotent_response.h"
 
 namespace strata::room {
 
@@ -11,7 +11,7 @@ class Edits;
 class Queries;
 class Surface;
 class Pictures;
-class Looks;
+class SurfaceImages;
 class Participants;
 
 // One open model, as somebody sees it: layers that they do not see are not there. The only place
@@ -22,7 +22,8 @@ class Room {
   virtual ~Room() = default;
 
   virtual Model model() const = 0;
-  virtual Result<Model> update_model(Model model, const store::FirstAnswer<Model>& answer = {}) = 0;
+  virtual Result<Model> update_model(Model model,
+                                     const store::IdempotentResponse<Model>& answer = {}) = 0;
 
   Layers& layers() { return *parts_.layers; }
   const Layers& layers() const { return *parts_.layers; }
@@ -32,8 +33,8 @@ class Room {
   Surface& surface() { return *parts_.surface; }
   const Surface& surface() const { return *parts_.surface; }
   Pictures& pictures() { return *parts_.pictures; }
-  Looks& looks() { return *parts_.looks; }
-  const Looks& looks() const { return *parts_.looks; }
+  SurfaceImages& surface_images() { return *parts_.images; }
+  const SurfaceImages& surface_images() const { return *parts_.images; }
   Participants& participants() { return *parts_.participants; }
   const Participants& participants() const { return *parts_.participants; }
 
@@ -44,7 +45,7 @@ class Room {
     Queries* queries = nullptr;
     Surface* surface = nullptr;
     Pictures* pictures = nullptr;
-    Looks* looks = nullptr;
+    SurfaceImages* images = nullptr;
     Participants* participants = nullptr;
   };
   Parts parts_;  // of whoever implements the room, before anybody else has it

@@ -36,8 +36,8 @@ class Surface {
   // What maps and measurements paint (query/maps), for an ImportEdit `over` the layer.
   // Around the surface point nearest to each place, which may lie `tolerance` from it (model
   // units): refused otherwise (invalid).
-  virtual Result<TileMap> dabs(const Layer& layer, const std::vector<PlacedValue>& values,
-                               double radius, double tolerance) = 0;
+  virtual Result<TileMap> point_splats(const Layer& layer, const std::vector<PlacedValue>& values,
+                                       double radius, double tolerance) = 0;
   // The surface that is seen first along a direction, without perspective, by a function of its
   // place in the world.
   virtual Result<TileMap> project(const Layer& layer, const glm::dvec3& direction,

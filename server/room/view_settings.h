@@ -32,15 +32,16 @@ struct LayerView {
   std::optional<int> order{};          // drawn ascending, as Layer::order
 };
 
-struct LookView {
-  std::int64_t look_id = 0;
+struct SurfaceImageView {
+  std::int64_t surface_image_id = 0;
   double opacity = 1;
 };
 
 // What one person's view shows.
 struct ViewSettings {
   std::vector<LayerView> layers;
-  std::optional<std::vector<LookView>> looks;  // bottom to top; nothing: those visible by default
+  std::optional<std::vector<SurfaceImageView>>
+      images;  // bottom to top; nothing: those visible by default
   Light light;
   Background background{};
 

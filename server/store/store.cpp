@@ -29,7 +29,7 @@ Result<std::unique_ptr<Store>> Store::open(StoreOptions options,
 
 Projects& Store::projects() { return impl_->projects; }
 Models& Store::models() { return impl_->models; }
-Looks& Store::looks() { return impl_->looks; }
+SurfaceImages& Store::surface_images() { return impl_->images; }
 Layers& Store::layers() { return impl_->layers; }
 Tables& Store::tables() { return impl_->tables; }
 Records& Store::records() { return impl_->records; }
@@ -47,7 +47,7 @@ NamedParts& Store::tours() { return impl_->tours; }
 Jobs& Store::jobs() { return impl_->jobs; }
 Kiosks& Store::kiosks() { return impl_->kiosks; }
 Groups& Store::groups() { return impl_->groups; }
-Bin& Store::bin() { return impl_->bin; }
+Trash& Store::trash() { return impl_->trash; }
 
 Result<StoreInfo> Store::info() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<StoreInfo> {
@@ -74,9 +74,9 @@ bool Store::ready() {
 }
 
 Result<void> check_name(const std::string& name) {
-  if (name.empty() || name.size() > kLongestName)
+  if (name.empty() || name.size() > kMaxNameLength)
     return fail(ErrorCode::malformed, "Bad name",
-                "`name` must have 1 to " + std::to_string(kLongestName) + " bytes of UTF-8.",
+                "`name` must have 1 to " + std::to_string(kMaxNameLength) + " bytes of UTF-8.",
                 "name");
   return check_text(name, "name");
 }

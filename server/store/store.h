@@ -14,14 +14,14 @@ namespace strata::store {
 class Accounts;
 class Answers;
 class Attachments;
-class Bin;
+class Trash;
 class Comments;
 class Groups;
 class Jobs;
 class Journal;
 class Kiosks;
 class Layers;
-class Looks;
+class SurfaceImages;
 class Members;
 class Models;
 class NamedParts;
@@ -48,7 +48,8 @@ struct StoreInfo {
 // Everything durable. All calls block the calling thread, are thread-safe and take a connection
 // from the pool; when the database is away they return an Error unavailable ("Database
 // unavailable") after trying to reconnect. Constraint failures are an Error conflict, unknown ids
-// not_found, a stale `version` `stale`. Changes keep the caller's answer with them (FirstAnswer).
+// not_found, a stale `version` `stale`. Changes keep the caller's answer with them
+// (IdempotentResponse).
 class Store {
  public:
   // Connects and applies the missing migrations of `migrations_dir`; a newer schema than known is
@@ -66,7 +67,7 @@ class Store {
   // long as this.
   Projects& projects();
   Models& models();
-  Looks& looks();
+  SurfaceImages& surface_images();
   Layers& layers();
   Tables& tables();
   Records& records();
@@ -84,7 +85,7 @@ class Store {
   Jobs& jobs();
   Kiosks& kiosks();
   Groups& groups();
-  Bin& bin();
+  Trash& trash();
 
  private:
   Store();

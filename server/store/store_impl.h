@@ -6,15 +6,15 @@
 #include "core/no_such.h"
 #include "core/text/slug.h"
 #include "store/content/answers.h"
-#include "store/content/bin.h"
 #include "store/content/comments.h"
 #include "store/content/jobs.h"
 #include "store/content/layers.h"
-#include "store/content/looks.h"
 #include "store/content/models.h"
 #include "store/content/named_parts.h"
 #include "store/content/projects.h"
+#include "store/content/surface_images.h"
 #include "store/content/tools.h"
+#include "store/content/trash.h"
 #include "store/journal/journal_reads.h"
 #include "store/people/accounts.h"
 #include "store/people/groups.h"
@@ -64,12 +64,13 @@ Result<void> join_groups(PgConnection& connection, std::int64_t person_id,
 Result<void> check_project_role(Role role);  // invalid: not one that is given in projects
 
 template <class T>
-Result<void> keep(PgConnection& connection, const FirstAnswer<T>& answer, const Result<T>& effect) {
+Result<void> keep(PgConnection& connection, const IdempotentResponse<T>& answer,
+                  const Result<T>& effect) {
   if (answer.job != 0) STRATA_TRY(finish_job(connection, answer.job, answer.make(*effect)));
   return answer.key.empty() ? Result<void>{}
                             : insert_answer(connection, answer.key, answer.make(*effect));
 }
-inline Result<void> keep(PgConnection& connection, const FirstAnswer<>& answer,
+inline Result<void> keep(PgConnection& connection, const IdempotentResponse<>& answer,
                          const Result<void>&) {
   return answer.key.empty() ? Result<void>{} : insert_answer(connection, answer.key, answer.make());
 }
@@ -100,10 +101,10 @@ struct Store::Impl {
   Kiosks kiosks{pool};
   Jobs jobs{pool};
   Groups groups{pool};
-  Bin bin{pool};
+  Trash trash{pool};
   Projects projects{pool};
   Models models{pool};
-  Looks looks{pool};
+  SurfaceImages images{pool};
   Layers layers{pool};
   Tables tables{pool};
   Records records{pool};
@@ -129,14 +130,15 @@ struct Store::Impl {
   std::atomic<bool> was_ready = true;
 };
 
-// With all that hangs on it, in the transaction at hand, in the Bin or not (store/content/bin.cpp).
+// With all that hangs on it, in the transaction at hand, in the Trash or not
+// (store/content/bin.cpp).
 Result<void> erase_layer(PgConnection& connection, std::int64_t id);
 Result<void> erase_model(PgConnection& connection, std::int64_t id);
 
 // Of what the role sees, for `= any($n)`.
 PgArray visibilities_seen_by(Role role);
 
-inline constexpr std::size_t kLongestName = 255;
+inline constexpr std::size_t kMaxNameLength = 255;
 
 inline tl::unexpected<Error> stale(std::string_view kind) {
   return fail(ErrorCode::stale, "Changed meanwhile",

@@ -14,7 +14,7 @@ constexpr std::array<MovingPicture, LinkPace::kSteps> kReductions{
 constexpr double kNewPair = 0.3, kNewWait = 0.3;
 constexpr double kDrawnApart = 1.25;
 // acknowledgements closer than that came together
-constexpr std::chrono::milliseconds kShortestGap{5};
+constexpr std::chrono::milliseconds kMinGap{5};
 
 }  // namespace
 
@@ -44,7 +44,7 @@ void LinkPace::on_ack(std::uint64_t frame, Clock::time_point at) {
 
 void LinkPace::note_rate(const Sent& sent, Clock::time_point acked) {
   const auto gap = acked - last_ack_;
-  if (sent.at >= last_ack_ || gap < kShortestGap) return;
+  if (sent.at >= last_ack_ || gap < kMinGap) return;
   const double s_per_byte = Seconds(gap).count() / sent.bytes;
   // it was busy with the first while the second came
   if (kDrawnApart * (sent.at - last_sent_) < gap)
@@ -86,8 +86,8 @@ void LinkPace::judge(Seconds wait, Clock::time_point at) {
       return change_step(reduced.from);
     }
   }
-  const bool is_clear = judged_ >= kJudged || wait > 4 * kLongestWait;
-  if (mean_wait_ > kLongestWait && is_clear && step_ + 1 < kSteps && at >= no_reduction_until_)
+  const bool is_clear = judged_ >= kJudged || wait > 4 * kMaxWait;
+  if (mean_wait_ > kMaxWait && is_clear && step_ + 1 < kSteps && at >= no_reduction_until_)
     return reduce(wait);
   short_waits_ = wait > kShortWait ? 0 : short_waits_ + 1;
   if (!wide_ && delay() > kLongDelay && short_waits_ == kFirstTrial) wide_ = true;
@@ -102,7 +102,7 @@ void LinkPace::reduce(Seconds wait) {
   if (trying_) trial_ = std::min(2 * trial_, kLastTrial);
   trying_ = false;
   const Reduced reduced{step_, mean_wait_};
-  change_step(std::min(step_ + (wait > 4 * kLongestWait ? 2 : 1), kSteps - 1));
+  change_step(std::min(step_ + (wait > 4 * kMaxWait ? 2 : 1), kSteps - 1));
   reduced_ = reduced;
 }
 

@@ -22,7 +22,7 @@ struct MovingPicture {
 // frames that were sent close together and acknowledged further apart tell the link's rate (a
 // packet pair); the shortest that a frame of late took, without what its bytes need at that rate,
 // is the link's delay (as TCP Vegas has it). What a frame takes beyond the delay is its wait: for
-// those before it, and for itself. Waits beyond `kLongestWait` reduce pictures, unless that
+// those before it, and for itself. Waits beyond `kMaxWait` reduce pictures, unless that
 // shortens them little, since then something else is slow; a series of short ones makes pictures
 // better again, step by step; a better step that did not hold is tried again later and later. Where
 // the delay is long and waits are short the link lies idle between two frames: then three may be on
@@ -30,7 +30,7 @@ struct MovingPicture {
 class LinkPace {
  public:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::milliseconds kLongestWait{100}, kShortWait{50}, kLongDelay{50};
+  static constexpr std::chrono::milliseconds kMaxWait{100}, kShortWait{50}, kLongDelay{50};
   // a delay is of the last one to two of these
   static constexpr std::chrono::seconds kDelayKept{15};
   static constexpr int kSteps = 4;

@@ -56,9 +56,9 @@ Result<std::vector<Head>> read_heads(const CsvRow& row, TermList& list) {
   if (!list.columns.contains("code"))
     return fail(ErrorCode::invalid, "No codes", "The first row must name the column `code`.",
                 "body");
-  if (languages > kMostTermLanguages)
+  if (languages > kMaxTermLanguages)
     return fail(ErrorCode::invalid, "Too many languages",
-                "A list of terms has labels in at most " + std::to_string(kMostTermLanguages) +
+                "A list of terms has labels in at most " + std::to_string(kMaxTermLanguages) +
                     " languages.",
                 "body");
   return heads;
@@ -68,7 +68,7 @@ Result<std::vector<Head>> read_heads(const CsvRow& row, TermList& list) {
 
 Result<TermList> read_terms_csv(std::string_view text) {
   auto csv =
-      STRATA_TRY(parse_csv(text, {kMostTerms + 1, std::size(kParts) + kMostTermLanguages + 1}));
+      STRATA_TRY(parse_csv(text, {kMaxTerms + 1, std::size(kParts) + kMaxTermLanguages + 1}));
   if (csv.rows.empty())
     return fail(ErrorCode::invalid, "Empty table", "The first row names the columns.", "body");
   TermList list;
@@ -101,7 +101,7 @@ Result<TermList> read_terms_csv(std::string_view text) {
                  "code");
     if (good)
       list.terms.push_back(std::move(term));
-    else if (list.mistakes.size() < kMostTermMistakes)
+    else if (list.mistakes.size() < kMaxTermMistakes)
       list.mistakes.push_back({row.line, term.code, good.error().field, good.error()});
   }
   return list;

@@ -11,7 +11,7 @@ namespace {
 
 const std::string kSkos = "http://www.w3.org/2004/02/skos/core#";
 const std::string kType = "http://www.w3.org/1999/02/22-rdf-syntax-ns#type";
-constexpr std::size_t kMostConceptBytes = 256u << 20;  // of all that is kept of a text
+constexpr std::size_t kMaxConceptBytes = 256u << 20;  // of all that is kept of a text
 
 using ByLanguage = std::map<std::string, std::set<std::string>>;
 struct Concept {
@@ -43,7 +43,7 @@ class Concepts {
       const std::string_view name = std::string_view(predicate).substr(kSkos.size());
       triple.is_literal ? take_text(triple, name) : take_relation(triple, name);
     }
-    return concepts_.size() <= 2 * kMostTerms && bytes_ <= kMostConceptBytes;
+    return concepts_.size() <= 2 * kMaxTerms && bytes_ <= kMaxConceptBytes;
   }
 
   std::map<std::string, Concept>& all() { return concepts_; }
@@ -100,7 +100,7 @@ std::string code_of(const std::string& iri, const Concept& about) {
   }
   if (code.empty()) code = plainest(about.labels);
   if (code.empty()) code = "term";
-  return std::string(first_bytes(code, kLongestCode - 10));  // room for a number
+  return std::string(first_bytes(code, kMaxCodeLength - 10));  // room for a number
 }
 
 std::string iri_text(std::string_view text) {
@@ -129,9 +129,9 @@ Result<TermList> read_terms_skos(std::string_view text, RdfSyntax syntax) {
   std::erase_if(concepts, [](const auto& entry) {
     return !entry.second.is_described || entry.second.is_other;
   });
-  if (too_much || concepts.size() > kMostTerms)
+  if (too_much || concepts.size() > kMaxTerms)
     return fail(ErrorCode::too_large, "Too many terms",
-                "A list takes at most " + std::to_string(kMostTerms) + " terms.", "body");
+                "A list takes at most " + std::to_string(kMaxTerms) + " terms.", "body");
   if (concepts.empty())
     return fail(ErrorCode::invalid, "No terms", "There is no skos:Concept in it.", "body");
 
@@ -178,12 +178,12 @@ Result<TermList> read_terms_skos(std::string_view text, RdfSyntax syntax) {
     }
     if (auto good = check_term(term); good)
       list.terms.push_back(std::move(term));
-    else if (list.mistakes.size() < kMostTermMistakes)
+    else if (list.mistakes.size() < kMaxTermMistakes)
       list.mistakes.push_back({0, term.code, good.error().field, good.error()});
   }
-  if (languages.size() > kMostTermLanguages)
+  if (languages.size() > kMaxTermLanguages)
     return fail(ErrorCode::invalid, "Too many languages",
-                "A list of terms has labels in at most " + std::to_string(kMostTermLanguages) +
+                "A list of terms has labels in at most " + std::to_string(kMaxTermLanguages) +
                     " languages.",
                 "body");
   for (const auto& language : languages) list.columns.insert(label_slug(language));

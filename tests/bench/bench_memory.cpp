@@ -8,7 +8,7 @@
 #include "bench/bench_mesh.h"
 #include "bench/harness.h"
 #include "domain/layers/revision.h"
-#include "query/maps/dabs.h"
+#include "query/maps/point_splats.h"
 
 namespace strata::bench {
 namespace {
@@ -25,8 +25,9 @@ std::map<TileAddress, TileData> patch(const mesh::SurfaceMap& map, const mesh::T
   auto slot = static_cast<std::uint32_t>(map.block_of_slot.size() / 2);
   while (map.surface_mask[slot] == 0) ++slot;
   const int texel = std::countr_zero(map.surface_mask[slot]);
-  const query::Dab dab{slot * 64 + static_cast<std::uint32_t>(texel), map.position(slot, texel), 7};
-  return must(query::paint_dabs(map, graph, std::span(&dab, 1), radius, type));
+  const query::PointSplat splat{slot * 64 + static_cast<std::uint32_t>(texel),
+                                map.position(slot, texel), 7};
+  return must(query::paint_point_splats(map, graph, std::span(&splat, 1), radius, type));
 }
 
 std::uint64_t texel_count(const std::map<TileAddress, TileData>& tiles) {

@@ -18,10 +18,10 @@ namespace {
 namespace asio = boost::asio;
 
 constexpr std::size_t kOpenAtOnce = 16;  // beyond 256 requests at a time a server says 503
-constexpr double kMostOpening_s = 600;
-constexpr double kQuiet_s = 0.5, kQuietAtRest_s = 2, kMostSettling_s = 180;
+constexpr double kMaxOpening_s = 600;
+constexpr double kQuiet_s = 0.5, kQuietAtRest_s = 2, kMaxSettling_s = 180;
 constexpr double kWarming_s = 1;
-constexpr double kMostFinishing_s = 60;
+constexpr double kMaxFinishing_s = 60;
 
 // All within 60°: what is painted in the middle of one picture is in the others', too.
 constexpr double kMiddle_rad = 0.7;
@@ -77,18 +77,18 @@ void Crowd::open(std::vector<std::pair<LiveClient*, Camera>> clients) {
   };
   for (std::size_t i = 0; i < kOpenAtOnce; ++i)
     asio::co_spawn(context_, one_after_the_other, asio::detached);
-  run_until([&] { return done == clients.size(); }, kMostOpening_s);
+  run_until([&] { return done == clients.size(); }, kMaxOpening_s);
   check_nobody_is_lost();
   if (done == clients.size()) return;
   std::fprintf(stderr, "strata-bench: %zu of %zu viewers had no picture after %.0f s\n",
-               clients.size() - done, clients.size(), kMostOpening_s);
+               clients.size() - done, clients.size(), kMaxOpening_s);
   std::exit(1);
 }
 
 // Until no message has come for so long; among hundreds of connections somebody is always asked
 // whether they are still there.
 void Crowd::settle(double quiet_s) {
-  const double limit_ms = now_ms() + 1e3 * kMostSettling_s;
+  const double limit_ms = now_ms() + 1e3 * kMaxSettling_s;
   std::uint64_t before;
   do {
     before = now().bytes();
@@ -128,12 +128,12 @@ void Crowd::start_hands() {
 
 nlohmann::json Crowd::measure(double seconds) {
   start_hands();
-  run_until([&] { return all_see_what_they_do(); }, kMostFinishing_s);
+  run_until([&] { return all_see_what_they_do(); }, kMaxFinishing_s);
   run_for(case_.hands == Hands::rest ? 0 : kWarming_s);
   forget_peak(server_.pid());
   const CrowdMoment begin = now();
   run_for(seconds);
-  run_until([&] { return has_painted_since(begin.at_ms); }, kMostFinishing_s);
+  run_until([&] { return has_painted_since(begin.at_ms); }, kMaxFinishing_s);
   const CrowdMoment end = now();
   const double peak_mib = peak_resident_mib(server_.pid());
   stop_ = true;
@@ -176,7 +176,7 @@ void Crowd::finish_strokes() {
       [&] {
         return std::ranges::all_of(active_, [](const auto& c) { return c->unanswered() == 0; });
       },
-      kMostFinishing_s);
+      kMaxFinishing_s);
   settle(kQuiet_s);
 }
 

@@ -47,7 +47,7 @@ Camera Stage::from(double angle, double elevation) const {
 asio::awaitable<void> turn(LiveClient& client, const Stage& stage, double angle, const bool& stop) {
   Beat beat(co_await asio::this_coro::executor, kCameraEvery);
   while (!stop && !client.is_lost()) {
-    client.look(stage.from(angle += kTurnStep_rad), true);
+    client.image(stage.from(angle += kTurnStep_rad), true);
     co_await beat.next();
   }
 }
@@ -55,7 +55,7 @@ asio::awaitable<void> turn(LiveClient& client, const Stage& stage, double angle,
 asio::awaitable<void> turn_step_by_step(LiveClient& client, const Stage& stage, double angle,
                                         const bool& stop) {
   while (!stop && !client.is_lost()) {
-    client.look(stage.from(angle += kTurnStep_rad), true);
+    client.image(stage.from(angle += kTurnStep_rad), true);
     co_await client.newest_camera_shown();
   }
 }
@@ -72,7 +72,7 @@ asio::awaitable<void> paint(LiveClient& client, const Stage& stage, double angle
       const glm::dvec2 from = hand.at();
       client.extend_stroke({from, hand.step()});
       do co_await beat.next();
-      while (client.unanswered() >= kMostUnanswered && !stop && !client.is_lost());
+      while (client.unanswered() >= kMaxUnanswered && !stop && !client.is_lost());
     }
     client.end_stroke();
   }

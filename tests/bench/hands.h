@@ -28,10 +28,10 @@ boost::asio::awaitable<void> turn(LiveClient& client, const Stage& stage, double
 // turn.
 boost::asio::awaitable<void> turn_step_by_step(LiveClient& client, const Stage& stage, double angle,
                                                const bool& stop);
-// With a still camera, strokes of 20 batches, each of another value. Whoever has kMostUnanswered
+// With a still camera, strokes of 20 batches, each of another value. Whoever has kMaxUnanswered
 // batches that are not applied waits: more would only make the queue longer, and every time with
 // it.
-constexpr int kMostUnanswered = 16;
+constexpr int kMaxUnanswered = 16;
 boost::asio::awaitable<void> paint(LiveClient& client, const Stage& stage, double angle,
                                    unsigned seed, const bool& stop);
 

@@ -64,7 +64,7 @@ T await(Start start) {
     return must(future.get());
 }
 
-// Looks at a model from a direction, so that it fills the window.
+// SurfaceImages at a model from a direction, so that it fills the window.
 Camera look_at(const mesh::Geometry& geometry, glm::dvec3 from, int width, int height);
 // The same of a box in world coordinates.
 Camera look_at(glm::dvec3 low, glm::dvec3 high, glm::dvec3 from, int width, int height);

@@ -65,12 +65,12 @@ asio::awaitable<void> LiveClient::open(const std::string& model, const std::stri
   hello.client = "strata-bench";
   hello.accept = {"jpeg"};
   send(hello);
-  look(camera, false);
+  image(camera, false);
   asio::co_spawn(socket_.get_executor(), read(), asio::detached);
   while (!has_picture_ && !is_lost_) co_await has_news_.async_wait(kUseResult);
 }
 
-void LiveClient::look(const Camera& camera, bool moving) {
+void LiveClient::image(const Camera& camera, bool moving) {
   camera_sent_ms_.push_back(now_ms());
   camera_ = protocol::to_text(camera_update(camera, camera_sent_ms_.size(), moving));
   if (!is_writing_) asio::co_spawn(socket_.get_executor(), write(), asio::detached);

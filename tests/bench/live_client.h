@@ -65,7 +65,7 @@ class LiveClient {
   // connection is lost.
   boost::asio::awaitable<void> open(const std::string& model, const std::string& token,
                                     const Camera& camera);
-  void look(const Camera& camera, bool moving);
+  void image(const Camera& camera, bool moving);
   // Returns when a frame with the newest camera is there, or the connection is lost.
   boost::asio::awaitable<void> newest_camera_shown();
   void begin_stroke(const std::string& layer, const Camera& camera, double value, double radius_px);

@@ -108,12 +108,12 @@ std::optional<std::string> ChildProcess::said(const std::string& start,
                                               std::chrono::seconds limit) {
   const double limit_ms = now_ms() + std::chrono::duration<double, std::milli>(limit).count();
   while (true) {
-    const bool is_last_look = has_ended() || now_ms() > limit_ms;
+    const bool is_last_surface_image = has_ended() || now_ms() > limit_ms;
     std::ifstream log(log_);
     // A line that is still being written has no end.
     for (std::string line; std::getline(log, line) && !log.eof();)
       if (line.starts_with(start)) return line.substr(start.size());
-    if (is_last_look) return std::nullopt;
+    if (is_last_surface_image) return std::nullopt;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 }

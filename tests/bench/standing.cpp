@@ -71,9 +71,9 @@ Camera fitted_camera(const mesh::Geometry& geometry, const Standing& standing, g
   // A vertex (x, y, z) of the view's axes is in the picture of a camera at (cx, cy, d) where |x −
   // cx| ≤ slope (d − z), and so with y: four planes in cx, cy and d, of which only the farthest of
   // all vertices count.
-  constexpr double kLeast = std::numeric_limits<double>::lowest();
-  double to_right = kLeast, to_left = kLeast, to_top = kLeast, to_bottom = kLeast, nearest = kLeast,
-         farthest = -kLeast;
+  constexpr double kMin = std::numeric_limits<double>::lowest();
+  double to_right = kMin, to_left = kMin, to_top = kMin, to_bottom = kMin, nearest = kMin,
+         farthest = -kMin;
   for (const auto& vertex : geometry.vertices) {
     const glm::dvec3 p(vertex.position);
     const double x = glm::dot(p, right), y = glm::dot(p, up), z = glm::dot(p, back);

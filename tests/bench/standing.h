@@ -20,9 +20,9 @@ struct Standing {
 // known scan. `title`: see mesh_title.
 Standing standing_of(const std::string& title, const std::string& up);
 
-// Looks at a model that stands so, from a direction of its own (to its right, before it, above it),
-// so that it fills the square picture up to a margin, whatever its shape. The direction is not
-// straight up or down.
+// SurfaceImages at a model that stands so, from a direction of its own (to its right, before it,
+// above it), so that it fills the square picture up to a margin, whatever its shape. The direction
+// is not straight up or down.
 Camera fitted_camera(const mesh::Geometry& geometry, const Standing& standing, glm::dvec3 from,
                      int side);
 

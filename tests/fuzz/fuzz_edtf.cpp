@@ -23,12 +23,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     demand(period.error().code == ErrorCode::invalid && is_utf8(period.error().detail));
     return 0;
   }
-  demand(text.size() <= kLongestPeriod && is_utf8(text));
+  demand(text.size() <= kMaxPeriod && is_utf8(text));
   demand(period->first_day || period->last_day);
   if (period->first_day && period->last_day) demand(*period->first_day <= *period->last_day);
   const bool marked = text.find_last_of("?~%") == text.size() - 1;
-  if (marked || text.ends_with('/') || text.ends_with("..") || text.size() == kLongestPeriod)
-    return 0;
+  if (marked || text.ends_with('/') || text.ends_with("..") || text.size() == kMaxPeriod) return 0;
   const auto unsure = parse_edtf(text + "%");
   demand(unsure && unsure->approximate && unsure->uncertain);
   demand(unsure->first_day == period->first_day && unsure->last_day == period->last_day);

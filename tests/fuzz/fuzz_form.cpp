@@ -59,7 +59,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     demand(!is_server_failure(files.error().code));
     return 0;
   }
-  demand(files->size() <= strata::net::kMostFormFiles);
+  demand(files->size() <= strata::net::kMaxFormFiles);
   const std::string separator = "\r\n--" + strata::net::header_parameter(type, "boundary");
   for (const auto& file : *files) {
     check_filename(file.filename);

@@ -11,7 +11,7 @@ namespace {
 
 using strata::query::FeatureMap;
 
-constexpr int kLargestSide = 512;  // of pictures: larger ones only take longer
+constexpr int kMaxSide = 512;  // of pictures: larger ones only take longer
 
 void check(bool good) {
   if (!good) std::abort();
@@ -34,7 +34,7 @@ void check_map(const FeatureMap& map) {
 }
 
 void read_tiff(std::span<const std::uint8_t> bytes) {
-  const auto info = strata::query::inspect_tiff(bytes, kLargestSide);
+  const auto info = strata::query::inspect_tiff(bytes, kMaxSide);
   if (!info) return;
   const auto pixels =
       static_cast<std::size_t>(info->width) * static_cast<std::size_t>(info->height);

@@ -9,7 +9,7 @@
 
 namespace {
 
-constexpr int kLargestSide = 512;  // larger ones only take longer
+constexpr int kMaxSide = 512;  // larger ones only take longer
 
 void demand(bool holds) {
   if (!holds) std::abort();
@@ -35,8 +35,8 @@ void check_shape(const strata::Picture& picture) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span<const std::uint8_t> bytes(data, size);
-  const auto info = strata::inspect_picture(bytes, kLargestSide);
-  const auto picture = strata::decode_picture(bytes, kLargestSide);
+  const auto info = strata::inspect_picture(bytes, kMaxSide);
+  const auto picture = strata::decode_picture(bytes, kMaxSide);
   if (!picture) return 0;
   demand(info.has_value() && info->width == picture->width && info->height == picture->height);
   demand(picture->rgba.size() ==

@@ -15,7 +15,7 @@
 #include "net/http/page.h"
 #include "net/serialization/point_text.h"
 #include "query/maps/color_keys.h"
-#include "query/maps/readings.h"
+#include "query/maps/point_measurements.h"
 #include "query/rasters/world_file.h"
 
 namespace {
@@ -85,17 +85,17 @@ void read_numbers(std::string_view text) {
 }
 
 void read_tables(std::string_view text) {
-  if (const auto readings = query::parse_readings(text)) {
-    demand(!readings->empty() && readings->size() <= query::kMaxReadings);
+  if (const auto measurements = query::parse_point_measurements(text)) {
+    demand(!measurements->empty() && measurements->size() <= query::kMaxPointMeasurements);
     int line = 1;
-    for (const auto& reading : *readings) {
-      demand(reading.line > line && std::isfinite(reading.value));
-      for (int axis = 0; axis < 3; ++axis) demand(std::isfinite(reading.position[axis]));
-      line = reading.line;
+    for (const auto& measurement : *measurements) {
+      demand(measurement.line > line && std::isfinite(measurement.value));
+      for (int axis = 0; axis < 3; ++axis) demand(std::isfinite(measurement.position[axis]));
+      line = measurement.line;
     }
   }
   if (const auto keys = query::parse_color_keys(text, "colors")) {
-    demand(!keys->empty() && keys->size() <= query::kMostColorKeys);
+    demand(!keys->empty() && keys->size() <= query::kMaxColorKeys);
     const query::ColorKeys finder(*keys, query::kUsualTolerance);
     for (const auto& key : *keys) demand(finder.value_of(key.color.data()).has_value());
   }

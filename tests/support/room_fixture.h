@@ -29,7 +29,7 @@ class RoomTest : public ::testing::Test {
   std::shared_ptr<room::Room> room();
   Layer make_layer(ValueType type, int resolution = 2048, const std::string& name = "Layer");
 
-  // Looks at the model from +z (or `from`), 640 × 480, orthographic or perspective.
+  // SurfaceImages at the model from +z (or `from`), 640 × 480, orthographic or perspective.
   Camera camera(glm::dvec3 from = {0, 0, 1}, bool orthographic = false) const;
   // Of an annotator.
   room::EditRequest stroke(const Layer& layer, double value, std::vector<glm::dvec2> path,

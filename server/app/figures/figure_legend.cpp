@@ -16,11 +16,11 @@ namespace strata::app {
 namespace {
 
 // of the grid in which the drawing is looked at: some tenths of a second
-constexpr double kMostCells = 250'000;
-constexpr std::size_t kMostPlaces = 32;  // of a line that are looked at
+constexpr double kMaxCells = 250'000;
+constexpr std::size_t kMaxPlaces = 32;  // of a line that are looked at
 constexpr double kOpaque = 0.99;
 // surfaces that are steeper to the eye hide what is behind them, too
-constexpr double kLeastCosine = 1.0 / 12;
+constexpr double kMinCosine = 1.0 / 12;
 // as far below the surface as marks are drawn
 constexpr double kPlaceReach_px = 4, kPlaceReachOfSize = 1e-3;
 
@@ -54,8 +54,8 @@ query::LayerCover cover_of(const FigureRequest& request, const Layer& layer) {
 }
 
 // Whether a mark's place is in the drawing, and no surface lies before it: as the picture decides
-// it (mark_sight_pass.comp), a place may lie anywhere before the surface, and behind it as far as
-// it reaches, measured square to the surface.
+// it (feature_sight_pass.comp), a place may lie anywhere before the surface, and behind it as far
+// as it reaches, measured square to the surface.
 Result<bool> is_seen(const FigureRequest& request, const Camera& camera, const glm::dvec3& place,
                      double reach) {
   const auto is_cut_off = [&](const glm::dvec4& plane) {
@@ -72,7 +72,7 @@ Result<bool> is_seen(const FigureRequest& request, const Camera& camera, const g
   const glm::dvec3 apart = place - glm::dvec3(hit->position);
   if ((camera.view * glm::dvec4(apart, 0)).z >= 0) return true;  // nearer than the surface
   return std::max(std::abs(glm::dot(apart, glm::dvec3(hit->normal))),
-                  kLeastCosine * glm::length(apart)) <= reach;
+                  kMinCosine * glm::length(apart)) <= reach;
 }
 
 // Keys of records whose lines or points the drawing shows. They lie over all layers.
@@ -85,16 +85,17 @@ Result<std::set<double>> marked_keys(store::Store& store, const FigureRequest& r
         STRATA_TRY(store.tables().sequence_when(*layer.table, model.id, *request.shown.at));
     at = then;
   }
-  const auto marks = STRATA_TRY(store.records().marks(*layer.table, request.role, model.id, at));
+  const auto features =
+      STRATA_TRY(store.records().features(*layer.table, request.role, model.id, at));
   const double pixel = 2 / (std::abs(camera.projection[0][0]) * camera.width);
   const double reach = kPlaceReach_px * pixel +
                        kPlaceReachOfSize * glm::distance(model.bounds_min, model.bounds_max);
   std::set<double> keys;
-  for (const auto& [key, mark] : marks) {
+  for (const auto& [key, feature] : features) {
     const auto value = static_cast<double>(key);
-    const std::size_t step = std::max<std::size_t>(1, mark.places.size() / kMostPlaces);
-    for (std::size_t i = 0; i < mark.places.size() && !keys.contains(value); i += step) {
-      const auto seen = STRATA_TRY(is_seen(request, camera, mark.places[i], reach));
+    const std::size_t step = std::max<std::size_t>(1, feature.places.size() / kMaxPlaces);
+    for (std::size_t i = 0; i < feature.places.size() && !keys.contains(value); i += step) {
+      const auto seen = STRATA_TRY(is_seen(request, camera, feature.places[i], reach));
       if (seen) keys.insert(value);
     }
   }
@@ -107,7 +108,7 @@ Result<std::vector<figure::Legend>> legends_of(store::Store& store, const Figure
                                                const figure::Drawing& drawing) {
   const Camera camera = figure::camera_of(drawing);
   const double cells = static_cast<double>(camera.width) * camera.height;
-  const double coarser = std::max(1.0, std::sqrt(cells / kMostCells));
+  const double coarser = std::max(1.0, std::sqrt(cells / kMaxCells));
   std::vector<std::string> refs;
   std::vector<query::LayerCover> covers;
   for (const Layer& layer : request.layers) {
@@ -134,9 +135,9 @@ Result<std::vector<figure::Legend>> legends_of(store::Store& store, const Figure
     if (!is_shown && !waits) continue;
     legends.push_back(figure::legend_of(layer, palette, &there, request.language));
     if (waits) {
-      const Palette::Point& mark = room::provisional_palette()->points.front();
+      const Palette::Point& waiting = room::provisional_palette()->points.front();
       legends.back().entries.push_back(
-          {request.waiting_label, mark.color, mark.pattern, mark.angle, true});
+          {request.waiting_label, waiting.color, waiting.pattern, waiting.angle, true});
     }
     if (palette.column.empty() || !layer.table) continue;
     const auto table = store.tables().find(std::to_string(*layer.table), request.role);

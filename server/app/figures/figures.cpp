@@ -18,8 +18,8 @@ namespace strata::app {
 namespace {
 
 constexpr glm::dvec2 kLabelCell_mm{1.5, 1.5};
-constexpr std::size_t kMostPlaces = 64;  // that are tried for a label
-constexpr std::size_t kMostLabels = 2000;
+constexpr std::size_t kMaxPlaces = 64;  // that are tried for a label
+constexpr std::size_t kMaxLabels = 2000;
 
 // The cells of a grid in which a key is seen, those farthest from what is another first.
 struct Area {
@@ -98,11 +98,11 @@ Result<std::vector<figure::Label>> labels_of(store::Store& store, const FigureRe
   for (const auto& [key, area] : areas)
     if (texts.contains(key)) by_size.emplace_back(area.cells, key);
   std::ranges::sort(by_size, std::greater());
-  if (by_size.size() > kMostLabels) by_size.resize(kMostLabels);
+  if (by_size.size() > kMaxLabels) by_size.resize(kMaxLabels);
   std::vector<figure::LabelWish> wishes;
   for (const auto& [size, key] : by_size) {
     auto& places = areas[key].places;
-    const std::size_t tried = std::min(places.size(), kMostPlaces);
+    const std::size_t tried = std::min(places.size(), kMaxPlaces);
     std::partial_sort(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(tried),
                       places.end(), [](const auto& a, const auto& b) {
                         return a.first != b.first ? a.first > b.first : a.second < b.second;

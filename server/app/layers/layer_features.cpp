@@ -8,7 +8,7 @@
 #include "app/figures/class_names.h"
 #include "app/records/record_csv.h"
 #include "domain/tables/column_value.h"
-#include "domain/tables/mark.h"
+#include "domain/tables/surface_feature.h"
 #include "room/queries.h"
 #include "room/surface.h"
 #include "store/tables/records.h"
@@ -21,8 +21,8 @@ using Kind = FeatureField::Kind;
 
 // The table of a database layer, with the records that may have features.
 struct Records {
-  std::vector<Column> columns;  // that features have as attributes
-  std::vector<Column> marks;    // of lines and points
+  std::vector<Column> columns;           // that features have as attributes
+  std::vector<Column> surface_features;  // of lines and points
   std::map<std::int64_t, Record> by_key;
   RecordNames names;
   WordsOfTables words;
@@ -31,7 +31,7 @@ struct Records {
 Result<Records> read_records(store::Store& store, const FeatureRequest& request,
                              std::vector<std::int64_t> painted) {
   store::RecordQuery query;
-  query.limit = store::kMostRecords;
+  query.limit = store::kMaxRecords;
   if (request.at) {
     const auto then =
         store.tables().sequence_when(*request.layer.table, request.layer.model_id, *request.at);
@@ -41,13 +41,13 @@ Result<Records> read_records(store::Store& store, const FeatureRequest& request,
   const auto table =
       STRATA_TRY(store.tables().find(std::to_string(*request.layer.table), request.role));
   // Records that are painted nowhere may have lines and points.
-  const auto is_mark = [](const Column& column) { return holds_marks(column.kind); };
-  if (std::ranges::none_of(table.columns, is_mark)) query.keys = std::move(painted);
+  const auto is_feature = [](const Column& column) { return holds_features(column.kind); };
+  if (std::ranges::none_of(table.columns, is_feature)) query.keys = std::move(painted);
   auto page = STRATA_TRY(store.records().page(table.id, request.role, query));
   Records records;
   for (const Column& column : page.table.columns)
-    if (is_mark(column))
-      records.marks.push_back(column);
+    if (is_feature(column))
+      records.surface_features.push_back(column);
     else if (!holds_attachments(column.kind))
       records.columns.push_back(column);
   std::vector<std::int64_t> keys;
@@ -182,8 +182,9 @@ FeatureTable areas_of(const FeatureRequest& request, const query::Quantities& al
   return table;
 }
 
-FeatureTable marks_in(const FeatureRequest& request, const Records& records, const Column& marks) {
-  const bool are_lines = marks.kind == ColumnKind::line;
+FeatureTable features_in(const FeatureRequest& request, const Records& records,
+                         const Column& drawn) {
+  const bool are_lines = drawn.kind == ColumnKind::line;
   const Model model = request.room->model();
   std::vector<FeatureField> own{{"key", Kind::integer}, {"name", Kind::text}};
   if (are_lines) own.push_back({"length_m", Kind::real});
@@ -191,22 +192,22 @@ FeatureTable marks_in(const FeatureRequest& request, const Records& records, con
   Fields fields(std::move(own));
   for (const Column& column : records.columns) fields.add(column);
   FeatureTable table{are_lines ? FeatureKind::lines : FeatureKind::points,
-                     (are_lines ? "lines_" : "points_") + marks.slug,
+                     (are_lines ? "lines_" : "points_") + drawn.slug,
                      fields.take(),
                      {}};
   for (const auto& [key, record] : records.by_key)
-    for (const Mark& mark : marks_of(record, marks)) {
-      if (mark.model != model.id) continue;
+    for (const SurfaceFeature& surface_feature : features_of(record, drawn)) {
+      if (surface_feature.model != model.id) continue;
       Feature& feature = table.features.emplace_back();
       const auto name = records.names.find(key);
       feature.values = {
           key, text_or_nothing(name == records.names.end() ? std::string() : name->second)};
-      if (are_lines) feature.values.emplace_back(length_of(mark) * model.metres());
+      if (are_lines) feature.values.emplace_back(length_of(surface_feature) * model.metres());
       feature.values.emplace_back(request.layer.slug);
       feature.values.emplace_back(model.slug);
       add_record(feature, records, key);
       query::FlatRing path;
-      for (const glm::dvec3& place : mark.places)
+      for (const glm::dvec3& place : surface_feature.places)
         path.emplace_back(place[request.plane.right], place[request.plane.up],
                           place[request.plane.depth]);
       feature.geometry = {{{std::move(path)}}};
@@ -251,7 +252,8 @@ Result<FeatureSet> layer_features(store::Store& store, const FeatureRequest& req
   set.epsg = epsg_of(model, request.plane);
   set.description = request.layer.name + " on " + model.name + ": " + set.axes + " in " + set.unit;
   set.tables.push_back(areas_of(request, all, areas->perimeters, std::move(*outlines), records));
-  for (const Column& marks : records.marks) set.tables.push_back(marks_in(request, records, marks));
+  for (const Column& column : records.surface_features)
+    set.tables.push_back(features_in(request, records, column));
   return set;
 }
 

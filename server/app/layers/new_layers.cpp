@@ -9,7 +9,7 @@
 namespace strata::app {
 namespace {
 
-constexpr int kMostTries = 5;
+constexpr int kMaxTries = 5;
 
 }  // namespace
 
@@ -37,18 +37,18 @@ Result<Layer> NewLayers::paint(const Layer& created, TileMap tiles, nlohmann::js
   return created;
 }
 
-Result<void> NewLayers::show(const store::FirstAnswer<Layer>& answer) {
-  store::FirstAnswer<Layer> last = answer;
+Result<void> NewLayers::show(const store::IdempotentResponse<Layer>& answer) {
+  store::IdempotentResponse<Layer> last = answer;
   last.user.clear();  // that they are shown belongs to their making
   for (std::size_t i = 0; i < made_.size(); ++i) {
     const bool is_last = i + 1 == made_.size();
     for (int tries = 0;; ++tries) {
       auto now = STRATA_TRY(room_->layers().find(std::to_string(made_[i].layer.id)));
       now.visible = made_[i].visible;
-      auto shown = room_->layers().update(now, is_last ? last : store::FirstAnswer<Layer>{});
+      auto shown = room_->layers().update(now, is_last ? last : store::IdempotentResponse<Layer>{});
       if (shown) break;
       // Someone renamed it at this very moment: then what they made of it is shown.
-      if (shown.error().code != ErrorCode::stale || tries == kMostTries)
+      if (shown.error().code != ErrorCode::stale || tries == kMaxTries)
         return tl::unexpected(shown.error());
     }
   }

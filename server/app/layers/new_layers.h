@@ -7,7 +7,7 @@
 
 #include "app/edits.h"
 #include "domain/layers/tile_mirror.h"
-#include "store/content/first_answer.h"
+#include "store/content/idempotent_response.h"
 
 namespace strata::app {
 
@@ -23,7 +23,7 @@ class NewLayers {
   // Makes the layer and has it filled.
   Result<Layer> add(Layer layer, const std::function<Result<Layer>(const Layer&)>& fill);
   // Shows them as they were asked for. The answer is kept with the last one.
-  Result<void> show(const store::FirstAnswer<Layer>& answer);
+  Result<void> show(const store::IdempotentResponse<Layer>& answer);
   void take_back();  // all that were added
 
   std::vector<std::int64_t> ids() const;

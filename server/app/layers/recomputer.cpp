@@ -16,8 +16,8 @@
 namespace strata::app {
 namespace {
 
-constexpr std::chrono::seconds kBetweenLooks{1}, kFirstPause{5}, kLongestPause{600};
-constexpr int kMostLooks = 10;
+constexpr std::chrono::seconds kBetweenLooks{1}, kFirstPause{5}, kMaxPause{600};
+constexpr int kMaxChecks = 10;
 // Who computes, in the layer's history: the server itself, which no lock stops.
 const Author kAuthor("Strata", Role::owner);
 
@@ -71,7 +71,7 @@ void Recomputer::run() {
 bool Recomputer::is_quiet(const room::Room& room, std::int64_t layer_id) {
   Wait& wait = waits_[layer_id];
   const std::int64_t sequence = room.edits().sequence();
-  if (wait.sequence != sequence && ++wait.looks < kMostLooks) {
+  if (wait.sequence != sequence && ++wait.checks < kMaxChecks) {
     wait.sequence = sequence;
     return false;
   }
@@ -93,7 +93,7 @@ void Recomputer::attempt(
     return;
   }
   const auto pause =
-      failed == failures_.end() ? kFirstPause : std::min(kLongestPause, 2 * failed->second.pause);
+      failed == failures_.end() ? kFirstPause : std::min(kMaxPause, 2 * failed->second.pause);
   failures_[layer.id] = {now + pause, pause};
   if (failed == failures_.end() && !is_stopping())
     log::warning("layer " + std::to_string(layer.id) + " could not be " + what + ": " +

@@ -32,7 +32,7 @@ class Recomputer {
   };
   struct Wait {
     std::int64_t sequence = -1;  // of the model when it was looked at last
-    int looks = 0;
+    int checks = 0;
   };
   void run();
   bool is_quiet(const room::Room& room, std::int64_t layer_id);

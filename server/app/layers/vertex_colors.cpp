@@ -6,27 +6,27 @@
 #include "query/sampling/values.h"
 #include "room/caches/record_colors.h"
 #include "room/caches/surface_image_cache.h"
-#include "room/looks.h"
 #include "room/room.h"
 #include "room/rooms.h"
 #include "room/surface.h"
+#include "room/surface_images.h"
 #include "room/view_settings.h"
-#include "store/content/looks.h"
+#include "store/content/surface_images.h"
 #include "store/store.h"
 
 namespace strata::app {
 namespace {
 
-Result<void> add_photo(const Services& services, const room::LookView& look,
+Result<void> add_photo(const Services& services, const room::SurfaceImageView& image,
                        query::VertexColors& colors) {
-  const auto encoded = STRATA_TRY(services.store.looks().picture(look.look_id));
+  const auto encoded = STRATA_TRY(services.store.surface_images().picture(image.surface_image_id));
   const auto info = STRATA_TRY(inspect_picture(encoded));
   // Reading takes at most twice the memory of its pixels.
   const auto bytes =
       static_cast<std::uint64_t>(info.width) * static_cast<std::uint64_t>(info.height) * 8;
   const auto share = STRATA_TRY(services.rooms.memory().reserve(bytes, "a photo of the surface"));
   const auto photo = STRATA_TRY(decode_picture(encoded));
-  colors.add_photo(photo, look.opacity);
+  colors.add_photo(photo, image.opacity);
   return {};
 }
 
@@ -45,13 +45,14 @@ Result<query::DrawnLayer> drawn(const Services& services, Role role, const query
 
 Result<ComposedVertices> compose_vertices(const Services& services, room::Room& room, Role role,
                                           const std::vector<query::LayerView>& bottom_to_top) {
-  const auto looks = room::looks_shown(room.looks().all());
+  const auto images = room::surface_images_shown(room.surface_images().all());
   const auto geometry = room.surface().geometry();
-  const std::uint64_t bytes = looks.empty() ? 0 : geometry->vertices.size() * 3;
+  const std::uint64_t bytes = images.empty() ? 0 : geometry->vertices.size() * 3;
   auto memory =
       STRATA_TRY(services.rooms.memory().reserve(bytes, "the colours of a model's vertices"));
   ComposedVertices composed{query::VertexColors(geometry), std::move(memory)};
-  for (const room::LookView& look : looks) STRATA_TRY(add_photo(services, look, composed.colors));
+  for (const room::SurfaceImageView& image : images)
+    STRATA_TRY(add_photo(services, image, composed.colors));
   for (const query::LayerView& view : bottom_to_top) {
     auto layer = STRATA_TRY(drawn(services, role, view));
     composed.colors.add_layer(std::move(layer));

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostNamed = 5;
+constexpr std::size_t kMaxNamed = 5;
 
 std::string_view last_part(std::string_view name) {
   return name.substr(name.find_last_of("/\\") + 1);
@@ -116,11 +116,11 @@ Result<void> MapFiles::choose_main() {
         "body");
   if (maps.size() > 1) {
     std::string named;
-    for (std::size_t i = 0; i < std::min(maps.size(), kMostNamed); ++i)
+    for (std::size_t i = 0; i < std::min(maps.size(), kMaxNamed); ++i)
       named += (i ? ", " : "") + std::string(last_part(files_[maps[i]].name)).substr(0, 100);
     return fail(ErrorCode::invalid, "More than one map",
                 "Send one map at a time; these are several: " + named +
-                    (maps.size() > kMostNamed ? ", …" : "") + ".",
+                    (maps.size() > kMaxNamed ? ", …" : "") + ".",
                 "body");
   }
   main_ = maps.front();

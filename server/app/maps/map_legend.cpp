@@ -7,8 +7,8 @@
 namespace strata::app {
 namespace {
 
-constexpr std::size_t kMostPoints = 4096, kLongestName = 200;  // as in the schema `Palette`
-constexpr std::size_t kMostNamed = 5;
+constexpr std::size_t kMaxPoints = 4096, kMaxNameLength = 200;  // as in the schema `Palette`
+constexpr std::size_t kMaxNamed = 5;
 
 }  // namespace
 
@@ -28,23 +28,23 @@ Result<void> extend_legend(Role role, room::Room& room, const Layer& layer,
   if (role < Role::curator) {
     if (names.empty()) return {};
     std::string listed;
-    for (std::size_t i = 0; i < std::min(names.size(), kMostNamed); ++i)
-      listed += (i ? ", " : "") + names[i].substr(0, kLongestName);
+    for (std::size_t i = 0; i < std::min(names.size(), kMaxNamed); ++i)
+      listed += (i ? ", " : "") + names[i].substr(0, kMaxNameLength);
     return fail(ErrorCode::forbidden, "Names not in the legend",
                 "The legend of the layer lacks: " + listed +
-                    (names.size() > kMostNamed ? ", …" : "") + ". A curator may add them.",
+                    (names.size() > kMaxNamed ? ", …" : "") + ". A curator may add them.",
                 "attribute");
   }
   for (const std::string& name : names)
-    if (name.size() > kLongestName)
+    if (name.size() > kMaxNameLength)
       return fail(ErrorCode::invalid, "Name too long",
                   "\"" + name.substr(0, 60) + "…\" is too long for a legend.", "attribute");
   Layer changed = layer;
   changed.palette = keys.extended();
   changed.palette_of_terms = false;
-  if (changed.palette.points.size() > kMostPoints)
+  if (changed.palette.points.size() > kMaxPoints)
     return fail(ErrorCode::invalid, "Too many names",
-                "A legend holds at most " + std::to_string(kMostPoints) + " entries.", "attribute");
+                "A legend holds at most " + std::to_string(kMaxPoints) + " entries.", "attribute");
   STRATA_TRY(room.layers().update(std::move(changed)));
   return {};
 }

@@ -15,7 +15,7 @@
 // Where flat maps lie on a model, and what users say of them.
 namespace strata::app {
 
-constexpr int kLargestMapSide = 16384;  // pixels
+constexpr int kMaxMapSide = 16384;  // pixels
 
 // What a user says of a map besides its files. Texts are as the user wrote them.
 struct MapOptions {

@@ -151,14 +151,14 @@ Result<MapValues> polygon_values(const MapOptions& options, const MapFiles& file
 Result<std::optional<query::MapTiff>> tiff_of(const MapFiles& files, const Model& model) {
   STRATA_TRY(check_kind(files, false));
   if (files.kind() != MapKind::tiff) return std::nullopt;
-  auto tiff = STRATA_TRY(query::inspect_tiff(files.main(), kLargestMapSide));
+  auto tiff = STRATA_TRY(query::inspect_tiff(files.main(), kMaxMapSide));
   STRATA_TRY(check_map_crs(model, tiff.crs, tiff.in_degrees));
   return std::optional(std::move(tiff));
 }
 
 Result<Picture> picture_of(const MapFiles& files, const std::optional<query::MapTiff>& tiff) {
   return tiff ? query::decode_tiff_picture(files.main(), *tiff)
-              : decode_picture(files.main(), kLargestMapSide);
+              : decode_picture(files.main(), kMaxMapSide);
 }
 
 Result<std::shared_ptr<const void>> budget_of(const MapFiles& files,
@@ -166,7 +166,7 @@ Result<std::shared_ptr<const void>> budget_of(const MapFiles& files,
                                               ByteBudget& budget) {
   // Twice four bytes a pixel while a TIFF is decoded.
   if (tiff) return budget.take(8 * pixels(tiff->width, tiff->height));
-  const auto info = STRATA_TRY(inspect_picture(files.main(), kLargestMapSide));
+  const auto info = STRATA_TRY(inspect_picture(files.main(), kMaxMapSide));
   return budget.take(4 * pixels(info.width, info.height));
 }
 

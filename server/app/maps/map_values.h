@@ -52,6 +52,6 @@ Result<std::shared_ptr<const void>> budget_of(const MapFiles& files,
 Result<MapPicture> map_picture(const MapOptions& options, const MapFiles& files, const Model& model,
                                ByteBudget& budget);
 
-constexpr double kLeastTolerance = 1, kMostTolerance = 60;  // of colours
+constexpr double kMinTolerance = 1, kMaxTolerance = 60;  // of colours
 
 }  // namespace strata::app

@@ -23,7 +23,7 @@
 namespace strata::app {
 namespace {
 
-constexpr std::size_t kMostNamed = 5;
+constexpr std::size_t kMaxNamed = 5;
 
 std::string area_text(double area_m2) {
   const AreaUnit unit = readable_area(area_m2);
@@ -62,7 +62,7 @@ std::string where_painted(const std::vector<PaintedLayer>& layers,
         area_m2 += area->second.area_m2;
       }
     if (!found) continue;
-    if (++named > kMostNamed) return text + ", …";
+    if (++named > kMaxNamed) return text + ", …";
     text += (text.empty() ? "" : ", ") + area_text(area_m2) + " on " + painted.layer.name + " of " +
             painted.room->model().name;
   }
@@ -138,11 +138,11 @@ Result<void> check_keys(store::Store& store, const Layer& layer,
   const auto missing = STRATA_TRY(store.records().missing(*layer.table, keys));
   if (missing.empty()) return {};
   std::string named;
-  for (std::size_t i = 0; i < std::min(missing.size(), kMostNamed); ++i)
+  for (std::size_t i = 0; i < std::min(missing.size(), kMaxNamed); ++i)
     named += (i ? ", " : "") + std::to_string(missing[i]);
   return fail(ErrorCode::invalid, "No record of this key",
               "The table of " + layer.name + " has no record " + named +
-                  (missing.size() > kMostNamed ? ", …" : "") + ". Make it first, then paint.",
+                  (missing.size() > kMaxNamed ? ", …" : "") + ". Make it first, then paint.",
               "value");
 }
 

@@ -12,11 +12,11 @@ AreaUnit readable_area(double largest_m2) {
 }
 
 std::string number_format(double largest) {
-  constexpr int kDigits = 4, kMostDecimals = 12;
+  constexpr int kDigits = 4, kMaxDecimals = 12;
   const int decimals =
       largest > 0 ? kDigits - 1 - static_cast<int>(std::floor(std::log10(largest))) : 0;
   return "#,##0." +
-         std::string(static_cast<std::size_t>(std::clamp(decimals, 2, kMostDecimals)), '0');
+         std::string(static_cast<std::size_t>(std::clamp(decimals, 2, kMaxDecimals)), '0');
 }
 
 std::string readable_head(const std::string& head, const AreaUnit& unit) {

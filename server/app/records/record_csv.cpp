@@ -121,7 +121,7 @@ Result<nlohmann::json> read_cell(const Column& column, const std::string& cell, 
 Result<RecordRows> read_records_csv(std::string_view text, const Table& table,
                                     const WordsOfTables& words) {
   auto csv =
-      parse_csv(text, {store::kMostRecordsAtOnce + 1, static_cast<std::size_t>(kMostColumns) + 3});
+      parse_csv(text, {store::kMaxRecordsAtOnce + 1, static_cast<std::size_t>(kMaxColumns) + 3});
   if (!csv) return tl::unexpected(csv.error());
   if (csv->rows.empty())
     return fail(ErrorCode::invalid, "Empty table", "The first row names the columns.", "body");
@@ -155,7 +155,8 @@ Result<RecordRows> read_records_csv(std::string_view text, const Table& table,
           record.values[head.column->id] = std::move(*value);
       } else if (!is_measure(head.text) && !trimmed(cell).empty()) {
         const bool is_key = head.text == kKey;
-        auto number = parse_integer(trimmed(cell), 0, is_key ? kHighestKey : INT64_MAX, head.text);
+        auto number =
+            parse_integer(trimmed(cell), 0, is_key ? kMaxRecordKey : INT64_MAX, head.text);
         if (!number)
           mistakes.push_back({row.line, head.text, number.error()});
         else
@@ -167,7 +168,7 @@ Result<RecordRows> read_records_csv(std::string_view text, const Table& table,
       out.lines.push_back(row.line);
     }
     for (RowMistake& mistake : mistakes)
-      if (out.mistakes.size() < store::kMostRowProblems) out.mistakes.push_back(std::move(mistake));
+      if (out.mistakes.size() < store::kMaxRowProblems) out.mistakes.push_back(std::move(mistake));
   }
   return out;
 }

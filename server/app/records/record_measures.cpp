@@ -4,7 +4,7 @@
 
 #include "domain/people/role.h"
 #include "domain/scene/model.h"
-#include "domain/tables/mark.h"
+#include "domain/tables/surface_feature.h"
 #include "domain/tables/table.h"
 #include "room/queries.h"
 #include "room/room.h"
@@ -51,21 +51,22 @@ double RecordMeasures::area_m2(std::int64_t key) const {
 std::vector<double> RecordMeasures::of(const Record& record) const {
   std::vector<double> values;
   if (has_area_) values.push_back(area_m2(record.key));
-  const auto for_each_mark = [&](const std::vector<Column>& columns, auto visit) {
+  const auto for_each_feature = [&](const std::vector<Column>& columns, auto visit) {
     for (const Column& column : columns)
-      for (const Mark& mark : marks_of(record, column))
-        if (const auto metres = metres_.find(mark.model); metres != metres_.end())
-          visit(mark, metres->second);
+      for (const SurfaceFeature& feature : features_of(record, column))
+        if (const auto metres = metres_.find(feature.model); metres != metres_.end())
+          visit(feature, metres->second);
   };
   if (!lines_.empty()) {
     double length_m = 0;
-    for_each_mark(lines_,
-                  [&](const Mark& mark, double metres) { length_m += length_of(mark) * metres; });
+    for_each_feature(lines_, [&](const SurfaceFeature& feature, double metres) {
+      length_m += length_of(feature) * metres;
+    });
     values.push_back(length_m);
   }
   if (!points_.empty()) {
     double count = 0;
-    for_each_mark(points_, [&](const Mark&, double) { ++count; });
+    for_each_feature(points_, [&](const SurfaceFeature&, double) { ++count; });
     values.push_back(count);
   }
   return values;

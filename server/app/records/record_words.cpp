@@ -23,7 +23,7 @@ std::map<std::int64_t, std::string> titles_of(store::Store& store, const store::
   std::map<std::int64_t, std::string> named;  // of the records that titles are
   if (title->kind == ColumnKind::term && depth < kDeepest) {
     store::RecordQuery all;
-    all.limit = store::kMostRecords;
+    all.limit = store::kMaxRecords;
     if (const auto target = store.records().page(*title->target, seen_by, all)) {
       if (const auto terms = term_columns(target->table))
         for (const ListedTerm& listed : list_terms(*terms, target->records))
@@ -57,7 +57,7 @@ void RecordWords::add(std::int64_t key, const std::string& word) {
 Result<RecordWords> RecordWords::load(store::Store& store, std::int64_t table_id, Role seen_by,
                                       const std::string& language) {
   store::RecordQuery all;
-  all.limit = store::kMostRecords;
+  all.limit = store::kMaxRecords;
   const auto page = STRATA_TRY(store.records().page(table_id, seen_by, all));
   RecordWords words;
   words.table_ = page.table.name;
@@ -100,7 +100,7 @@ std::string RecordWords::word(std::int64_t key) const {
 }
 
 Result<std::int64_t> RecordWords::key_of(const std::string& word, const std::string& field) const {
-  if (is_all_digits(bare(word))) return parse_integer(bare(word), 0, kHighestKey, field);
+  if (is_all_digits(bare(word))) return parse_integer(bare(word), 0, kMaxRecordKey, field);
   const auto meant = keys_.find(bare(word));
   if (meant == keys_.end())
     return fail(ErrorCode::invalid, "No such record",

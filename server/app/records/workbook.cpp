@@ -16,8 +16,8 @@ namespace strata::app {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kLongestCell = 32'767;  // UTF-16 units
-constexpr std::size_t kLongestSheetName = 31;
+constexpr std::size_t kMaxCellLength = 32'767;  // UTF-16 units
+constexpr std::size_t kMaxSheetNameLength = 31;
 
 // Length in bytes of the UTF-8 character at the beginning of a text that is UTF-8.
 std::size_t character_bytes(std::string_view text) {
@@ -61,12 +61,12 @@ std::string cell_text(std::string_view text) {
     text.remove_prefix(character.size());
     units += character.size() == 4 ? 2 : 1;
     written += cell.size() > 4 ? cell.size() : 1;
-    if (std::max(units, written) > kLongestCell) {
+    if (std::max(units, written) > kMaxCellLength) {
       out.resize(before_last);
       return out + "\u2026";
     }
     out += cell;
-    if (std::max(units, written) < kLongestCell) before_last = out.size();
+    if (std::max(units, written) < kMaxCellLength) before_last = out.size();
   }
   return out;
 }
@@ -129,7 +129,8 @@ Workbook::Workbook(const fs::path& folder, const std::string& sheet_name,
   options.tmpdir = temporary.data();  // copied
   book.book = workbook_new_opt(book.file->path.c_str(), &options);
   if (book.book)
-    book.sheet = workbook_add_worksheet(book.book, sheet_name.substr(0, kLongestSheetName).c_str());
+    book.sheet =
+        workbook_add_worksheet(book.book, sheet_name.substr(0, kMaxSheetNameLength).c_str());
   if (!book.sheet) {
     book.error = LXW_ERROR_CREATING_TMPFILE;
     return;

@@ -37,7 +37,7 @@ struct BookColumn {
 // Excel's cells they end in an ellipsis.
 class Workbook {
  public:
-  static constexpr std::size_t kMostRows = 1'048'575;  // beside the head
+  static constexpr std::size_t kMaxRows = 1'048'575;  // beside the head
 
   // In a file of its own in the folder. The first row is bold and stays in sight.
   Workbook(const std::filesystem::path& folder, const std::string& sheet_name,

@@ -14,7 +14,7 @@ Result<FoundTool> BrushShapeCache::find(const std::string& ref) {
   auto shape = std::make_shared<const ShapeTexture>(bits);
   std::lock_guard lock(mutex_);
   // strokes hold theirs; the next that are asked for come back
-  if (ready_.size() >= kMostReady) ready_.clear();
+  if (ready_.size() >= kMaxReady) ready_.clear();
   ready_[tool.id] = shape;
   return FoundTool{tool.id, std::move(shape)};
 }

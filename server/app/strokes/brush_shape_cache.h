@@ -26,7 +26,7 @@ class BrushShapeCache {
   Result<FoundTool> find(const std::string& ref);
 
  private:
-  static constexpr std::size_t kMostReady = 64;  // 72 KiB each
+  static constexpr std::size_t kMaxReady = 64;  // 72 KiB each
 
   store::Store& store_;
   std::mutex mutex_;

@@ -14,11 +14,10 @@ Result<void> RecordEditLocks::begin(std::int64_t project_id, const Record& recor
   }
   const auto own = std::ranges::count_if(
       held_, [&](const auto& entry) { return entry.second.editor.session == editor.session; });
-  if (static_cast<std::size_t>(own) >= kMostOfSession)
-    return fail(
-        ErrorCode::invalid, "Too many records",
-        "A connection edits at most " + std::to_string(kMostOfSession) + " records at once.",
-        "key");
+  if (static_cast<std::size_t>(own) >= kMaxOfSession)
+    return fail(ErrorCode::invalid, "Too many records",
+                "A connection edits at most " + std::to_string(kMaxOfSession) + " records at once.",
+                "key");
   held_[record] = {project_id, editor};
   tell(project_id, {{record, editor}});
   return {};

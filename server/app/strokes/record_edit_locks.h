@@ -19,7 +19,7 @@ namespace strata::app {
 // version. Thread-safe; does not block.
 class RecordEditLocks {
  public:
-  static constexpr std::size_t kMostOfSession = 100;  // records
+  static constexpr std::size_t kMaxOfSession = 100;  // records
 
   struct Record {
     std::int64_t table = 0, key = 0;
@@ -38,7 +38,7 @@ class RecordEditLocks {
   using Tell = std::function<void(std::int64_t project_id, const std::vector<Entry>& entries)>;
 
   // The editor has the record now, unless somebody else has it and is not to be relieved: then
-  // nothing changes. Refused (422, `key`): more than `kMostOfSession`.
+  // nothing changes. Refused (422, `key`): more than `kMaxOfSession`.
   Result<void> begin(std::int64_t project_id, const Record& record, const Editor& editor,
                      bool take_over, const Tell& tell);
   // where it is this session's

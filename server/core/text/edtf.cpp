@@ -9,7 +9,7 @@
 namespace strata {
 namespace {
 
-constexpr std::int64_t kFarthestYear = 999'999'999;
+constexpr std::int64_t kMaxYear = 999'999'999;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -61,7 +61,7 @@ std::optional<Span> days_of_date(std::string_view text) {
   if (negative) text.remove_prefix(1);
   if (many_digits) {
     const auto year = number_of(text);
-    if (!year || text.size() < 5 || text[0] == '0' || *year > kFarthestYear) return std::nullopt;
+    if (!year || text.size() < 5 || text[0] == '0' || *year > kMaxYear) return std::nullopt;
     const std::int64_t signed_year = negative ? -*year : *year;
     return Span{day_number(signed_year, 1, 1), day_number(signed_year, 12, 31)};
   }
@@ -125,11 +125,11 @@ Result<Period> parse_edtf(std::string_view text) {
   const auto refuse = [&] {
     return fail(
         ErrorCode::invalid, "Not a period",
-        "\"" + mended_utf8(text.substr(0, kLongestPeriod)) +
+        "\"" + mended_utf8(text.substr(0, kMaxPeriod)) +
             "\" is no date of EDTF such as 1560, 1560~, 156X, 1560-04-12, -0043, 1560/1580 or 1560/..",
         {});
   };
-  if (text.empty() || text.size() > kLongestPeriod) return refuse();
+  if (text.empty() || text.size() > kMaxPeriod) return refuse();
   Period period;
   const std::size_t slash = text.find('/');
   if (slash == std::string_view::npos) {

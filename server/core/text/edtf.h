@@ -21,7 +21,7 @@ struct Period {
   bool operator==(const Period&) const = default;
 };
 
-inline constexpr std::size_t kLongestPeriod = 64;  // bytes
+inline constexpr std::size_t kMaxPeriod = 64;  // bytes
 
 // Extended Date/Time Format (ISO 8601-2:2019), levels 0 and 1 without times of the day: `1985`,
 // `1985-04`, `1985-04-12`, seasons `2001-21` (spring) … `-24` (December to February), years of more

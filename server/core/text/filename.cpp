@@ -35,8 +35,8 @@ std::string base_filename(std::string_view path) {
     if (static_cast<unsigned char>(c) >= 32 && c != 127) out += c;
   out = without_unseen(mended_utf8(out));
   if (out == "." || out == "..") out.clear();
-  if (out.size() <= kLongestFilename) return out;
-  std::size_t cut = out.size() - kLongestFilename;  // the end holds the extension
+  if (out.size() <= kMaxFilenameLength) return out;
+  std::size_t cut = out.size() - kMaxFilenameLength;  // the end holds the extension
   while (!is_utf8(std::string_view(out).substr(cut))) ++cut;
   return out.substr(cut);
 }

@@ -42,8 +42,7 @@ Result<NamePattern> NamePattern::parse(std::string_view text, const std::string&
     pattern.parts_.push_back({is_word, part});
   }
   if (words == 0) return wrong("It has no word.");
-  if (words > kMostWords)
-    return wrong("It has more than " + std::to_string(kMostWords) + " words.");
+  if (words > kMaxWords) return wrong("It has more than " + std::to_string(kMaxWords) + " words.");
   return pattern;
 }
 

@@ -14,7 +14,7 @@ namespace strata {
 // more bytes, what is between the words for itself, whatever the case of A to Z.
 class NamePattern {
  public:
-  static constexpr std::size_t kMostWords = 8;
+  static constexpr std::size_t kMaxWords = 8;
 
   // `invalid` (`field`): no word, a word twice, two words without anything between them, braces
   // that do not fit.

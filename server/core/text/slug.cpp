@@ -10,10 +10,10 @@ bool is_all_digits(std::string_view text) {
 }
 
 std::string make_slug(std::string_view name) {
-  constexpr std::size_t kLongest = 48;
+  constexpr std::size_t kMaxLength = 48;
   std::string slug;
   for (char c : name) {
-    if (slug.size() >= kLongest) break;
+    if (slug.size() >= kMaxLength) break;
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'))
       slug += c;

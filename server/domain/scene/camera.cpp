@@ -16,7 +16,7 @@ bool is_finite(const glm::dmat4& m) {
   return true;
 }
 
-constexpr double kShortestNormal = 1e-100;
+constexpr double kMinNormalLength = 1e-100;
 
 // A determinant alone says little of a matrix in small or large units; what is needed is a usable
 // inverse.
@@ -56,7 +56,7 @@ Result<void> validate(const Camera& camera, const std::string& field) {
   for (std::size_t i = 0; i < camera.section.size(); ++i) {
     const glm::dvec4& plane = camera.section[i];
     const double length = glm::length(glm::dvec3(plane));
-    if (!std::isfinite(length) || !std::isfinite(plane.w) || !(length > kShortestNormal))
+    if (!std::isfinite(length) || !std::isfinite(plane.w) || !(length > kMinNormalLength))
       return fail(ErrorCode::invalid, "Plane without a direction",
                   "A plane is [a, b, c, d] with finite numbers and a, b, c not all 0.",
                   field + ".section[" + std::to_string(i) + "]");

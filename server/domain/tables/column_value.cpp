@@ -10,7 +10,7 @@
 #include "core/text/edtf.h"
 #include "core/text/timestamp.h"
 #include "core/text/utf8.h"
-#include "domain/tables/mark.h"
+#include "domain/tables/surface_feature.h"
 
 namespace strata {
 namespace {
@@ -58,9 +58,9 @@ Result<std::string> check_text(const Column& column, const json& value, const ch
                                const std::string& field) {
   if (!value.is_string()) return refuse(column, what, field);
   const auto& text = value.get_ref<const std::string&>();
-  if (text.size() > kLongestText || !is_utf8(text) || text.find('\0') != std::string::npos)
+  if (text.size() > kMaxTextLength || !is_utf8(text) || text.find('\0') != std::string::npos)
     return refuse(column,
-                  "UTF-8 of at most " + std::to_string(kLongestText) + " bytes, without U+0000",
+                  "UTF-8 of at most " + std::to_string(kMaxTextLength) + " bytes, without U+0000",
                   field);
   return text;
 }
@@ -84,15 +84,16 @@ Result<json> check_url(const Column& column, const std::string& text, const std:
 
 std::optional<std::int64_t> key_of(const json& value) {
   const double number = value.is_number() ? value.get<double>() : NAN;
-  if (!(number >= 0 && number <= static_cast<double>(kHighestKey)) || std::trunc(number) != number)
+  if (!(number >= 0 && number <= static_cast<double>(kMaxRecordKey)) ||
+      std::trunc(number) != number)
     return std::nullopt;
   return static_cast<std::int64_t>(number);
 }
 
 Result<json> check_relation(const Column& column, const json& value, const std::string& field) {
   if (!value.is_array()) return refuse(column, "a list of keys", field);
-  if (value.size() > kMostRelated)
-    return refuse(column, "at most " + std::to_string(kMostRelated) + " keys in a record", field);
+  if (value.size() > kMaxRelated)
+    return refuse(column, "at most " + std::to_string(kMaxRelated) + " keys in a record", field);
   std::vector<std::int64_t> keys;
   for (const json& item : value) {
     const auto key = key_of(item);
@@ -106,10 +107,9 @@ Result<json> check_relation(const Column& column, const json& value, const std::
 }
 
 Result<json> check_attached(const Column& column, const json& value, const std::string& field) {
-  if (!value.is_array() || value.size() > kMostAttached)
-    return refuse(column,
-                  "a list of at most " + std::to_string(kMostAttached) + " ids of attachments",
-                  field);
+  if (!value.is_array() || value.size() > kMaxAttached)
+    return refuse(
+        column, "a list of at most " + std::to_string(kMaxAttached) + " ids of attachments", field);
   json ids = json::array();
   for (const json& item : value) {
     const double number = item.is_number() ? item.get<double>() : NAN;
@@ -123,21 +123,21 @@ Result<json> check_attached(const Column& column, const json& value, const std::
   return ids;
 }
 
-Result<json> check_marks(const Column& column, const json& value, const std::string& field) {
+Result<json> check_features(const Column& column, const json& value, const std::string& field) {
   const bool lines = column.kind == ColumnKind::line;
-  const auto marks = read_marks(value, lines);
-  if (!marks)
+  const auto features = read_features(value, lines);
+  if (!features)
     return refuse(
         column,
         std::string(
             lines
                 ? R"(a list of lines, {"model": 3, "coordinates": [[x, y, z], [x, y, z], …]} each)"
                 : R"(a list of points, {"model": 3, "coordinates": [[x, y, z]]} each)") +
-            ", " + std::to_string(kMostMarks) + " and " + std::to_string(kMostMarkPlaces) +
+            ", " + std::to_string(kMaxFeatures) + " and " + std::to_string(kMaxFeaturePlaces) +
             " places at most",
         field);
-  if (marks->empty()) return json();
-  return to_json(*marks);
+  if (features->empty()) return json();
+  return to_json(*features);
 }
 
 Result<json> check_present(const Column& column, const json& value, const std::string& field) {
@@ -155,7 +155,7 @@ Result<json> check_present(const Column& column, const json& value, const std::s
     case ColumnKind::picture:
     case ColumnKind::document: return check_attached(column, value, field);
     case ColumnKind::line:
-    case ColumnKind::point: return check_marks(column, value, field);
+    case ColumnKind::point: return check_features(column, value, field);
     default: break;
   }
   auto text = STRATA_TRY(check_text(column, value, "text", field));
@@ -275,15 +275,15 @@ Result<json> parse_value(const Column& column, std::string_view text, bool decim
     case ColumnKind::line:
     case ColumnKind::point: {
       const bool lines = column.kind == ColumnKind::line;
-      const auto marks = parse_marks(bare, lines);
-      if (!marks)
+      const auto features = parse_features(bare, lines);
+      if (!features)
         return refuse(
             column,
             lines
                 ? "lines as `3 LINESTRING Z (0 0 1, 2.5 0 1)`, the model's id first, with semicolons between"
                 : "points as `3 POINT Z (0 0 1)`, the model's id first, with semicolons between",
             field);
-      return check_value(column, to_json(*marks), field);
+      return check_value(column, to_json(*features), field);
     }
     default: break;
   }
@@ -293,10 +293,10 @@ Result<json> parse_value(const Column& column, std::string_view text, bool decim
 }
 
 std::string print_value(const Column& column, const json& value) {
-  if (holds_marks(column.kind)) {
+  if (holds_features(column.kind)) {
     const bool lines = column.kind == ColumnKind::line;
-    const auto marks = read_marks(value, lines);
-    return marks ? print_marks(*marks, lines) : std::string();
+    const auto features = read_features(value, lines);
+    return features ? print_features(*features, lines) : std::string();
   }
   return is_free_text(column.kind) ? guard_formula(plain_text(value)) : plain_text(value);
 }
@@ -314,9 +314,9 @@ Result<json> convert_value(const Column& from, const Column& to, const json& val
   if (holds_attachments(to.kind))
     return holds_attachments(from.kind) ? check_value(to, value, field)
                                         : refuse(to, "files", field);
-  if (holds_marks(to.kind) && !holds_marks(from.kind) && !is_free_text(from.kind))
+  if (holds_features(to.kind) && !holds_features(from.kind) && !is_free_text(from.kind))
     return refuse(to, "lines or points", field);
-  const std::string text = holds_marks(from.kind) ? print_value(from, value) : plain_text(value);
+  const std::string text = holds_features(from.kind) ? print_value(from, value) : plain_text(value);
   if (is_free_text(to.kind)) return check_value(to, text, field);
   return parse_value(to, text, false, field);
 }

@@ -8,9 +8,9 @@
 
 namespace strata {
 
-inline constexpr std::size_t kLongestText = 100'000;  // bytes of a text
-inline constexpr std::size_t kMostRelated = 10'000;   // keys of a relation
-inline constexpr std::size_t kMostAttached = 1000;    // files in one cell
+inline constexpr std::size_t kMaxTextLength = 100'000;  // bytes of a text
+inline constexpr std::size_t kMaxRelated = 10'000;      // keys of a relation
+inline constexpr std::size_t kMaxAttached = 1000;       // files in one cell
 // what every reader of JSON keeps exactly
 inline constexpr std::int64_t kGreatestInteger = 1ll << 53;
 

@@ -31,7 +31,7 @@ bool is_language_tag(std::string_view tag) {
 }
 
 Result<void> check_short(const std::string& text, const std::string& field,
-                         std::size_t longest = kLongestColumnText) {
+                         std::size_t longest = kMaxColumnTextLength) {
   if (text.size() <= longest && is_utf8(text) && text.find('\0') == std::string::npos) return {};
   return fail(ErrorCode::invalid, "Bad text",
               "`" + field + "` must be UTF-8 of at most " + std::to_string(longest) +
@@ -45,9 +45,9 @@ Result<void> check_choices(const Column& column) {
     return fail(ErrorCode::invalid, "Choices without enumeration",
                 "Only columns of kind `enumeration` have choices.", "choices");
   }
-  if (column.choices.empty() || column.choices.size() > kMostChoices)
+  if (column.choices.empty() || column.choices.size() > kMaxChoices)
     return fail(ErrorCode::invalid, "Bad choices",
-                "An enumeration has 1 to " + std::to_string(kMostChoices) + " choices.", "choices");
+                "An enumeration has 1 to " + std::to_string(kMaxChoices) + " choices.", "choices");
   std::set<std::string> known;
   for (const std::string& choice : column.choices) {
     STRATA_TRY(check_short(choice, "choices"));
@@ -83,11 +83,11 @@ Result<void> check_kind(const Column& column) {
                       "A column of this kind names a table of the project as `target`.", "target")
                : fail(ErrorCode::invalid, "Target without relation",
                       "Only columns of kind `term` or `relation` have a target.", "target");
-  if ((holds_attachments(column.kind) || holds_marks(column.kind)) &&
+  if ((holds_attachments(column.kind) || holds_features(column.kind)) &&
       !column.default_value.is_null())
     return fail(ErrorCode::invalid, "No default",
-                holds_marks(column.kind) ? "Lines and points are drawn for single records."
-                                         : "Files are attached to single records.",
+                holds_features(column.kind) ? "Lines and points are drawn for single records."
+                                            : "Files are attached to single records.",
                 "default");
   if (column.unique && (column.kind == ColumnKind::boolean || holds_lists(column.kind)))
     return fail(ErrorCode::invalid, "Cannot be unique",
@@ -111,7 +111,7 @@ std::optional<ColumnKind> parse_column_kind(std::string_view name) {
 }
 
 Result<void> check_labels(const Labels& labels, const std::string& field) {
-  return check_texts_by_language(labels, kLongestColumnText, field);
+  return check_texts_by_language(labels, kMaxColumnTextLength, field);
 }
 
 Result<void> check_texts_by_language(const Labels& texts, std::size_t longest,
@@ -131,7 +131,7 @@ Result<void> check_texts_by_language(const Labels& texts, std::size_t longest,
 Result<void> check_column(Column& column) {
   if (column.name.empty())
     return fail(ErrorCode::invalid, "Bad name",
-                "A column has a name of 1 to " + std::to_string(kLongestColumnText) + " bytes.",
+                "A column has a name of 1 to " + std::to_string(kMaxColumnTextLength) + " bytes.",
                 "name");
   STRATA_TRY(check_short(column.name, "name"));
   STRATA_TRY(check_short(column.unit, "unit"));

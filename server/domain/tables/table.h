@@ -36,12 +36,12 @@ std::optional<ColumnKind> parse_column_kind(std::string_view name);
 inline bool holds_attachments(ColumnKind kind) {
   return kind == ColumnKind::picture || kind == ColumnKind::document;
 }
-inline bool holds_marks(ColumnKind kind) {
+inline bool holds_features(ColumnKind kind) {
   return kind == ColumnKind::line || kind == ColumnKind::point;
 }
 // Several values in one cell.
 inline bool holds_lists(ColumnKind kind) {
-  return kind == ColumnKind::relation || holds_attachments(kind) || holds_marks(kind);
+  return kind == ColumnKind::relation || holds_attachments(kind) || holds_features(kind);
 }
 
 // A column of a project's table. Its id is given once and never again.
@@ -82,13 +82,13 @@ struct Table {
   std::int64_t version = 1;   // of everything but the records, for ETag and If-Match
 };
 
-inline constexpr std::int64_t kHighestKey = 0xffffffff;
+inline constexpr std::int64_t kMaxRecordKey = 0xffffffff;
 // target of a column of a table that is being made: that table
 inline constexpr std::int64_t kOwnTable = 0;
-inline constexpr int kMostColumns = 256;
-inline constexpr int kMostChoices = 1000;
+inline constexpr int kMaxColumns = 256;
+inline constexpr int kMaxChoices = 1000;
 // bytes of a unit, a choice, a label, a comment
-inline constexpr std::size_t kLongestColumnText = 2000;
+inline constexpr std::size_t kMaxColumnTextLength = 2000;
 
 // A row: what a key stands for. `values` by column id; none where the column has none.
 struct Record {

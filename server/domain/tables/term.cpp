@@ -37,9 +37,9 @@ std::optional<std::string> clean_color(std::string_view text) {
 }
 
 Result<void> check_term(Term& term) {
-  if (term.code.empty() || term.code.size() > kLongestCode)
+  if (term.code.empty() || term.code.size() > kMaxCodeLength)
     return fail(ErrorCode::invalid, "Bad code",
-                "A term has a code of 1 to " + std::to_string(kLongestCode) + " bytes.", "code");
+                "A term has a code of 1 to " + std::to_string(kMaxCodeLength) + " bytes.", "code");
   if (!term.color.empty()) {
     const auto color = clean_color(term.color);
     if (!color) return fail(ErrorCode::invalid, "Bad colour", "A colour is like #c04020.", "color");

@@ -25,10 +25,10 @@ struct Term {
   std::string pattern;  // of kTermPatterns or empty
 };
 
-inline constexpr std::size_t kMostTerms = 100'000;
-inline constexpr std::size_t kLongestCode = 200;       // bytes
-inline constexpr std::size_t kMostTermLanguages = 50;  // of a list
-inline constexpr std::size_t kMostTermMistakes = 100;  // that are told
+inline constexpr std::size_t kMaxTerms = 100'000;
+inline constexpr std::size_t kMaxCodeLength = 200;    // bytes
+inline constexpr std::size_t kMaxTermLanguages = 50;  // of a list
+inline constexpr std::size_t kMaxTermMistakes = 100;  // that are told
 // In the order of Pattern.
 inline constexpr const char* kTermPatterns[] = {"solid", "hatch", "dots", "outline"};
 
@@ -45,7 +45,7 @@ struct TermList {
   std::vector<Term> terms;  // those without mistakes
   // slugs of those that the text has: what it does not have stays as it is in a list
   std::set<std::string> columns;
-  std::vector<TermMistake> mistakes;  // the first kMostTermMistakes
+  std::vector<TermMistake> mistakes;  // the first kMaxTermMistakes
   std::size_t rows = 0;               // terms, those with mistakes among them
   // of SKOS: further broader terms and further labels of a language, which a list has no place for
   std::size_t left_out = 0;

@@ -216,7 +216,7 @@ Palette terms_palette(std::span<const ListedTerm> terms) {
   Palette palette;
   palette.mode = PaletteMode::categorical;
   for (auto& [key, point] : points) {
-    if (palette.points.size() == kMostTermColors) break;
+    if (palette.points.size() == kMaxTermColors) break;
     palette.points.push_back(std::move(point));
   }
   if (palette.points.empty()) return palette;

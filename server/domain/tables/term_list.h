@@ -55,8 +55,8 @@ std::vector<bool> terms_with(std::span<const ListedTerm> terms, std::string_view
 
 // The colours and patterns of the terms by their keys, with their labels. A term without a colour
 // takes the one above it, in a shade of its own; at the top it is generated. The first
-// kMostTermColors by key.
-inline constexpr std::size_t kMostTermColors = 4096;
+// kMaxTermColors by key.
+inline constexpr std::size_t kMaxTermColors = 4096;
 Palette terms_palette(std::span<const ListedTerm> terms);
 // Whether a layer of a list of terms takes its colours from them: it has no points of its own, and
 // no column that colours.

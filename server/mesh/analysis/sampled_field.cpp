@@ -9,7 +9,7 @@
 namespace strata::mesh {
 namespace {
 
-constexpr double kMostGridPoints = 4e6;
+constexpr double kMaxGridPoints = 4e6;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr const char* kMeasuring = "Measuring the shape";
 
@@ -33,7 +33,7 @@ float fitting_spacing(const std::vector<float>& edges, float spacing) {
     double points = 0;
     for (const float edge : edges)
       if (edge > spacing) points += points_of(std::min(cuts_of(edge, spacing), 100'000'000));
-    if (points <= kMostGridPoints) return spacing;
+    if (points <= kMaxGridPoints) return spacing;
   }
 }
 

@@ -10,7 +10,7 @@ std::vector<glm::vec3> laplacian_smoothed(std::span<const std::uint32_t> triangl
                                           const Connectivity& connectivity,
                                           std::span<const glm::vec3> positions, int iterations,
                                           std::span<const std::uint8_t> stays) {
-  constexpr float kStep = 0.6f, kMostMove = 0.25f;
+  constexpr float kStep = 0.6f, kMaxMove = 0.25f;
   std::vector<glm::vec3> smoothed(positions.begin(), positions.end());
   std::vector<glm::vec3> sum(positions.size());
   std::vector<float> weight(positions.size());
@@ -28,7 +28,7 @@ std::vector<glm::vec3> laplacian_smoothed(std::span<const std::uint32_t> triangl
     const float squared = glm::dot(along, along);
     shortest[a] = std::min(shortest[a], squared), shortest[b] = std::min(shortest[b], squared);
   }
-  for (float& length : shortest) length = kMostMove * std::sqrt(length);
+  for (float& length : shortest) length = kMaxMove * std::sqrt(length);
   for (int i = 0; i < iterations; ++i) {
     std::fill(sum.begin(), sum.end(), glm::vec3(0));
     std::fill(weight.begin(), weight.end(), 0.f);

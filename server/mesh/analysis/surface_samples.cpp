@@ -12,10 +12,10 @@ namespace strata::mesh {
 namespace {
 
 constexpr int kCellsPerRadius = 5;
-constexpr double kMostPieces = 2e7;
+constexpr double kMaxPieces = 2e7;
 // Cells of a group have 20 bits an axis.
-constexpr double kMostCells = 1 << 20;
-constexpr int kMostBands = 64;
+constexpr double kMaxCells = 1 << 20;
+constexpr int kMaxBands = 64;
 // Triangles of more cuts are asked which of their pieces may lie in a band before these are made.
 constexpr int kManyCuts = 8;
 constexpr const char* kSampling = "Sampling the surface";
@@ -44,8 +44,8 @@ class SampleBands {
     const glm::vec3 extent = geometry.box_max - geometry.box_min;
     axis_ = longest_axis(extent);
     cells_ = static_cast<int>(
-        std::min(std::floor(extent[axis_] / cell_) + 1.0f, static_cast<float>(kMostCells)));
-    bands_.resize(std::min(kMostBands, cells_));
+        std::min(std::floor(extent[axis_] / cell_) + 1.0f, static_cast<float>(kMaxCells)));
+    bands_.resize(std::min(kMaxBands, cells_));
     triangles_of_band_ = triangles_by_band();
   }
 
@@ -204,8 +204,8 @@ class SampleBands {
 };
 
 double SurfaceSamples::least_radius(double area, const glm::dvec3& extent) {
-  const double by_pieces = kCellsPerRadius * std::sqrt(2 * area / kMostPieces);
-  const double by_cells = kCellsPerRadius * std::max({extent.x, extent.y, extent.z}) / kMostCells;
+  const double by_pieces = kCellsPerRadius * std::sqrt(2 * area / kMaxPieces);
+  const double by_cells = kCellsPerRadius * std::max({extent.x, extent.y, extent.z}) / kMaxCells;
   return std::max(by_pieces, by_cells);
 }
 

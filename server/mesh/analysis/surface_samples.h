@@ -41,7 +41,7 @@ class SurfaceSamples {
   // 80° of `normal`.
   template <class Visit>
   void near(const glm::vec3& point, const glm::vec3& normal, Visit&& visit) const {
-    constexpr float kLeastCos = 0.17f;
+    constexpr float kMinCos = 0.17f;
     const glm::ivec3 low = cell_of(point - radius_), high = cell_of(point + radius_);
     for (int z = low.z; z <= high.z; ++z)
       for (int y = low.y; y <= high.y; ++y)
@@ -49,7 +49,7 @@ class SurfaceSamples {
           for (const Sample& sample : in_cell({x, y, z})) {
             const glm::vec3 offset = sample.position - point;
             const float squared = glm::dot(offset, offset);
-            if (squared <= radius_ * radius_ && glm::dot(sample.normal, normal) >= kLeastCos)
+            if (squared <= radius_ * radius_ && glm::dot(sample.normal, normal) >= kMinCos)
               visit(sample, squared);
           }
   }

@@ -32,22 +32,22 @@ constexpr int kWideGap = 4, kNarrowGap = 2;
 // Hollow charts are cut from so many triangles on: smaller meshes have texels enough, and rather as
 // few seams as possible.
 constexpr std::size_t kCutsFrom = 5000;
-constexpr double kLeastHollow = 0.003;  // box of a chart worth cutting, of the atlas
-// Faces that keep less than 1 / kMostStretch of their area get charts of their own, if they are
+constexpr double kMinHollow = 0.003;  // box of a chart worth cutting, of the atlas
+// Faces that keep less than 1 / kMaxStretch of their area get charts of their own, if they are
 // worth as many texels; the footprint of faces in those charts is at least kStraightFootprint. None
 // has kNoFootprint: each is a chart then.
-constexpr float kMostStretch = 2.6f, kStraightFootprint = 0.45f, kNoFootprint = 2;
-constexpr double kSmallestSqueezed = 0.1;
+constexpr float kMaxStretch = 2.6f, kStraightFootprint = 0.45f, kNoFootprint = 2;
+constexpr double kMinSqueezed = 0.1;
 // Laplacian rounds: scanner noise is gone after two, and more would only add stretch.
 constexpr int kSmoothing = 2;
 // No texel has two owners at the lowest resolution, nor at twice and four times that: layers are
 // usually so fine.
 constexpr int kVerifiedResolutions = 3;
-constexpr int kMostMendingRounds = 20;
+constexpr int kMaxMendingRounds = 20;
 // Density is lowered by this factor, so often, before a new one is searched for.
 constexpr double kRepackingStep = 0.995;
-constexpr int kMostRepackings = 8;
-constexpr int kLargestResolution = 16384;
+constexpr int kMaxRepackings = 8;
+constexpr int kMaxResolution = 16384;
 // 1/8192 texel at the lowest resolution: a multiple of 2^-24 of the atlas at 2048, so that float
 // UVs hold it exactly and every GPU snaps the same vertex to the same place.
 constexpr double kUvSteps = 8192;
@@ -85,7 +85,7 @@ std::vector<glm::vec2> lay_out(const Unwrap& unwrap, int resolution) {
 std::vector<int> verified_resolutions(int lowest_resolution) {
   std::vector<int> resolutions;
   for (int i = 0; i < kVerifiedResolutions; ++i)
-    if (const int resolution = lowest_resolution << i; resolution <= kLargestResolution)
+    if (const int resolution = lowest_resolution << i; resolution <= kMaxResolution)
       resolutions.push_back(resolution);
   return resolutions;
 }
@@ -113,8 +113,8 @@ float stretch_of(const ChartSurface& surface, std::span<const glm::vec2> plane,
 float least_scale(const ChartSurface& surface, const Unwrap& unwrap, const Chart& chart) {
   float most = 1;
   for (const auto face : chart.faces)
-    most = std::max(most, std::min(kMostStretch, stretch_of(surface, unwrap.plane, face)));
-  return most / kMostStretch;
+    most = std::max(most, std::min(kMaxStretch, stretch_of(surface, unwrap.plane, face)));
+  return most / kMaxStretch;
 }
 
 void outline(const ChartSurface& surface, Unwrap& unwrap) {
@@ -207,8 +207,8 @@ Result<Unwrap> unwrap_once(const ChartSurface& surface, int attempt, int lowest_
   progress.report(options.progress_to, "Flattening the charts");
   flatten(surface, unwrap.charts, 0, progress, unwrap.plane, kThreads);
   const auto smallest_area =
-      static_cast<float>(kSmallestSqueezed / (options.texels_per_unit * options.texels_per_unit));
-  const auto squeezed = squeezed_faces(surface, unwrap.plane, kMostStretch, smallest_area);
+      static_cast<float>(kMinSqueezed / (options.texels_per_unit * options.texels_per_unit));
+  const auto squeezed = squeezed_faces(surface, unwrap.plane, kMaxStretch, smallest_area);
   if (auto done = split(surface, squeezed, kStraightFootprint, lowest_resolution, progress, unwrap);
       !done)
     return tl::unexpected(done.error());
@@ -257,7 +257,7 @@ Result<void> use_more(const ChartSurface& surface, int lowest_resolution, const 
   if (is_poor() && surface.mesh.triangle_count() >= kCutsFrom) {
     Unwrap cut = unwrap;
     if (cut_hollow_charts(surface, cut.plane,
-                          static_cast<float>(kLeastHollow * area / kWantedCoverage), cut.charts)) {
+                          static_cast<float>(kMinHollow * area / kWantedCoverage), cut.charts)) {
       cut.longest = 0;
       outline(surface, cut);
       squeeze_long(surface, lowest_resolution, cut);
@@ -274,7 +274,7 @@ Result<void> use_more(const ChartSurface& surface, int lowest_resolution, const 
 
 // Packs again what has a few small charts more: it usually fits as it is, or nearly.
 Result<void> pack_again(int lowest_resolution, const Progress& progress, Unwrap& unwrap) {
-  for (int attempt = 0; attempt < kMostRepackings; ++attempt) {
+  for (int attempt = 0; attempt < kMaxRepackings; ++attempt) {
     const double density = unwrap.packing.texels_per_unit * std::pow(kRepackingStep, attempt);
     auto packing = pack_at(unwrap.outlines, density, lowest_resolution, unwrap.gap, progress);
     if (packing) return unwrap.packing = std::move(*packing), Result<void>{};
@@ -313,7 +313,7 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
   const auto resolutions = verified_resolutions(lowest_resolution);
   // Each round sends the later of two faces that share a texel to a chart of its own, so two or
   // three rounds end it; should one ever not, the report says what overlaps.
-  for (int round = 0; round < kMostMendingRounds; ++round) {
+  for (int round = 0; round < kMaxMendingRounds; ++round) {
     if (progress.cancelled()) return cancelled_problem();
     progress.report(0.85, "Checking that nothing overlaps");
     atlas.corner_uvs = lay_out(*best, lowest_resolution);

@@ -24,8 +24,8 @@ struct Stretch {
 
 // Stretch beyond this factor of the mean counts as this factor: a sliver's ratio says nothing about
 // the atlas.
-constexpr double kLargestStretch = 50;
-constexpr int kLargestMeasured = 8192;                     // finer grids would take seconds
+constexpr double kMaxStretch = 50;
+constexpr int kMaxMeasured = 8192;                         // finer grids would take seconds
 constexpr std::size_t kBandTexels = std::size_t{1} << 22;  // measured at a time
 
 void sum_stretch(std::vector<Stretch> faces, double area, double uv_area, AtlasMeasure& measure) {
@@ -33,7 +33,7 @@ void sum_stretch(std::vector<Stretch> faces, double area, double uv_area, AtlasM
   const double mean_ratio = area / uv_area;
   double sum = 0;
   for (auto& face : faces) {
-    face.ratio = static_cast<float>(std::min(kLargestStretch, face.ratio / mean_ratio));
+    face.ratio = static_cast<float>(std::min(kMaxStretch, face.ratio / mean_ratio));
     sum += double{face.ratio} * face.area;
   }
   measure.stretch_mean = sum / area;
@@ -153,7 +153,7 @@ AtlasReport make_report(const TriangleMesh& mesh, std::span<const glm::vec2> uvs
   report.stretch_mean = measure.stretch_mean;
   report.stretch_p99 = measure.stretch_p99;
   for (int resolution = lowest_resolution;
-       resolution <= std::min(4 * lowest_resolution, kLargestMeasured); resolution *= 2) {
+       resolution <= std::min(4 * lowest_resolution, kMaxMeasured); resolution *= 2) {
     const double texels = measure.uv_area * resolution * resolution;
     report.texel_sizes.push_back({resolution, texels > 0 ? measure.area / texels : 0, 0});
   }

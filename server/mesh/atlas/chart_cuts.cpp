@@ -10,10 +10,10 @@
 namespace strata::mesh {
 namespace {
 
-constexpr float kLeastFill = 0.45f;   // of its box by a chart that stays whole
+constexpr float kMinFill = 0.45f;     // of its box by a chart that stays whole
 constexpr float kJoinedFill = 0.65f;  // of its box by what a few faces are joined to
 constexpr std::size_t kFewFaces = 64;
-constexpr int kMostRounds = 8;
+constexpr int kMaxRounds = 8;
 
 float area_in_plane(std::span<const glm::vec2> plane, const Chart& chart) {
   float sum = 0;
@@ -102,13 +102,13 @@ bool cut_hollow_charts(const ChartSurface& surface, std::span<const glm::vec2> p
                        float least_box, std::vector<Chart>& charts) {
   bool any = false;
   std::vector<std::uint8_t> pending(surface.mesh.triangle_count(), 0);
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     const auto outlines = make_outlines(surface, charts, plane);
     std::vector<Chart> parts;
     for (std::size_t c = 0; c < charts.size(); ++c) {
       const float box = outlines[c].size.x * outlines[c].size.y;
       if (charts[c].faces.size() > 1 && box > least_box &&
-          area_in_plane(plane, charts[c]) < kLeastFill * box)
+          area_in_plane(plane, charts[c]) < kMinFill * box)
         for (const Chart& part : charts[c].faces.size() <= kFewFaces
                                      ? Joiner(surface, plane, charts[c]).join()
                                      : halves_of(charts[c], outlines[c], plane))

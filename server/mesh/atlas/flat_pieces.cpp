@@ -14,7 +14,7 @@ namespace {
 constexpr float kOffPlane = 1e-5f;
 constexpr float kFlatCosine = 0.99999f;    // 0.26°: between normals of faces of one piece
 constexpr float kCreaseCosine = 0.99985f;  // 1°: to a face beyond the edge of the piece
-constexpr float kMostSmoothEdge = 0.25f;   // share of a piece's edge that is no crease
+constexpr float kMaxSmoothEdge = 0.25f;    // share of a piece's edge that is no crease
 
 class Finder {
  public:
@@ -101,7 +101,7 @@ class Finder {
         if (next != kNoTriangle && glm::dot(frames_.normals[next], piece.normal) > kCreaseCosine)
           smooth += length;
       }
-    return smooth <= kMostSmoothEdge * edge;
+    return smooth <= kMaxSmoothEdge * edge;
   }
 
   FlatPieces sorted() {

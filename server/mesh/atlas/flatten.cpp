@@ -14,7 +14,7 @@ namespace {
 constexpr float kBadArea = 0.4f;
 constexpr float kGoodArea = 0.5f;  // what mending aims at
 constexpr int kRings = 4;          // of faces around a bad one that may give way
-constexpr int kMostSweeps = 40;
+constexpr int kMaxSweeps = 40;
 
 // Negative where the face lies on its back.
 float plane_area(std::span<const glm::vec2> plane, std::uint32_t face) {
@@ -127,7 +127,7 @@ void Flattener::flatten(std::uint32_t number) {
   if (!faces.empty()) {
     std::vector<std::uint32_t> vertices;
     RelaxPatch patch = make_patch(faces, static_cast<float>(plane / area), vertices);
-    relax(patch, kGoodArea, kMostSweeps);
+    relax(patch, kGoodArea, kMaxSweeps);
     for (std::size_t i = 0; i < faces.size(); ++i)
       for (int k = 0; k < 3; ++k)
         plane_[3 * std::size_t{faces[i]} + k] = patch.points[patch.faces[i].vertex[k]];

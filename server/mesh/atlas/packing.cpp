@@ -24,7 +24,7 @@ constexpr int kTogether = 2;
 constexpr int kRounds = 4, kRoundsOfMany = 3;
 constexpr double kLikelyFill = 0.78;  // of the atlas by charts with half their gaps
 // relative to the atlas: a pack that grows higher tells nothing
-constexpr double kMostHeight = 1.3;
+constexpr double kMaxHeight = 1.3;
 constexpr double kLessDense = 0.9, kMoreDense = 1.04;
 
 std::vector<std::uint32_t> ordered(std::span<const ChartShape> shapes, std::uint8_t order) {
@@ -251,7 +251,7 @@ std::optional<PackingStart> begin_packing(std::span<const Outline> outlines, int
     if (const auto shapes = make_shapes(outlines, start.density, side))
       parallel_for(threads, static_cast<int>(orders.size()), [&](int i) {
         trials[i] =
-            place(*shapes, side, static_cast<int>(side * kMostHeight), gap, orders[i], progress);
+            place(*shapes, side, static_cast<int>(side * kMaxHeight), gap, orders[i], progress);
       });
     if (progress.cancelled()) return std::nullopt;
     std::vector<std::uint8_t> numbers;

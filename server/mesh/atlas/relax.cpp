@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kAreaWeight = 4;  // of the area's distortion beside the shape's
 // height over base; slivers say nothing of the shape they should have
-constexpr double kLeastQuality = 0.1;
-constexpr int kMostHalvings = 6;
+constexpr double kMinQuality = 0.1;
+constexpr int kMaxHalvings = 6;
 
 // A triangle's map from its true shape: the columns of its Jacobian are sums of its corners with
 // these factors.
@@ -22,7 +22,7 @@ Element make_element(const RelaxPatch::Face& face, double mean_area) {
   glm::dvec2 b = face.b, c = face.c;
   const double area = (b.x * c.y - b.y * c.x) / 2;
   const double longest = std::max({glm::dot(b, b), glm::dot(c, c), glm::dot(c - b, c - b)});
-  if (area < kLeastQuality * longest / 2) {
+  if (area < kMinQuality * longest / 2) {
     const double side = std::sqrt(4 * std::max(area, 1e-6 * mean_area) / std::sqrt(3.0));
     b = {side, 0}, c = {side / 2, side * std::sqrt(3.0) / 2};
   }
@@ -133,7 +133,7 @@ class Relaxer {
     if (!(here.curvature > 0)) return;
     const glm::dvec2 from = points_[v];
     glm::dvec2 step = -here.gradient / here.curvature;
-    for (int i = 0; i < kMostHalvings; ++i, step *= 0.5) {
+    for (int i = 0; i < kMaxHalvings; ++i, step *= 0.5) {
       points_[v] = from + step;
       if (energy(v, epsilon, false).value < here.value) return;
     }

@@ -20,8 +20,8 @@ class Comments {
   void add(std::string_view text) {
     std::string clean(text);
     std::ranges::replace_if(clean, is_blank_or_control, ' ');
-    text = trimmed(clean).substr(0, kLongestComment);
-    if (text.empty() || list_.size() >= kMostComments) return;
+    text = trimmed(clean).substr(0, kMaxCommentLength);
+    if (text.empty() || list_.size() >= kMaxComments) return;
     list_.push_back(mended_utf8(text));
   }
   std::vector<std::string> take() { return std::move(list_); }

@@ -12,8 +12,8 @@ namespace strata::mesh {
 
 // What the writer of a mesh file says in words: the `comment` and `obj_info` lines of a PLY, the
 // `#` lines at the beginning of an OBJ, the header of a binary STL or the first line of an ASCII
-// one. At most kMostComments, cut to kLongestComment bytes, as UTF-8. glTF has none.
-constexpr std::size_t kMostComments = 200, kLongestComment = 500;
+// one. At most kMaxComments, cut to kMaxCommentLength bytes, as UTF-8. glTF has none.
+constexpr std::size_t kMaxComments = 200, kMaxCommentLength = 500;
 std::vector<std::string> file_comments(const InputFiles& files);
 
 // A unit or an up direction that a comment states, and the comment.

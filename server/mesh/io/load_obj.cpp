@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t kLinesBetweenReports = 65536;
 constexpr std::size_t kMaxNumbers = 8;
-constexpr std::size_t kMostLibraries = 100, kMostNames = 10000;
+constexpr std::size_t kMaxLibraries = 100, kMaxNames = 10000;
 constexpr int kTextureToFind = 0;  // of a UDIM material until its tiles are known
 
 // Three passes: what there is, points, then faces, so that a face may name points that follow it
@@ -61,7 +61,7 @@ class ObjReader {
       uvs += keyword == "vt";
       normals_ += keyword == "vn";
       faces += keyword == "f";
-      if (keyword == "mtllib" && libraries_.size() < kMostLibraries)
+      if (keyword == "mtllib" && libraries_.size() < kMaxLibraries)
         libraries_.emplace_back(rest_of(line));
     }
     if (positions >= 0xffffffffu || uvs >= 0xffffffffu)
@@ -132,7 +132,7 @@ class ObjReader {
     uv_transform_ =
         found == material_of_name_.end() ? UvTransform{} : uv_transforms_[found->second];
     faces_.use_material(found == material_of_name_.end() ? kNoMaterial : found->second);
-    if (found == material_of_name_.end() && undefined_.size() < kMostNames)
+    if (found == material_of_name_.end() && undefined_.size() < kMaxNames)
       undefined_.emplace(name, 0);
   }
 

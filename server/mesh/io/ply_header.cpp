@@ -10,7 +10,7 @@
 namespace strata::mesh {
 namespace {
 
-constexpr std::size_t kMostHeader = std::size_t{16} << 20;
+constexpr std::size_t kMaxHeader = std::size_t{16} << 20;
 constexpr std::size_t kMaxElements = 1000;
 constexpr std::size_t kMaxProperties = 1000;
 constexpr std::size_t kMaxTextureFiles = 4096;
@@ -71,7 +71,7 @@ class HeaderReader {
       if (words[0] == "end_header") return finish();
       STRATA_TRY(read_line(words));
     }
-    if (text_.size() - position_ > kMostHeader || position_ > kMostHeader)
+    if (text_.size() - position_ > kMaxHeader || position_ > kMaxHeader)
       return refuse_file("The PLY has no \"end_header\" in its first 16 MB.");
     return refuse_file(
         "The PLY header has no \"end_header\": the file is cut short, or not a PLY.");
@@ -81,8 +81,8 @@ class HeaderReader {
   // The end of the first line says how all end: in old Macintosh files with CR alone, where a byte
   // LF after "end_header" CR is already data. The CR of a CRLF counts as a blank.
   bool next_line(std::string_view& line) {
-    if (position_ >= text_.size() || position_ > kMostHeader) return false;
-    const std::string_view rest = text_.substr(position_, kMostHeader);
+    if (position_ >= text_.size() || position_ > kMaxHeader) return false;
+    const std::string_view rest = text_.substr(position_, kMaxHeader);
     if (line_number_ == 0) {
       const std::size_t end = rest.find_first_of("\r\n");
       if (end != std::string_view::npos && rest[end] == '\r' && rest.substr(end + 1, 1) != "\n")

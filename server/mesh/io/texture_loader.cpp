@@ -11,8 +11,8 @@ namespace strata::mesh {
 namespace {
 
 constexpr std::string_view kUdim = "<UDIM>";
-constexpr int kMostUdimColumns = 10, kMostUdimRows = 100;
-constexpr std::size_t kMostNotes = 200;
+constexpr int kMaxUdimColumns = 10, kMaxUdimRows = 100;
+constexpr std::size_t kMaxNotes = 200;
 
 std::string printable(std::string_view text) {
   std::string result;
@@ -24,7 +24,7 @@ std::string printable(std::string_view text) {
 }  // namespace
 
 void TextureLoader::missing(std::string_view reference) {
-  if (repairs_.size() < kMostNotes)
+  if (repairs_.size() < kMaxNotes)
     note(repairs_, "texture not among the files: " + printable(reference), 1);
 }
 
@@ -46,7 +46,7 @@ int TextureLoader::of_file(std::string_view reference) {
 
 int TextureLoader::of_bytes(const std::string& name, std::vector<std::uint8_t> bytes) {
   if (const auto info = inspect_picture(bytes); !info) {
-    if (repairs_.size() < kMostNotes)
+    if (repairs_.size() < kMaxNotes)
       note(repairs_, "texture not read: " + printable(name) + ": " + info.error().detail, 1);
     return -1;
   }
@@ -90,8 +90,7 @@ void UdimTiles::resolve(TextureLoader& shelf, const std::vector<std::string>& re
         (mesh.corner_uvs[3 * t] + mesh.corner_uvs[3 * t + 1] + mesh.corner_uvs[3 * t + 2]) / 3.0f;
     const int column = static_cast<int>(std::floor(std::clamp(middle.x, -1.0f, 1000.0f))),
               row = static_cast<int>(std::floor(std::clamp(middle.y, -1.0f, 1000.0f)));
-    const bool on_grid =
-        column >= 0 && column < kMostUdimColumns && row >= 0 && row < kMostUdimRows;
+    const bool on_grid = column >= 0 && column < kMaxUdimColumns && row >= 0 && row < kMaxUdimRows;
     const int tile = on_grid ? 1001 + column + 10 * row : 0;
     auto found = of_tile.find({material, tile});
     if (found == of_tile.end()) {

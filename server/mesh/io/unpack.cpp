@@ -80,14 +80,14 @@ class Unpacker {
         scratch_(scratch),
         progress_(progress),
         wanted_(wanted),
-        room_(zip.size() * kMostUnpackGain + kUnpackAlways) {}
+        room_(zip.size() * kMaxUnpackGain + kUnpackAlways) {}
 
   Result<std::vector<InputFiles::Entry>> run() {
     STRATA_TRY(open());
     const zip_int64_t count = zip_get_num_entries(archive_.get(), 0);
-    if (count < 0 || static_cast<std::uint64_t>(count) > kMostArchiveEntries)
+    if (count < 0 || static_cast<std::uint64_t>(count) > kMaxArchiveEntries)
       return refuse_file("The zip holds " + std::to_string(count) + " files; " +
-                         std::to_string(kMostArchiveEntries) +
+                         std::to_string(kMaxArchiveEntries) +
                          " may be. Pack one scan with its pictures only.");
     std::vector<InputFiles::Entry> entries;
     for (zip_int64_t i = 0; i < count; ++i) {
@@ -139,7 +139,7 @@ class Unpacker {
       if (read < 0) return damaged(zip_file_strerror(file.get()));
       if (read == 0) break;
       if (static_cast<std::uint64_t>(read) > room_)
-        return refuse_file("The zip unpacks to more than " + std::to_string(kMostUnpackGain) +
+        return refuse_file("The zip unpacks to more than " + std::to_string(kMaxUnpackGain) +
                            " times its size. Send the files unpacked, if they are right.");
       room_ -= static_cast<std::uint64_t>(read);
       STRATA_TRY(scratch.append({chunk_.data(), static_cast<std::size_t>(read)}));

@@ -10,10 +10,10 @@
 
 namespace strata::mesh {
 
-constexpr std::uint64_t kMostArchiveEntries = 10'000;
+constexpr std::uint64_t kMaxArchiveEntries = 10'000;
 // What an archive unpacks to: so many times its size, and a little for small ones. Scans written as
 // text pack ten to one.
-constexpr std::uint64_t kMostUnpackGain = 100, kUnpackAlways = 16u << 20;
+constexpr std::uint64_t kMaxUnpackGain = 100, kUnpackAlways = 16u << 20;
 
 // Meshes, materials, buffers and pictures.
 bool is_scan_file(std::string_view name);

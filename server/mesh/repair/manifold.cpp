@@ -16,8 +16,8 @@ namespace {
 constexpr std::uint32_t kNone = 0xffffffffu;
 // Of its longest edge: a corner so near to it stands there by rounding of a float.
 constexpr double kSliverHeight = 1e-5;
-constexpr std::size_t kMostShells = 64;  // that may hold hollows
-constexpr std::size_t kMostSides = 64;   // of an edge that is mended; beyond it all are cut
+constexpr std::size_t kMaxShells = 64;  // that may hold hollows
+constexpr std::size_t kMaxSides = 64;   // of an edge that is mended; beyond it all are cut
 
 std::uint32_t next_corner(std::uint32_t corner) {
   return corner % 3 == 2 ? corner - 2 : corner + 1;
@@ -115,7 +115,7 @@ class Manifold {
   }
 
   void pair_up(const CrowdedEdge& edge) {
-    if (edge.sides.size() > kMostSides) return;
+    if (edge.sides.size() > kMaxSides) return;
     struct Pair {
       int loose;
       double flatness;
@@ -231,7 +231,7 @@ class Manifold {
   void turn_shells(std::vector<Shell>& shells) {
     std::vector<const Shell*> largest;
     for (const Shell& shell : shells) largest.push_back(&shell);
-    const std::size_t kept = std::min(kMostShells, largest.size());
+    const std::size_t kept = std::min(kMaxShells, largest.size());
     std::partial_sort(
         largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(kept), largest.end(),
         [](const Shell* a, const Shell* b) { return std::abs(a->volume) > std::abs(b->volume); });

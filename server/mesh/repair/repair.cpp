@@ -15,10 +15,10 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 // beyond it squares and cubes of lengths leave the range of float
-constexpr double kLargestCoordinate = 1e15;
+constexpr double kMaxCoordinate = 1e15;
 constexpr std::string_view kWelded = "welded vertices";
 constexpr double kFarAway = 1e5;  // in sizes of the mesh
-constexpr double kSmallestExtent = 1e-12;
+constexpr double kMinExtent = 1e-12;
 
 std::vector<bool> used_vertices(const TriangleMesh& mesh) {
   std::vector<bool> used(mesh.positions.size(), false);
@@ -33,7 +33,7 @@ Result<void> check_coordinates(const TriangleMesh& mesh, const std::vector<bool>
     const glm::dvec3& p = mesh.positions[i];
     const bool finite = std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
     const bool large =
-        finite && std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > kLargestCoordinate;
+        finite && std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > kMaxCoordinate;
     if ((!finite || large) && first == kNone) first = i;
     not_finite += !finite;
     too_large += large;
@@ -193,7 +193,7 @@ Result<void> repair(LoadedMesh& loaded, Progress& progress, const LoadOptions& o
     high = glm::max(high, p);
   }
   const glm::dvec3 extent = high - low;
-  if (std::max({extent.x, extent.y, extent.z}) < kSmallestExtent) {
+  if (std::max({extent.x, extent.y, extent.z}) < kMinExtent) {
     return refuse_file("The whole mesh is smaller than 1e-12 units. Check the unit of the file.");
   }
   mesh.positions.shrink_to_fit();

@@ -23,7 +23,7 @@ constexpr double kTilt_degrees = 30;  // a face of the hull counts for an axis u
 constexpr double kContact = 0.008;
 // share of the ways to drop it: what is rarer is not looked at
 constexpr double kUnlikely = 0.004;
-constexpr int kMostPoses = 40;
+constexpr int kMaxPoses = 40;
 // cosine of the slope up to which surface lies on the ground
 constexpr double kLevel = 0.85;
 constexpr int kColumns = 128;               // a side, for the points that the hull is made of
@@ -259,7 +259,7 @@ std::array<double, 6> poses_of(const Shape& shape) {
   std::ranges::sort(order, std::greater(), [&](std::size_t i) { return likely[i]; });
   int looked_at = 0;
   for (const std::size_t i : order) {
-    if (likely[i] < kUnlikely || looked_at == kMostPoses) break;
+    if (likely[i] < kUnlikely || looked_at == kMaxPoses) break;
     std::array<double, 6> weights{};
     for (std::size_t d = 0; d < 6; ++d) {
       const double along = glm::dot(-facets[i].normal, up_frame(kUpDirections[d]).up);

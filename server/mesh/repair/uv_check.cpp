@@ -13,9 +13,9 @@
 namespace strata::mesh {
 namespace {
 
-constexpr double kMostOverlap = 0.005;        // of covered texels
-constexpr double kMostAreaWithoutUv = 0.001;  // of the surface
-constexpr double kMostMoved = 0.1;            // of the surface
+constexpr double kMaxOverlap = 0.005;        // of covered texels
+constexpr double kMaxAreaWithoutUv = 0.001;  // of the surface
+constexpr double kMaxMoved = 0.1;            // of the surface
 constexpr const char* kTitle = "Texture coordinates not usable";
 
 std::string percent(double share) {
@@ -105,11 +105,11 @@ Result<Atlas> keep_uvs(const TriangleMesh& mesh, int lowest_resolution, Progress
   atlas.corner_uvs.reserve(mesh.corner_uvs.size());
   UvFaults faults = find_single_faults(mesh, mesh.corner_uvs);
   const double surface = surface_area(mesh);
-  const auto too_many = [&] { return faults.area > kMostMoved * surface; };
+  const auto too_many = [&] { return faults.area > kMaxMoved * surface; };
   // A little surface may stay without a place; to move it would cost the texture's own bytes.
   const bool only_without_area = faults.count[static_cast<int>(UvFault::not_finite)] == 0 &&
                                  faults.count[static_cast<int>(UvFault::outside)] == 0;
-  if (only_without_area && faults.area <= kMostAreaWithoutUv * surface) faults = no_faults(mesh);
+  if (only_without_area && faults.area <= kMaxAreaWithoutUv * surface) faults = no_faults(mesh);
   if (too_many()) return refuse_faults(mesh, faults);
   for (std::size_t corner = 0; corner < mesh.corner_uvs.size(); ++corner) {
     const bool stays = faults.of_triangle[corner / 3] == UvFault::none;
@@ -123,12 +123,12 @@ Result<Atlas> keep_uvs(const TriangleMesh& mesh, int lowest_resolution, Progress
   const auto shared = [&] {
     return static_cast<double>(owners.shared) / static_cast<double>(owners.covered);
   };
-  if (const double before = shared(); before > kMostOverlap) {
+  if (const double before = shared(); before > kMaxOverlap) {
     find_overlaps(mesh, atlas.corner_uvs, lowest_resolution, faults);
     if (too_many())
       return refuse("Triangles overlap in the texture: " + percent(before) +
                     " of the covered texels at " + std::to_string(lowest_resolution) +
-                    " have more than one owner; " + percent(kMostOverlap) + " may.");
+                    " have more than one owner; " + percent(kMaxOverlap) + " may.");
   }
   if (progress.cancelled()) return cancelled_problem();
   if (faults.area > 0 || !numbers_of(faults).empty()) {
@@ -137,7 +137,7 @@ Result<Atlas> keep_uvs(const TriangleMesh& mesh, int lowest_resolution, Progress
       return refuse_faults(mesh, faults);
     }
     owners = count_owners(mesh, atlas.corner_uvs, lowest_resolution);
-    if (shared() > kMostOverlap) return refuse_faults(mesh, faults);
+    if (shared() > kMaxOverlap) return refuse_faults(mesh, faults);
   }
   progress.report(0.5, "Measuring the file's texture coordinates");
   const auto measure = measure_areas(mesh, atlas.corner_uvs);

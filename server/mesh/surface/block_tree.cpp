@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kChildren = BlockTree::kChildren;
 constexpr int kBins = 16;        // along a block's longest axis
-constexpr int kMostCuts = 2;     // one after the other: at most four parts a block
+constexpr int kMaxCuts = 2;      // one after the other: at most four parts a block
 constexpr int kSerialDepth = 3;  // of the halvings before threads take over
 
 struct Box {
@@ -139,7 +139,7 @@ BoundingSphere bounds_of(const glm::vec3* positions, std::uint64_t owned, float 
 void add_parts_of_block(BoundedPart whole, const glm::vec3* positions, std::uint64_t owned,
                         float least_gap, float slack, std::vector<BoundedPart>& parts) {
   std::vector<std::uint64_t> found;
-  cut(positions, owned, least_gap, kMostCuts, found);
+  cut(positions, owned, least_gap, kMaxCuts, found);
   if (found.size() == 1) {
     parts.push_back(whole);
     return;

@@ -11,10 +11,10 @@ constexpr std::size_t kStep = 4;
 // A level is worth its memory if it has at most this share of the triangles of the one before.
 constexpr double kWorthwhile = 0.7;
 // And if it has most of the surface: of unconnected triangles a collapse leaves nothing but holes.
-constexpr double kLeastArea = 0.9;
+constexpr double kMinArea = 0.9;
 // Of the model's extent. A level is as coarse as its triangle count says, not as fine as an error
 // would have it.
-constexpr float kLargestError = 0.05f;
+constexpr float kMaxError = 0.05f;
 
 // Triangle counts to aim at, the finest first.
 std::vector<std::size_t> level_sizes(std::size_t triangles) {
@@ -66,12 +66,12 @@ Result<std::vector<Geometry>> make_detail_levels(const Geometry& geometry, Progr
     std::vector<std::uint32_t> indices(finer.indices.size());
     indices.resize(meshopt_simplify(indices.data(), finer.indices.data(), finer.indices.size(),
                                     &finer.vertices.front().position.x, finer.vertices.size(),
-                                    sizeof(Vertex), 3 * size, kLargestError, 0, nullptr));
+                                    sizeof(Vertex), 3 * size, kMaxError, 0, nullptr));
     const double share =
         static_cast<double>(indices.size()) / static_cast<double>(finer.indices.size());
     if (indices.empty() || share > kWorthwhile) break;
     Geometry level = compact(finer, indices);
-    if (surface_area(level) < kLeastArea * area) break;
+    if (surface_area(level) < kMinArea * area) break;
     levels.push_back(std::move(level));
   }
   return levels;

@@ -102,8 +102,8 @@ Result<Geometry> deserialize(const std::vector<std::uint8_t>& bytes) {
   std::uint64_t counts[3];
   std::memcpy(counts, bytes.data(), sizeof counts);
   const std::uint64_t positions = counts[0], vertices = counts[1], indices = counts[2];
-  constexpr std::uint64_t kMost = 0xffffffffu;
-  if (positions > kMost || vertices > kMost || indices > kMost || indices % 3 != 0 ||
+  constexpr std::uint64_t kMax = 0xffffffffu;
+  if (positions > kMax || vertices > kMax || indices > kMax || indices % 3 != 0 ||
       bytes.size() != kHeaderBytes + positions * kPositionBytes + vertices * kVertexBytes +
                           indices * kIndexBytes) {
     return damaged("its counts do not fit its size");

@@ -13,7 +13,7 @@ constexpr float kSlack = 1e-6f;
 
 // Texels of a block that lie further apart than so many mean texels with none between are of
 // different places.
-constexpr double kLeastGap_texels = 4;
+constexpr double kMinGap_texels = 4;
 
 float slack_of(const Geometry& geometry) {
   return kSlack * glm::length(geometry.box_max - geometry.box_min);
@@ -65,7 +65,7 @@ void SurfaceBake::pack_slots(int band) {
   const float slack = slack_of(geometry_);
   const double texel_area =
       map_.area_total / static_cast<double>(std::max<std::uint64_t>(map_.surface_texels, 1));
-  const auto least_gap = static_cast<float>(kLeastGap_texels * std::sqrt(texel_area));
+  const auto least_gap = static_cast<float>(kMinGap_texels * std::sqrt(texel_area));
   for_each_slot(band, [&](std::uint32_t slot, std::uint64_t owned) {
     const glm::vec3* positions = position_.get() + std::size_t{slot} * 64;
     auto& packed_box = map_.packed_box[slot];

@@ -7,7 +7,7 @@
 namespace strata::mesh {
 namespace {
 
-constexpr int kMostCells = 4096;    // a side
+constexpr int kMaxCells = 4096;     // a side
 constexpr double kRounding = 1e-6;  // of texture coordinates, that a triangle's box is widened by
 
 struct Nearest {
@@ -44,7 +44,7 @@ Nearest nearest_in(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
 UvLookup::UvLookup(const Geometry& geometry)
     : geometry_(geometry),
       side_(std::clamp(static_cast<int>(std::sqrt(static_cast<double>(geometry.triangle_count()))),
-                       1, kMostCells)) {
+                       1, kMaxCells)) {
   first_.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_) + 1, 0);
   const std::size_t count = geometry.triangle_count();
   for (std::size_t i = 0; i < count; ++i)

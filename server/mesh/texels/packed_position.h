@@ -11,8 +11,8 @@ namespace strata::mesh {
 
 // Positions in a box as 21 + 21 + 22 bits; the largest value of each is left out, so that all ones
 // is no position.
-constexpr std::uint32_t kLargestPackedX = (1u << 21) - 2, kLargestPackedY = (1u << 21) - 2,
-                        kLargestPackedZ = (1u << 22) - 2;
+constexpr std::uint32_t kMaxPackedX = (1u << 21) - 2, kMaxPackedY = (1u << 21) - 2,
+                        kMaxPackedZ = (1u << 22) - 2;
 
 // The smallest power of two that takes `low`…`high` in `largest` steps and is no finer than floats
 // there.
@@ -28,9 +28,9 @@ inline float packed_step(float low, float high, std::uint32_t largest) {
 
 inline SurfaceMap::PackedBox packed_box_of(glm::vec3 low, glm::vec3 high) {
   SurfaceMap::PackedBox box;
-  constexpr std::uint32_t kLargest[] = {kLargestPackedX, kLargestPackedY, kLargestPackedZ};
+  constexpr std::uint32_t kMax[] = {kMaxPackedX, kMaxPackedY, kMaxPackedZ};
   for (int i = 0; i < 3; ++i) {
-    box.step[i] = packed_step(low[i], high[i], kLargest[i]);
+    box.step[i] = packed_step(low[i], high[i], kMax[i]);
     box.min[i] =
         static_cast<float>(std::floor(double{low[i]} / double{box.step[i]}) * double{box.step[i]});
   }
@@ -44,7 +44,7 @@ inline std::uint64_t pack_position(glm::vec3 position, const SurfaceMap::PackedB
     return static_cast<std::uint64_t>(
         std::llround(std::clamp(steps, 0.0, static_cast<double>(largest))));
   };
-  return axis(0, kLargestPackedX) | axis(1, kLargestPackedY) << 21 | axis(2, kLargestPackedZ) << 42;
+  return axis(0, kMaxPackedX) | axis(1, kMaxPackedY) << 21 | axis(2, kMaxPackedZ) << 42;
 }
 
 inline glm::vec3 unpack_position(std::uint64_t packed, const SurfaceMap::PackedBox& box) {

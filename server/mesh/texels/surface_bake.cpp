@@ -13,7 +13,7 @@
 namespace strata::mesh {
 namespace {
 
-constexpr int kMostBands = 32;
+constexpr int kMaxBands = 32;
 
 // also for NaN
 double inside_unit(float value) { return value >= 0 ? std::min(double{value}, 1.0) : 0.0; }
@@ -25,7 +25,7 @@ SurfaceBake::SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& m
       map_(map),
       resolution_(resolution),
       purpose_(purpose),
-      band_count_(std::min(kMostBands, resolution / kBlockSize)) {
+      band_count_(std::min(kMaxBands, resolution / kBlockSize)) {
   map.resolution = resolution;
   map.blocks_per_side = resolution / kBlockSize;
   snapped_.reserve(geometry.vertices.size());

@@ -16,15 +16,15 @@
 namespace strata::mesh {
 namespace {
 
-constexpr int kSmallestBaseColor = 256, kPlainColors = 2048;
+constexpr int kMinBaseColor = 256, kPlainColors = 2048;
 // sides are powers of two up to there, then multiples
-constexpr int kLargestPower = 2048, kSideStep = 1024;
+constexpr int kMaxPower = 2048, kSideStep = 1024;
 constexpr int kGutterRing = 8, kRingsPerSide = 1024;
 constexpr int kJpegQuality = 92;
-constexpr double kRounding = 1 - 1e-3;     // of a side, before the next larger one is taken
-constexpr double kMostMinification = 1.5;  // that mixing four texels bears
-constexpr double kLost = 0.02;             // of a texture's pixels: less is rounding
-constexpr double kBytesPerTexel = 6;       // the picture, its coarser levels and what is encoded
+constexpr double kRounding = 1 - 1e-3;    // of a side, before the next larger one is taken
+constexpr double kMaxMinification = 1.5;  // that mixing four texels bears
+constexpr double kLost = 0.02;            // of a texture's pixels: less is rounding
+constexpr double kBytesPerTexel = 6;      // the picture, its coarser levels and what is encoded
 
 std::string size_text(int width, int height) {
   return std::to_string(width) + " × " + std::to_string(height);
@@ -140,7 +140,7 @@ class Baker {
     const auto info = inspect_picture(texture.bytes);
     if (!info) return note_unreadable(texture, info.error()), std::nullopt;
     const double pixels = double(info->width) * info->height;
-    const bool stays = atlas_.moved.empty() && is_look_format(info->format);
+    const bool stays = atlas_.moved.empty() && is_surface_image_format(info->format);
     const auto share = STRATA_TRY(reserved(pixels * (stays ? 4 : kBytesPerTexel)));
     auto whole = decode_picture(texture.bytes);
     if (!whole) return note_unreadable(texture, whole.error()), std::nullopt;
@@ -202,9 +202,9 @@ class Baker {
     double source = 0;
     for (const Share& share : shares)
       source = std::max(source, 4.0 * share.info.width * share.info.height);
-    for (side = resolution_for(shares);; side = std::max(kSmallestBaseColor, side / 2)) {
+    for (side = resolution_for(shares);; side = std::max(kMinBaseColor, side / 2)) {
       auto share = reserved(kBytesPerTexel * side * side + source);
-      if (share || side == kSmallestBaseColor) return share;
+      if (share || side == kMinBaseColor) return share;
     }
   }
 
@@ -252,9 +252,9 @@ class Baker {
         atlas += share.atlas;
       }
     if (!(pixels > 0) || !(atlas > 0)) return kPlainColors;
-    const double wanted = std::clamp(std::sqrt(pixels / atlas) * kRounding,
-                                     double(kSmallestBaseColor), double(kLargestBaseColor));
-    if (wanted <= kLargestPower)
+    const double wanted = std::clamp(std::sqrt(pixels / atlas) * kRounding, double(kMinBaseColor),
+                                     double(kMaxBaseColor));
+    if (wanted <= kMaxPower)
       return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(wanted))));
     return static_cast<int>(std::ceil(wanted / kSideStep)) * kSideStep;
   }
@@ -275,10 +275,10 @@ class Baker {
     }
     if (smaller == 0) return;
     std::string came;
-    constexpr std::size_t kMostSizes = 5;
+    constexpr std::size_t kMaxSizes = 5;
     std::size_t told = 0;
     for (const auto& [size, count] : sizes) {
-      if (told++ == kMostSizes) {
+      if (told++ == kMaxSizes) {
         came += ", …";
         break;
       }
@@ -302,7 +302,7 @@ class Baker {
     if (!picture) return {};
     double minification =
         std::sqrt(share.texture_pixels / std::max(share.atlas * side * side, 1e-300));
-    for (; minification > kMostMinification && (picture->width > 1 || picture->height > 1);
+    for (; minification > kMaxMinification && (picture->width > 1 || picture->height > 1);
          minification /= 2)
       picture = halve(*picture);
     return std::move(*picture);

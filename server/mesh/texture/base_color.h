@@ -10,7 +10,7 @@
 
 namespace strata::mesh {
 
-constexpr int kLargestBaseColor = 16384;
+constexpr int kMaxBaseColor = 16384;
 
 // A picture of the surface on its atlas, encoded.
 struct BaseColor {
@@ -24,7 +24,7 @@ struct BaseColor {
 // Where the file's own texture coordinates were kept and one texture is all there is, its bytes
 // come unchanged (TIFF, WebP, BMP and TGA as a PNG of the same pixels); with triangles that were
 // moved, its pixels with theirs added. Otherwise every texel of the surface is sampled from its
-// triangle's texture, at a size that keeps the textures' density (256…kLargestBaseColor a side; a
+// triangle's texture, at a size that keeps the textures' density (256…kMaxBaseColor a side; a
 // power of two up to 2048, then a multiple of 1024), times the material's colour, and with
 // colors_tint_materials the vertices'; around the surface the picture goes on, so that coarser
 // levels do not bleed. JPEG where all textures are.

@@ -95,7 +95,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
       shared_(make_shared_state(options_, store, tools_)),
       workers_(options_.worker_threads, options_.max_waiting_requests),
       questions_({.threads = options_.question_threads, .waiting = options_.max_waiting_requests}),
-      bin_keeper_(store.bin(), std::chrono::days(options_.bin_days)),
+      trash_purger_(store.trash(), std::chrono::days(options_.trash_days)),
       table_events_(rooms, *shared_->sockets),
       context_{{store, rooms, shared_->metrics->edits, table_events_},
                options_,
@@ -109,7 +109,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
                questions_,
                *tools_,
                templates_,
-               bin_keeper_},
+               trash_purger_},
       recomputer_(context_) {
   add_system_routes(router_, context_);
   add_auth_routes(router_, context_);
@@ -119,12 +119,12 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_member_routes(router_, context_);
   add_group_routes(router_, context_);
   add_activity_routes(router_, context_);
-  add_bin_routes(router_, context_);
+  add_trash_routes(router_, context_);
   add_model_routes(router_, context_);
   add_import_routes(router_, context_);
   add_job_routes(router_, context_);
   add_layer_routes(router_, context_);
-  add_look_routes(router_, context_);
+  add_surface_image_routes(router_, context_);
   add_comment_routes(router_, context_);
   add_view_routes(router_, context_);
   add_tour_routes(router_, context_);
@@ -162,7 +162,7 @@ Api::~Api() { stop_workers(); }
 
 void Api::stop_workers() {
   recomputer_.stop();
-  bin_keeper_.stop();
+  trash_purger_.stop();
   questions_.stop();
   workers_.stop();
   shared_->queries->stop();

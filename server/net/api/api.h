@@ -100,7 +100,7 @@ class Api {
   Router router_;
   Route page_;  // everything that is no API address
   Route live_;  // the live connections, which no handler answers
-  app::TrashPurger bin_keeper_;
+  app::TrashPurger trash_purger_;
   const TableEvents table_events_;
   const RouteContext context_;
   app::Recomputer recomputer_;

@@ -18,7 +18,7 @@
 
 namespace strata::net {
 namespace {
-constexpr int kMostTries = 50;  // more than ever change one thing at once
+constexpr int kMaxTries = 50;  // more than ever change one thing at once
 constexpr std::size_t kDigitsOfBody = 16;
 }  // namespace
 
@@ -31,7 +31,7 @@ Handler answering(std::function<Result<Response>(const Request&)> answer) {
     const bool means_any = (request.method == Method::patch || request.method == Method::remove) &&
                            (wanted.empty() || wanted == "*");
     for (int tries = 1;
-         means_any && tries < kMostTries && !response && response.error().code == ErrorCode::stale;
+         means_any && tries < kMaxTries && !response && response.error().code == ErrorCode::stale;
          ++tries)
       response = answer(request);
     if (response)

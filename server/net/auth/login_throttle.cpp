@@ -5,7 +5,7 @@
 namespace strata::net {
 namespace {
 
-constexpr std::size_t kMostKeys = 100'000;
+constexpr std::size_t kMaxKeys = 100'000;
 
 std::string both(const std::string& address, const std::string& name) {
   return to_lower(name) + " " + address;
@@ -15,10 +15,10 @@ std::string both(const std::string& address, const std::string& name) {
 
 TokenBucket& LoginThrottle::bucket(Buckets& buckets, const std::string& key, Rate rate,
                                    Clock::time_point now) {
-  if (buckets.size() >= kMostKeys && !buckets.contains(key)) {
+  if (buckets.size() >= kMaxKeys && !buckets.contains(key)) {
     for (auto at = buckets.begin(); at != buckets.end();)
       at = at->second.is_full(now) ? buckets.erase(at) : std::next(at);
-    if (buckets.size() >= kMostKeys) buckets.erase(buckets.begin());
+    if (buckets.size() >= kMaxKeys) buckets.erase(buckets.begin());
   }
   return buckets.try_emplace(key, rate.per_second, rate.burst, now).first->second;
 }
@@ -53,7 +53,7 @@ void LoginThrottle::was_right(const std::string& address, const std::string& nam
   if (const auto found = by_both_.find(key); found != by_both_.end()) found->second.give_back();
   if (const auto found = by_name_.find(to_lower(name)); found != by_name_.end())
     found->second.give_back();
-  if (known_.size() >= kMostKeys) known_.erase(known_.begin());
+  if (known_.size() >= kMaxKeys) known_.erase(known_.begin());
   known_.insert(key);
 }
 

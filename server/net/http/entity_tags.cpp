@@ -6,25 +6,25 @@
 #include "core/text/ascii.h"
 #include "core/uuid.h"
 #include "domain/layers/layer.h"
-#include "domain/scene/look.h"
 #include "domain/scene/model.h"
+#include "domain/scene/surface_image.h"
 #include "net/api/route_help.h"
 #include "room/edits.h"
 #include "room/layers.h"
-#include "room/looks.h"
 #include "room/room.h"
 #include "room/rooms.h"
+#include "room/surface_images.h"
 #include "store/content/layers.h"
-#include "store/content/looks.h"
 #include "store/content/models.h"
 #include "store/content/projects.h"
+#include "store/content/surface_images.h"
 #include "store/store.h"
 #include "store/tables/tables.h"
 
 namespace strata::net {
 namespace {
 
-constexpr std::size_t kMostHashedBytes = 4u << 20;
+constexpr std::size_t kMaxHashedBytes = 4u << 20;
 constexpr std::size_t kTagDigits = 32;
 
 std::string tag_of(std::string_view text) {
@@ -69,9 +69,9 @@ bool add_room(std::string& text, const room::Room& room, std::optional<std::int6
     add(text, to_json(layer).at("palette").dump());
   }
   text += ';';
-  for (const Look& look : room.looks().all()) {
-    add(text, look.id);
-    add(text, look.version);
+  for (const SurfaceImage& image : room.surface_images().all()) {
+    add(text, image.id);
+    add(text, image.version);
   }
   text += ';';
   return true;
@@ -120,7 +120,7 @@ Response not_modified(Response response) {
 std::optional<std::string> tag_of_body(const Response& response) {
   const bool is_in_memory = response.file.empty() && !response.stream && !response.events;
   const std::size_t size = response.bytes.empty() ? response.body.size() : response.bytes.size();
-  if (!is_in_memory || size == 0 || size > kMostHashedBytes) return std::nullopt;
+  if (!is_in_memory || size == 0 || size > kMaxHashedBytes) return std::nullopt;
   if (!response.header("ETag").empty() || !response.header("Cache-Control").empty())
     return std::nullopt;
   if (response.bytes.empty()) return tag_of(response.body);
@@ -183,14 +183,14 @@ StateOf state_of_painted_table(const RouteContext& context) {
   };
 }
 
-StateOf state_of_look(const RouteContext& context) {
+StateOf state_of_surface_image(const RouteContext& context) {
   return [&context](const Request& request) -> std::optional<std::string> {
     const auto model = context.store.models().find(request.param("model"));
     if (!model) return std::nullopt;
-    const auto look = context.store.looks().find(model->id, request.param("look"));
-    if (!look) return std::nullopt;
+    const auto image = context.store.surface_images().find(model->id, request.param("look"));
+    if (!image) return std::nullopt;
     std::string text;
-    for (const std::int64_t number : {model->id, model->version, look->id}) add(text, number);
+    for (const std::int64_t number : {model->id, model->version, image->id}) add(text, number);
     return text;
   };
 }

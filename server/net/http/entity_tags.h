@@ -40,6 +40,6 @@ StateOf state_of_records(const RouteContext& context);
 // Of questions over all layers that hold the keys of the address' table.
 StateOf state_of_painted_table(const RouteContext& context);
 // Of the picture of a look, which never changes.
-StateOf state_of_look(const RouteContext& context);
+StateOf state_of_surface_image(const RouteContext& context);
 
 }  // namespace strata::net

@@ -10,8 +10,8 @@
 namespace strata::net {
 namespace {
 
-constexpr std::size_t kLongestBoundary = 70;  // RFC 2046
-constexpr std::size_t kLongestPartHead = 8192;
+constexpr std::size_t kMaxBoundaryLength = 70;  // RFC 2046
+constexpr std::size_t kMaxPartHead = 8192;
 
 constexpr std::size_t kWindowBytes = 4u << 20;
 
@@ -87,7 +87,7 @@ Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::
                 "The multipart/form-data body does not follow its boundary.", "body");
   };
   const std::string boundary = header_parameter(content_type, "boundary");
-  if (boundary.empty() || boundary.size() > kLongestBoundary) return malformed();
+  if (boundary.empty() || boundary.size() > kMaxBoundaryLength) return malformed();
   const std::string separator = "\r\n--" + boundary;
   if (!body.starts_with(separator.substr(2))) return malformed();
   std::vector<FormFile> files;
@@ -97,7 +97,7 @@ Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::
     // Both searches start at a line break that is there already: a head may be empty, and so may a
     // content.
     const auto head_end = find(body, "\r\n\r\n", at, passed);
-    if (head_end == std::string_view::npos || head_end - at > kLongestPartHead) return malformed();
+    if (head_end == std::string_view::npos || head_end - at > kMaxPartHead) return malformed();
     const auto content_begin = head_end + 4;
     const auto content_end = find(body, separator, content_begin - 2, passed);
     if (content_end == std::string_view::npos) return malformed();
@@ -105,10 +105,10 @@ Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::
     at = content_end + separator.size();
     const std::string name = header_parameter(header_of(head, "content-disposition"), "filename");
     if (name.empty()) continue;  // a field of the form
-    if (files.size() >= kMostFormFiles)
+    if (files.size() >= kMaxFormFiles)
       return fail(
           ErrorCode::too_large, "Too many files",
-          "A form has at most " + std::to_string(kMostFormFiles) + " files; send them as a zip.",
+          "A form has at most " + std::to_string(kMaxFormFiles) + " files; send them as a zip.",
           "body");
     // An empty content ends before it begins: its line break is that of the blank line.
     FormFile file{relative_filename(name),

@@ -9,7 +9,7 @@
 
 namespace strata::net {
 
-constexpr std::size_t kMostFormFiles = 256;
+constexpr std::size_t kMaxFormFiles = 256;
 
 struct FormFile {
   // As the sender calls it, with the folders it names, but none that leads out of them; empty where
@@ -20,7 +20,7 @@ struct FormFile {
 
 // The files of a multipart/form-data body (RFC 7578) in their order; its other fields, without a
 // `filename`, are passed over. Refused: a body that does not follow the boundary of `content_type`
-// (400), more than kMostFormFiles files (413), two files of one name (422). `passed` is told each
+// (400), more than kMaxFormFiles files (413), two files of one name (422). `passed` is told each
 // part of the body, of some megabytes at most, that was looked through.
 Result<std::vector<FormFile>> files_of_form(
     std::string_view content_type, std::string_view body,

@@ -205,9 +205,9 @@ Result<void> parse_target(std::string_view target, Request& request) {
 }
 
 Result<std::string> asked_language(const Request& request) {
-  constexpr std::size_t kLongest = 35;  // BCP 47
+  constexpr std::size_t kMaxLength = 35;  // BCP 47
   std::string language = to_lower(request.query_or("lang", {}));
-  if (language.size() > kLongest)
+  if (language.size() > kMaxLength)
     return fail(ErrorCode::invalid, "Not a language",
                 "`lang` is a language such as `es` or `de-AT`, of 35 characters at most.", "lang");
   return language;

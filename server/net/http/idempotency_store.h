@@ -7,7 +7,7 @@
 #include <unordered_set>
 
 #include "net/http/http_types.h"
-#include "store/content/first_answer.h"
+#include "store/content/idempotent_response.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -41,7 +41,7 @@ Response response_of(const nlohmann::json& kept);
 
 // For the call that has the effect: keeps `respond(effect)` with it where the request has a key.
 template <class... Effect>
-store::FirstAnswer<Effect...> first_answer(
+store::IdempotentResponse<Effect...> idempotent_response(
     const Request& request,
     std::type_identity_t<std::function<Response(const Effect&...)>> respond) {
   return {scoped_key(request),

@@ -10,7 +10,7 @@
 namespace strata::net {
 namespace {
 
-constexpr std::size_t kLongestCursor = 6000;  // beside the rest of a head of 8 KiB
+constexpr std::size_t kMaxCursorLength = 6000;  // beside the rest of a head of 8 KiB
 
 std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
@@ -48,7 +48,7 @@ std::string text_of(const nlohmann::json& json) {
 
 // As `cursor_of` writes it, to the character.
 Result<ListPlace> place_in(const Request& request, const std::string& cursor) {
-  if (cursor.empty() || cursor.size() > kLongestCursor) return wrong_place();
+  if (cursor.empty() || cursor.size() > kMaxCursorLength) return wrong_place();
   const auto text = text_of_cursor(cursor);
   if (!text) return wrong_place();
   auto read = nlohmann::json::parse(*text, nullptr, false);
@@ -120,7 +120,7 @@ std::optional<std::string> cursor_of(const Request& request, const ListPlace& pl
   nlohmann::json marked = nlohmann::json::array({list_mark(request)});
   for (const auto& value : place) marked.push_back(value);
   std::string cursor = to_base64url(bytes_of(text_of(marked)));
-  return cursor.size() <= kLongestCursor ? std::optional(std::move(cursor)) : std::nullopt;
+  return cursor.size() <= kMaxCursorLength ? std::optional(std::move(cursor)) : std::nullopt;
 }
 
 void add_page_links(Response& response, const Request& request, const Page& page,

@@ -31,7 +31,7 @@ struct Route {
   std::function<Result<void>(const Request& request)> check{};
   BodyKind body = BodyKind::none;
   std::uint64_t max_body = 0;  // bytes
-  // The handler keeps its answer with what it does (`first_answer`); a repeat of its
+  // The handler keeps its answer with what it does (`idempotent_response`); a repeat of its
   // Idempotency-Key gets it without the handler…
   bool keeps_answer = false;
   // …or what this makes of what was kept.

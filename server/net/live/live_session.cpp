@@ -15,10 +15,10 @@
 #include "room/edits.h"
 #include "room/layers.h"
 #include "room/listener.h"
-#include "room/looks.h"
 #include "room/participants.h"
 #include "room/queries.h"
 #include "room/room.h"
+#include "room/surface_images.h"
 #include "store/journal/journal_reads.h"
 #include "stream/viewer.h"
 
@@ -34,13 +34,13 @@ Error need_hello() {
 
 std::string ref_of(const std::optional<std::string>& id) { return id.value_or(std::string()); }
 
-constexpr std::size_t kMostEditorsTold = 1000;  // in a message
+constexpr std::size_t kMaxEditorsTold = 1000;  // in a message
 
 std::vector<protocol::RecordEditors> editor_messages(
     const std::vector<app::RecordEditLocks::Entry>& entries) {
   std::vector<protocol::RecordEditors> messages;
   for (const auto& [record, editor] : entries) {
-    if (messages.empty() || messages.back().records.size() == kMostEditorsTold)
+    if (messages.empty() || messages.back().records.size() == kMaxEditorsTold)
       messages.emplace_back();
     protocol::RecordEditor& told = messages.back().records.emplace_back();
     told.table = record.table;
@@ -164,7 +164,7 @@ void LiveSession::on(const protocol::Hello& message) {
   const Model model = room_->model();
   welcome.model = to_json(model, project_slug_);
   for (const auto& layer : room_->layers().all()) welcome.layers.push_back(to_json(layer));
-  for (const auto& look : room_->looks().all()) welcome.looks.push_back(to_json(look));
+  for (const auto& image : room_->surface_images().all()) welcome.looks.push_back(to_json(image));
   welcome.personal_view = personal_view_;
   const LiveLimits& limits = shared_->limits;
   welcome.limits.message_bytes = static_cast<int>(limits.message_bytes);
@@ -521,11 +521,11 @@ void LiveSession::layer_changed(LayerChange change, const Layer& layer) {
   send(event);
 }
 
-void LiveSession::look_changed(LayerChange change, const Look& look) {
+void LiveSession::surface_image_changed(LayerChange change, const SurfaceImage& image) {
   protocol::LookEvent event;
-  event.look_id = look.id;
+  event.look_id = image.id;
   event.event = named<protocol::LookEventEvent>(change);
-  if (change != LayerChange::deleted) event.look = to_json(look);
+  if (change != LayerChange::deleted) event.look = to_json(image);
   send(event);
 }
 

@@ -15,8 +15,8 @@
 #include "app/strokes/stroke_tracker.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
-#include "domain/scene/look.h"
 #include "domain/scene/model.h"
+#include "domain/scene/surface_image.h"
 #include "domain/tables/table.h"
 #include "net/api/metrics.h"
 #include "net/http/http_types.h"
@@ -92,7 +92,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   void edits_unsaved(const std::vector<Edit>& edits, const Error& why) override;
   void layer_changed(LayerChange change, const Layer& layer) override;
   void model_changed(const Model& model) override;
-  void look_changed(LayerChange change, const Look& look) override;
+  void surface_image_changed(LayerChange change, const SurfaceImage& image) override;
   void model_deleted() override;
   void presence_changed() override;
   void view_refused(std::uint32_t view_id, const Error& why) override;

@@ -11,11 +11,11 @@ namespace {
 
 // A transaction has the time at which it began, and is seen when it ends: one that took no longer
 // than this is told.
-constexpr std::chrono::microseconds kLongest = std::chrono::seconds(30);
+constexpr std::chrono::microseconds kMaxLength = std::chrono::seconds(30);
 constexpr std::chrono::seconds kCheckEvery{10};
 constexpr int kFirstPage = 20;  // mostly nothing is new
 constexpr int kPage = 200;
-constexpr int kMostPages = 51;  // of what a reader missed who comes back
+constexpr int kMaxPages = 51;  // of what a reader missed who comes back
 
 std::int64_t microseconds(const store::Activity& line) {
   return std::chrono::duration_cast<std::chrono::microseconds>(line.time.time_since_epoch())
@@ -50,7 +50,7 @@ std::optional<ModelEvents::Lines> ModelEvents::lines_since(std::int64_t time_us)
   store::ActivityQuery query;
   query.model = model_;
   Lines lines;
-  for (int page = 0; page < kMostPages; ++page) {
+  for (int page = 0; page < kMaxPages; ++page) {
     query.limit = page == 0 ? kFirstPage : kPage;
     auto found = context_.store.projects().activity(project_, role_, query);
     if (!found) return std::nullopt;
@@ -83,7 +83,7 @@ std::string ModelEvents::tell(const Lines& lines) {
             "\ndata: " + to_json(*line).dump() + "\n\n";
   }
   std::erase_if(told_us_, [&](const auto& entry) {
-    return entry.second + 2 * kLongest.count() < last_->time_us;
+    return entry.second + 2 * kMaxLength.count() < last_->time_us;
   });
   return text;
 }
@@ -92,7 +92,7 @@ std::optional<std::string> ModelEvents::next() {
   if (!is_still_welcome()) return std::nullopt;
   const auto now = std::chrono::duration_cast<std::chrono::microseconds>(
       std::chrono::system_clock::now().time_since_epoch());
-  const auto lines = lines_since((last_ ? last_->time_us : now.count()) - kLongest.count());
+  const auto lines = lines_since((last_ ? last_->time_us : now.count()) - kMaxLength.count());
   if (!lines) return std::string();
   if (last_) return tell(*lines);
   remember(*lines);

@@ -15,7 +15,7 @@ nlohmann::json to_json(const jobs::JobStatus& job) {
   if (!job.result) return json;
   json["model"] = job.result->model;
   if (!job.result->layers.empty()) json["layers"] = job.result->layers;
-  if (job.result->look) json["look"] = *job.result->look;
+  if (job.result->image) json["look"] = *job.result->image;
   if (!job.result->report.is_null()) json["report"] = job.result->report;
   if (const auto& file = job.result->file)
     json["file"] = {{"name", file->name}, {"media_type", file->media_type}, {"bytes", file->bytes}};

@@ -10,8 +10,8 @@ namespace {
 constexpr const char* kMapUpload =
     "Send the map as the body (GeoJSON, TIFF, PNG, JPEG, or a zip), or its files together (such as .shp, .dbf and .prj) in "
     "a multipart/form-data form.";
-constexpr double kLargestFloat = 3.4028234663852886e38;
-constexpr int kMostBands = 65535;  // of a TIFF
+constexpr double kMaxFloat = 3.4028234663852886e38;
+constexpr int kMaxBands = 65535;  // of a TIFF
 
 // Nothing: it is absent.
 std::optional<std::string> text_of(const Request& request, const std::string& name) {
@@ -49,11 +49,11 @@ Result<app::MapOptions> map_options(const Request& request) {
   options.names = request.query_or("names", {});
   options.colors = text_of(request, "colors");
   if (request.query.contains("value"))
-    options.value = STRATA_TRY(number_of(request, "value", -kLargestFloat, kLargestFloat));
+    options.value = STRATA_TRY(number_of(request, "value", -kMaxFloat, kMaxFloat));
   if (const auto band = text_of(request, "band"))
-    options.band = static_cast<int>(STRATA_TRY(parse_integer(*band, 1, kMostBands, "band")));
-  options.tolerance = STRATA_TRY(number_of(request, "tolerance", app::kLeastTolerance,
-                                           app::kMostTolerance, query::kUsualTolerance));
+    options.band = static_cast<int>(STRATA_TRY(parse_integer(*band, 1, kMaxBands, "band")));
+  options.tolerance = STRATA_TRY(number_of(request, "tolerance", app::kMinTolerance,
+                                           app::kMaxTolerance, query::kUsualTolerance));
   return options;
 }
 

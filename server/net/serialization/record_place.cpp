@@ -28,7 +28,7 @@ Result<app::RecordPlace> record_place(const RouteContext& context, const Request
 }
 
 Result<std::int64_t> record_key(const Request& request) {
-  auto key = parse_integer(request.param("key"), 0, kHighestKey, "key");
+  auto key = parse_integer(request.param("key"), 0, kMaxRecordKey, "key");
   if (!key) return no_such("record", request.param("key"));
   return key;
 }

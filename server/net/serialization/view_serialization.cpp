@@ -6,8 +6,8 @@
 #include "domain/layers/layer.h"
 #include "expression/expression_parser.h"
 #include "room/layers.h"
-#include "room/looks.h"
 #include "room/room.h"
+#include "room/surface_images.h"
 #include "room/view_settings.h"
 #include "store/store.h"
 #include "store/tables/records.h"
@@ -75,7 +75,7 @@ nlohmann::json to_json(const RouteContext& context, const Request& request,
                        const store::NamedPart& view, const room::Room& room) {
   nlohmann::json json = view.content;
   leave_out_unseen(context.store, request.role(), room, json["layers"]);
-  if (json.contains("looks")) leave_out(json["looks"], "look", room.looks().all());
+  if (json.contains("looks")) leave_out(json["looks"], "look", room.surface_images().all());
   json.update({{"id", view.id},
                {"slug", view.slug},
                {"name", view.name},

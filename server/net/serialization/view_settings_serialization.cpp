@@ -6,8 +6,8 @@
 #include "expression/expression_parser.h"
 #include "protocol/parse.h"
 #include "room/layers.h"
-#include "room/looks.h"
 #include "room/room.h"
+#include "room/surface_images.h"
 
 namespace strata::net {
 
@@ -33,21 +33,21 @@ Result<room::Highlight> highlight_of(const protocol::Highlight& asked, const Lay
   return highlight;
 }
 
-Result<std::vector<room::LookView>> look_views(const room::Room& room,
-                                               const std::vector<protocol::LookShown>& asked) {
-  std::vector<room::LookView> views;
+Result<std::vector<room::SurfaceImageView>> surface_image_views(
+    const room::Room& room, const std::vector<protocol::LookShown>& asked) {
+  std::vector<room::SurfaceImageView> views;
   for (std::size_t i = 0; i < asked.size(); ++i) {
     const std::string field = "looks[" + std::to_string(i) + "].look";
-    auto look = room.looks().find(protocol::to_ref(asked[i].look));
-    if (!look) {
-      Error problem = look.error();
+    auto image = room.surface_images().find(protocol::to_ref(asked[i].look));
+    if (!image) {
+      Error problem = image.error();
       problem.field = field;
       return tl::unexpected(std::move(problem));
     }
-    for (const room::LookView& other : views)
-      if (other.look_id == look->id)
+    for (const room::SurfaceImageView& other : views)
+      if (other.surface_image_id == image->id)
         return fail(ErrorCode::invalid, "Look given twice", "A view shows each look once.", field);
-    views.push_back({look->id, asked[i].opacity});
+    views.push_back({image->id, asked[i].opacity});
   }
   return views;
 }
@@ -63,7 +63,7 @@ Result<Background> background_of(const std::optional<protocol::Background>& aske
 
 Result<room::ViewSettings> view_settings(
     const room::Room& room, const std::vector<protocol::LayerOverride>& layers,
-    const std::optional<std::vector<protocol::LookShown>>& looks,
+    const std::optional<std::vector<protocol::LookShown>>& images,
     const std::optional<Light>& light) {
   room::ViewSettings settings;
   for (std::size_t i = 0; i < layers.size(); ++i) {
@@ -87,9 +87,9 @@ Result<room::ViewSettings> view_settings(
     if (asked.order) view.order = static_cast<int>(*asked.order);
     settings.layers.push_back(std::move(view));
   }
-  if (looks) {
-    auto shown = STRATA_TRY(look_views(room, *looks));
-    settings.looks = std::move(shown);
+  if (images) {
+    auto shown = STRATA_TRY(surface_image_views(room, *images));
+    settings.images = std::move(shown);
   }
   if (light) settings.light = *light;
   STRATA_TRY(validate(settings.light));

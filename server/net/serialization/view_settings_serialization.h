@@ -16,12 +16,12 @@ namespace strata::net {
 
 // The looks that a view asks for. Refused (not_found, invalid) with the field's name: one that is
 // not there or comes twice.
-Result<std::vector<room::LookView>> look_views(const room::Room& room,
-                                               const std::vector<protocol::LookShown>& asked);
+Result<std::vector<room::SurfaceImageView>> surface_image_views(
+    const room::Room& room, const std::vector<protocol::LookShown>& asked);
 // What a view shows; refused as those, with the fields of layers, looks and light.
 Result<room::ViewSettings> view_settings(
     const room::Room& room, const std::vector<protocol::LayerOverride>& layers,
-    const std::optional<std::vector<protocol::LookShown>>& looks,
+    const std::optional<std::vector<protocol::LookShown>>& images,
     const std::optional<Light>& light);
 Result<Background> background_of(const std::optional<protocol::Background>& asked);
 

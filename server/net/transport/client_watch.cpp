@@ -26,10 +26,10 @@ struct ClientWatch::Watched : std::enable_shared_from_this<Watched> {
   void look_later() {
     timer.expires_after(kBetweenLooks);
     timer.async_wait([self = shared_from_this()](const boost::system::error_code& error) {
-      if (!error) self->look();
+      if (!error) self->check();
     });
   }
-  void look() {
+  void check() {
     if (!question) return;
     if (!has_gone(socket)) return look_later();
     question->end(

@@ -9,10 +9,11 @@
 
 namespace strata::net {
 
-// Looks a few times a second whether the client of a connection is still there while its question
-// is worked on, and ends the question when it is not. It asks the system and reads nothing, so it
-// does not matter whether the connection speaks TLS, or has sent its next request already. A client
-// that closes its sending side alone counts as gone. Belongs to the connection's strand.
+// SurfaceImages a few times a second whether the client of a connection is still there while its
+// question is worked on, and ends the question when it is not. It asks the system and reads
+// nothing, so it does not matter whether the connection speaks TLS, or has sent its next request
+// already. A client that closes its sending side alone counts as gone. Belongs to the connection's
+// strand.
 class ClientWatch {
  public:
   // `socket`: of a connection that stays open as long as the watch.

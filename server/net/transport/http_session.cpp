@@ -35,7 +35,7 @@ constexpr auto kUseResult = asio::as_tuple(asio::use_awaitable);
 constexpr seconds kFirstHead{10};  // from connecting to the end of the first head
 constexpr seconds kIdle{60};       // between requests
 constexpr seconds kEventPause{1}, kEventPing{15};
-constexpr int kMostEventStreams = 256;
+constexpr int kMaxEventStreams = 256;
 constexpr seconds kStall{60};  // a body that does not move
 constexpr std::uint32_t kMaxHead = 8192;
 // of a larger body; by itself it is read in the kilobytes of its head
@@ -559,7 +559,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         .with("X-Accel-Buffering", "no");
     if (method == Method::head) co_return co_await send_head(response, std::nullopt, keep_alive);
     const CountAtWork counted(connections_->event_streams);
-    if (connections_->event_streams > kMostEventStreams) {
+    if (connections_->event_streams > kMaxEventStreams) {
       Response refusal = problem_response(
           {ErrorCode::busy, "Too many listeners", "Ask again when another listener has gone.", {}});
       co_return co_await send(refusal, method, keep_alive);

@@ -31,7 +31,7 @@ struct ServerOptions {
   std::uint64_t max_positions_bytes = 16u << 20;
   double requests_per_second = 1000;  // of one connection
   double request_burst = 2000;
-  int bin_days = 30;  // for which deleted things can be restored; 0: they are erased at once
+  int trash_days = 30;  // for which deleted things can be restored; 0: they are erased at once
   LiveLimits live;
 };
 

@@ -10,7 +10,7 @@ namespace {
 using Op = Expression::Op;
 
 // Below it the comparisons are as quick as the set.
-constexpr std::size_t kFewest = 3;
+constexpr std::size_t kMin = 3;
 
 // The parts of a chain of one operation, however it was nested.
 void flatten(const Expression& e, Op op, std::vector<const Expression*>& parts) {
@@ -79,7 +79,7 @@ class Planner {
     PlanNode node;
     node.op = e.op;
     for (const Group& group : groups) {
-      if (group.members.size() < kFewest) {
+      if (group.members.size() < kMin) {
         others.insert(others.end(), group.members.begin(), group.members.end());
         continue;
       }

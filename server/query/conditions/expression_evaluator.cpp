@@ -353,9 +353,9 @@ class Block {
       if (((result.known >> i) & 1u) == 0) continue;
       if (result.value[i] != last) {
         last = result.value[i];
-        constexpr double kHighestKey = std::numeric_limits<std::uint32_t>::max();
-        found = last >= 0 && last <= kHighestKey ? records.of(static_cast<std::uint32_t>(last))
-                                                 : std::numeric_limits<double>::quiet_NaN();
+        constexpr double kMaxRecordKey = std::numeric_limits<std::uint32_t>::max();
+        found = last >= 0 && last <= kMaxRecordKey ? records.of(static_cast<std::uint32_t>(last))
+                                                   : std::numeric_limits<double>::quiet_NaN();
       }
       result.value[i] = found;
     }
@@ -463,7 +463,7 @@ void spend(std::uint64_t steps) {
 }
 
 // Below it a condition is as quick as its table.
-constexpr std::uint64_t kFewestSteps = 3;
+constexpr std::uint64_t kMinSteps = 3;
 
 TruthTable table_of(const PlanNode& condition, const Inputs& inputs) {
   const ValueType type = inputs.sources[static_cast<std::size_t>(condition.source)].type;
@@ -486,7 +486,7 @@ TruthTable table_of(const PlanNode& condition, const Inputs& inputs) {
 // Makes tables of the largest conditions that have one, where there are texels enough to look them
 // up.
 void make_tables(PlanNode& node, const Inputs& inputs) {
-  if (node.is_condition() && steps_of(node) >= kFewestSteps) {
+  if (node.is_condition() && steps_of(node) >= kMinSteps) {
     const int source = only_source(node);
     const int bytes =
         source < 0 ? 4 : bytes_per_texel(inputs.sources[static_cast<std::size_t>(source)].type);

@@ -8,7 +8,7 @@
 namespace strata::query {
 namespace {
 
-constexpr double kLeastShare = 0.005;
+constexpr double kMinShare = 0.005;
 constexpr int kBinBits = 5;  // of a channel in the first count
 
 struct Lab {
@@ -105,8 +105,8 @@ Result<std::vector<ColorKey>> parse_color_keys(std::string_view text, const std:
     return fail(ErrorCode::invalid, "Colours not understood", what, field);
   };
   const auto json = nlohmann::json::parse(text, nullptr, false);
-  if (!json.is_object() || json.empty() || json.size() > kMostColorKeys)
-    return refuse("Give an object of 1 to " + std::to_string(kMostColorKeys) +
+  if (!json.is_object() || json.empty() || json.size() > kMaxColorKeys)
+    return refuse("Give an object of 1 to " + std::to_string(kMaxColorKeys) +
                   " colours with their values, such as {\"#c02020\": 1}.");
   std::vector<ColorKey> keys;
   for (const auto& [color, value] : json.items()) {
@@ -152,9 +152,9 @@ std::vector<FoundColor> find_colors(const Picture& picture, double tolerance) {
                      [](const Bin& a, const Bin& b) { return a.count > b.count; });
     std::erase_if(groups, [&](const Bin& bin) {
       return bin.count == 0 ||
-             static_cast<double>(bin.count) < kLeastShare * static_cast<double>(pixels);
+             static_cast<double>(bin.count) < kMinShare * static_cast<double>(pixels);
     });
-    if (groups.size() > kMostFoundColors) groups.resize(kMostFoundColors);
+    if (groups.size() > kMaxFoundColors) groups.resize(kMaxFoundColors);
     return groups;
   };
   auto groups = large(gathered(bins, {}, static_cast<float>(tolerance), true));

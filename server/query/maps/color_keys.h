@@ -13,7 +13,7 @@ namespace strata::query {
 // 1976, D65): 2 is hardly seen, 100 is black to white.
 
 constexpr double kUsualTolerance = 12;
-constexpr std::size_t kMostColorKeys = 256;
+constexpr std::size_t kMaxColorKeys = 256;
 
 struct ColorKey {
   Rgba color{};
@@ -21,7 +21,7 @@ struct ColorKey {
 };
 
 // {"#c02020": 1, "#2040c0": 2}. Refused (invalid at `field`): no such object, no colours, more than
-// kMostColorKeys.
+// kMaxColorKeys.
 Result<std::vector<ColorKey>> parse_color_keys(std::string_view json, const std::string& field);
 
 class ColorKeys {
@@ -46,7 +46,7 @@ struct FoundColor {
   double share = 0;            // of the pixels that are at least half opaque
   bool is_background = false;  // the one that covers most of the picture's border
 };
-constexpr std::size_t kMostFoundColors = 24;
+constexpr std::size_t kMaxFoundColors = 24;
 std::vector<FoundColor> find_colors(const Picture& picture, double tolerance);
 
 }  // namespace strata::query

@@ -13,7 +13,7 @@
 namespace strata::query {
 namespace {
 
-constexpr int kMostGrids = 6;  // each twice as coarse as the one before
+constexpr int kMaxGrids = 6;  // each twice as coarse as the one before
 
 // GEOS's, of this thread. Its objects know no context: any may work with them.
 class Context {
@@ -178,7 +178,7 @@ FlatArea FlatArea::joined(std::vector<FlatArea> areas, double grid) {
       return FlatArea(std::make_unique<Held>(
           areas_alone(owned(GEOSUnaryUnionPrec_r(geos(), all.get(), grid)))));
     } catch (const std::runtime_error&) {
-      if (tries == kMostGrids) throw;
+      if (tries == kMaxGrids) throw;
     }
   }
 }

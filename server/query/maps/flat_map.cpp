@@ -7,9 +7,9 @@
 namespace strata::query {
 namespace {
 
-constexpr int kMostCells = 512;  // a side
+constexpr int kMaxCells = 512;  // a side
 // areas that lie across everything stand in every cell
-constexpr std::size_t kMostEntries = std::size_t{1} << 22;
+constexpr std::size_t kMaxEntries = std::size_t{1} << 22;
 
 }  // namespace
 
@@ -21,9 +21,9 @@ FlatMap::FlatMap(std::vector<MapArea> areas)
     high = glm::max(high, each.area.high());
   }
   size_ = high - low_;
-  side_ = std::clamp(static_cast<int>(2 * std::sqrt(static_cast<double>(areas_.size()))), 1,
-                     kMostCells);
-  while (side_ > 1 && entries() > kMostEntries) side_ /= 2;
+  side_ =
+      std::clamp(static_cast<int>(2 * std::sqrt(static_cast<double>(areas_.size()))), 1, kMaxCells);
+  while (side_ > 1 && entries() > kMaxEntries) side_ /= 2;
 
   begins_.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_) + 1, 0);
   const auto each_cell = [&](const PolygonArea& area, const auto& take) {

@@ -79,7 +79,7 @@ class Reader {
     if (!held.is_object()) return {};
     auto& values = current().values;
     for (const auto& [name, value] : held.items()) {
-      if (name.size() > kLongestMapColumn) continue;
+      if (name.size() > kMaxMapColumnLength) continue;
       MapValue read;
       if (value.is_number()) read = value.get<double>();
       if (value.is_boolean()) read = value.get<bool>() ? 1.0 : 0.0;

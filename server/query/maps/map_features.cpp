@@ -6,7 +6,7 @@
 namespace strata::query {
 namespace {
 
-constexpr std::size_t kLongestSample = 200;  // longer texts are no names of anything
+constexpr std::size_t kMaxSampleLength = 200;  // longer texts are no names of anything
 
 std::string text_of(const MapValue& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
@@ -63,7 +63,7 @@ std::vector<MapColumn> columns_of(const FeatureMap& map) {
       column.is_text =
           column.is_text && std::holds_alternative<std::string>(value) && !text.empty();
       auto& samples = column.samples;
-      if (samples.size() < kMostSamples && !text.empty() && text.size() <= kLongestSample &&
+      if (samples.size() < kMaxSamples && !text.empty() && text.size() <= kMaxSampleLength &&
           std::find(samples.begin(), samples.end(), text) == samples.end())
         samples.push_back(text);
     }

@@ -19,7 +19,7 @@ constexpr std::size_t kMaxMapPoints = 2'000'000;
 constexpr std::size_t kMaxMapFeatures = 500'000;
 constexpr std::size_t kMaxMapColumns = 256;
 constexpr std::size_t kMaxMapValues = 8'000'000;  // columns times features
-constexpr std::size_t kLongestMapColumn = 200;    // bytes of a name; longer ones are passed over
+constexpr std::size_t kMaxMapColumnLength = 200;  // bytes of a name; longer ones are passed over
 std::string too_many_values();                    // what a map with more is told
 
 // Nothing, a number or a text.
@@ -46,10 +46,10 @@ struct MapColumn {
   std::string name;
   bool is_number = false;  // every feature has a number
   bool is_text = false;    // every feature has a text that is not empty
-  // different values in the order of their first appearance, kMostSamples at most
+  // different values in the order of their first appearance, kMaxSamples at most
   std::vector<std::string> samples;
 };
-constexpr std::size_t kMostSamples = 12;
+constexpr std::size_t kMaxSamples = 12;
 std::vector<MapColumn> columns_of(const FeatureMap& map);
 
 // Which values the areas have.

@@ -198,10 +198,10 @@ Result<PlaneOutlines> plane_outlines(const LayerView& view, const mesh::Geometry
   const Labels labels(view, map, classes, plane);
   if (labels.classes().empty()) return PlaneOutlines{};
   std::vector<TexelRegion> regions;
-  if (!find_regions(map, labels.of_texel(), kMostOutlineCorners, regions))
+  if (!find_regions(map, labels.of_texel(), kMaxOutlineCorners, regions))
     return fail(
         ErrorCode::invalid, "Outlines too long",
-        "The borders of what is painted have more than " + std::to_string(kMostOutlineCorners) +
+        "The borders of what is painted have more than " + std::to_string(kMaxOutlineCorners) +
             " corners of texels. Ask for texels.tif instead, or for outlines of a layer with fewer areas.",
         "layer");
   std::size_t corners = 0;

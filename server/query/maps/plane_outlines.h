@@ -16,7 +16,7 @@ struct OutlinePlane {
 };
 
 // of texels, before they are simplified
-inline constexpr std::size_t kMostOutlineCorners = 4'000'000;
+inline constexpr std::size_t kMaxOutlineCorners = 4'000'000;
 
 // What the areas of each class (ValueClasses::of) cover in the plane, as valid polygons with holes:
 // world coordinates, in the order of the plane. Classes that nothing is painted of are not there;
@@ -27,7 +27,7 @@ inline constexpr std::size_t kMostOutlineCorners = 4'000'000;
 // areas go on over seams without a gap. Lines are simplified by half a mean texel at most. What
 // lies behind another part of the same class is one area with it.
 //
-// `map` is of the layer's resolution. Refused (invalid): more than kMostOutlineCorners corners.
+// `map` is of the layer's resolution. Refused (invalid): more than kMaxOutlineCorners corners.
 using PlaneOutlines = std::map<std::uint32_t, std::vector<FlatPolygon>>;
 Result<PlaneOutlines> plane_outlines(const LayerView& view, const mesh::Geometry& geometry,
                                      const mesh::SurfaceMap& map, const ValueClasses& classes,

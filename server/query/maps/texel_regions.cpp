@@ -9,7 +9,7 @@ namespace strata::query {
 namespace {
 
 constexpr std::uint32_t kNoRegion = 0xffffffffu;
-constexpr std::size_t kLeastCorners = 4;  // of a region
+constexpr std::size_t kMinCorners = 4;  // of a region
 constexpr glm::ivec2 kSteps[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
 // Of a corner, the texels to the left and to the right of the edge that goes on in each direction,
 // as their lower left corners.
@@ -31,7 +31,7 @@ class Regions {
       if (labels_[texel] == 0 || region_of_[texel] != kNoRegion) continue;
       fill(texel, static_cast<std::uint32_t>(regions.size()));
       regions.push_back({labels_[texel], {}});
-      if (regions.size() * kLeastCorners > corner_limit) return false;
+      if (regions.size() * kMinCorners > corner_limit) return false;
     }
     std::size_t corners = 0;
     for (std::uint32_t slot = 0; slot < walked_.size(); ++slot) {

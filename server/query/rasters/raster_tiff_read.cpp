@@ -10,7 +10,7 @@
 namespace strata::query {
 namespace {
 
-constexpr int kMostDirectories = 64;  // in which a mask is looked for
+constexpr int kMaxDirectories = 64;  // in which a mask is looked for
 
 tl::unexpected<Error> damaged(const TiffMemory& file) {
   return refuse_raster("The TIFF cannot be read: " +
@@ -139,7 +139,7 @@ Result<void> read_valid_plane(TIFF* tiff, const TiffMemory& file, const Layer& l
 
 // Whether there is one, which is then the current directory.
 Result<bool> find_mask(TIFF* tiff, const TiffMemory& file) {
-  for (int i = 1; i < kMostDirectories && !TIFFLastDirectory(tiff); ++i) {
+  for (int i = 1; i < kMaxDirectories && !TIFFLastDirectory(tiff); ++i) {
     if (!TIFFSetDirectory(tiff, static_cast<std::uint16_t>(i))) return damaged(file);
     const auto kind = tiff_tag<std::uint32_t>(tiff, TIFFTAG_SUBFILETYPE);
     if ((kind & FILETYPE_MASK) != 0 && (kind & FILETYPE_REDUCEDIMAGE) == 0) return true;

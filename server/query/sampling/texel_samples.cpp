@@ -74,11 +74,11 @@ Result<std::vector<TexelSample>> samples_by_cell(const SurfaceTexels& texels, do
     sum.highest = std::max(sum.highest, sample.value);
     sum.weighted_position += weight * (sample.position - texels.origin);
     if (has_keys) add_key(sum, sample.bits, weight);
-    return cells.size() <= kMostCells;
+    return cells.size() <= kMaxCells;
   });
-  if (!countable || cells.size() > kMostCells)
+  if (!countable || cells.size() > kMaxCells)
     return fail(ErrorCode::invalid, "Cells too small",
-                "The surface has more than " + std::to_string(kMostCells) +
+                "The surface has more than " + std::to_string(kMaxCells) +
                     " cells of this size. Ask for larger ones.",
                 "cell");
   std::vector<Cell> order;

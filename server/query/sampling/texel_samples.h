@@ -48,12 +48,12 @@ void for_each_sample(const SurfaceTexels& texels, Visit&& visit) {
   }
 }
 
-inline constexpr std::size_t kMostCells = 2'000'000;
+inline constexpr std::size_t kMaxCells = 2'000'000;
 
 // The same texels by the cubes of a grid through the world's origin, with edges of `edge` model
 // units: the centroid, weighted by area, the sum of areas and the mean of values, weighted by area;
 // of keys (`classes_of` tells each value apart) the one with most area, of several the lowest.
-// Ascending by z, y and x. Refused (invalid at `cell`): more than kMostCells cells, or an edge too
+// Ascending by z, y and x. Refused (invalid at `cell`): more than kMaxCells cells, or an edge too
 // small to count them.
 Result<std::vector<TexelSample>> samples_by_cell(const SurfaceTexels& texels, double edge);
 

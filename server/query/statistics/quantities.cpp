@@ -48,9 +48,9 @@ Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map
                      last->area +=
                          map.area[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)];
                    });
-    if (sums.size() > kMostClasses)
+    if (sums.size() > kMaxClasses)
       return fail(ErrorCode::invalid, "Too many classes",
-                  "The layer holds more than " + std::to_string(kMostClasses) +
+                  "The layer holds more than " + std::to_string(kMaxClasses) +
                       " different values. Give it a palette with ranges (linear or step).",
                   "layer");
   }

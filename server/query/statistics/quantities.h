@@ -10,7 +10,7 @@
 
 namespace strata::query {
 
-inline constexpr std::size_t kMostClasses = 1'000'000;
+inline constexpr std::size_t kMaxClasses = 1'000'000;
 
 struct Quantity {
   std::optional<double> value;     // where each value is a class
@@ -28,7 +28,7 @@ struct Quantities {
 
 // How much there is of each class, over valid surface texels (gutter excluded). The map and its
 // graph must be of the layer's resolution. The same on every call. Refused (invalid): more than
-// kMostClasses classes.
+// kMaxClasses classes.
 Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map,
                               const mesh::TexelGraph& graph, const ValueClasses& classes,
                               double metres_per_unit);

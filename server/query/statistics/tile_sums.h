@@ -73,7 +73,7 @@ class TileSumsCache {
     }
     auto made = std::make_shared<const TileSums>(make());
     std::lock_guard lock(mutex_);
-    if (made->keys.size() <= kMostKeptKeys) entries_[address] = {tile, made, nullptr};
+    if (made->keys.size() <= kMaxKeptKeys) entries_[address] = {tile, made, nullptr};
     return made;
   }
   // The same, where also the limits must be those of the last one.
@@ -95,7 +95,7 @@ class TileSumsCache {
   }
 
  private:
-  static constexpr std::size_t kMostKeptKeys = 256;  // 25 KB a tile
+  static constexpr std::size_t kMaxKeptKeys = 256;  // 25 KB a tile
   struct Entry {
     std::weak_ptr<const TileData> tile;  // tiles never change, new ones take their place
     std::shared_ptr<const TileSums> sums;

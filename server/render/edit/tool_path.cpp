@@ -8,9 +8,9 @@ namespace strata::render {
 namespace {
 
 // Covers any window, and its square is still a float.
-constexpr double kLargestRadius_px = 1e9;
+constexpr double kMaxRadius_px = 1e9;
 // Covers no texel, and can be divided by.
-constexpr double kSmallestRadius_px = 1e-3;
+constexpr double kMinRadius_px = 1e-3;
 
 PixelBox join(const PixelBox& a, const PixelBox& b) {
   return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
@@ -50,7 +50,7 @@ ToolPath make_tool_path(const StrokeBatch& stroke, std::span<const double> radii
   };
   const auto radius = [&](std::size_t i) {
     const double width = stroke.widths.empty() ? 1 : stroke.widths[i];
-    return std::clamp(radii_px[i] * width, kSmallestRadius_px, kLargestRadius_px);
+    return std::clamp(radii_px[i] * width, kMinRadius_px, kMaxRadius_px);
   };
   std::size_t from = 0;
   for (std::size_t i = 1; i < stroke.path.size(); ++i) {

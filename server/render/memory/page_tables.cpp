@@ -9,7 +9,7 @@
 namespace strata::render {
 namespace {
 
-constexpr std::size_t kSmallestTable = 4096;  // entries
+constexpr std::size_t kMinTable = 4096;  // entries
 // Runs of changed entries this near are sent together.
 constexpr std::uint32_t kJoinGap = 64;
 
@@ -41,8 +41,7 @@ void PageTables::set(std::uint32_t index, PageId page) {
 }
 
 Result<void> PageTables::flush() {
-  const std::size_t needed =
-      std::bit_ceil(std::max(entries_.size(), kSmallestTable)) * sizeof(PageId);
+  const std::size_t needed = std::bit_ceil(std::max(entries_.size(), kMinTable)) * sizeof(PageId);
   if (buffer_.size() < needed) {
     auto share = STRATA_TRY(memory_.reserve(needed, "page tables"));
     auto buffer = STRATA_TRY(gl::Buffer::create(needed, gl::Buffer::Use::fixed, "page tables"));

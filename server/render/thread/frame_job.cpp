@@ -14,11 +14,11 @@ constexpr std::size_t kBytesCollectedPerStep = std::size_t{16} << 20;  // a few 
 
 // How far a place of a mark may lie below what is seen, in pixels of the camera's window: a coarser
 // copy's surface lies where it likes.
-constexpr double kMarkReach_px = 1, kMarkReachOfCopies_px = 10;
+constexpr double kFeatureReach_px = 1, kFeatureReachOfCopies_px = 10;
 
 // All marks are drawn for each rectangle: what one segment of them costs there (0.8 µs with
 // llvmpipe), as `kRectCost_px`.
-constexpr std::int64_t kMarkCost_px = 28;
+constexpr std::int64_t kFeatureCost_px = 28;
 
 std::size_t row_bytes(const PixelRect& rect) {
   return std::size_t{4} * static_cast<std::size_t>(rect.width);
@@ -136,12 +136,13 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
     layer_uses_.push_back(layer->use(view.last_used));
   }
   STRATA_TRY(validate(request.style.light));
-  if (request.style.looks.size() > kMaxLooksShown)
+  if (request.style.images.size() > kMaxSurfaceImagesShown)
     return fail(ErrorCode::invalid, "Too many looks",
-                "A view shows at most " + std::to_string(kMaxLooksShown) + " looks.", "looks");
-  for (const LookStyle& style : request.style.looks) {
-    auto look = STRATA_TRY(scene.look(style.look));
-    if (look->model != view.model)
+                "A view shows at most " + std::to_string(kMaxSurfaceImagesShown) + " looks.",
+                "looks");
+  for (const SurfaceImageStyle& style : request.style.images) {
+    auto image = STRATA_TRY(scene.image(style.image));
+    if (image->model != view.model)
       return fail(ErrorCode::invalid, "Look of another model",
                   "A view shows looks of its own model.", "looks");
     if (!std::isfinite(style.opacity))
@@ -150,7 +151,7 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   auto key = depth_key(view.model, request.camera, request.width, request.height);
   view.drawing = true;
   const auto has_gbuffer = [&](const DepthKey& wanted) {
-    return view.gbuffer_complete && view.key == wanted && view.looks == request.style.looks &&
+    return view.gbuffer_complete && view.key == wanted && view.images == request.style.images &&
            view.lighting == request.style.light;
   };
   if (request.moving) {
@@ -160,7 +161,7 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
     key.level = level;
   }
   if (has_gbuffer(key)) return {};
-  view.looks = request.style.looks;
+  view.images = request.style.images;
   view.lighting = request.style.light;
   return prepare_gbuffer(view, key, scene.depths(), scene.memory());
 }
@@ -189,11 +190,11 @@ Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
   const MeshBuffers& mesh = *model->levels[static_cast<std::size_t>(view.key.level)];
   if (!progress_.cleared) mesh_begin_ = std::chrono::steady_clock::now();
   auto mesh_look = mesh_view(task_.request.camera, mesh.geometry().origin, view.lighting);
-  for (std::size_t i = 0; i < view.looks.size(); ++i) {
-    auto look = STRATA_TRY(scene.look(view.looks[i].look));
-    mesh_look.looks.push_back(&look->texture->texture());
+  for (std::size_t i = 0; i < view.images.size(); ++i) {
+    auto image = STRATA_TRY(scene.image(view.images[i].image));
+    mesh_look.images.push_back(&image->texture->texture());
     mesh_look.uniforms.look_opacity[static_cast<glm::length_t>(i)] =
-        std::clamp(view.looks[i].opacity, 0.0f, 1.0f);
+        std::clamp(view.images[i].opacity, 0.0f, 1.0f);
   }
   const auto complete = scene.gbuffer_pass().draw_slice(
       mesh, mesh_look, {view.gbuffer, view.depth->texture}, progress_);
@@ -214,20 +215,22 @@ Result<void> FrameJob::choose_area(GpuScene& scene, View& view) {
   frame_.width = request.width;
   frame_.height = request.height;
   if (request.changed && view.shows(request)) {
-    const auto marks = static_cast<std::int64_t>(view.seen_marks.count);
+    const auto features = static_cast<std::int64_t>(view.seen_features.count);
     frame_.rects = screen_rects(*request.changed, clip, request.width, request.height,
-                                request.align_to_16, kRectCost_px + marks * kMarkCost_px,
+                                request.align_to_16, kRectCost_px + features * kFeatureCost_px,
                                 static_cast<double>(request.width) / request.camera.width);
     if (frame_.rects.empty()) return {};
   } else {
     frame_.rects = {{0, 0, request.width, request.height}};
-    std::vector<shader::MarkSegment> pieces;
-    if (request.style.marks)
-      pieces = project_marks(*request.style.marks, request.camera, request.width, request.height,
-                             {view.key.level == 0 ? kMarkReach_px : kMarkReachOfCopies_px,
-                              glm::distance(geometry.box_min, geometry.box_max)});
+    std::vector<shader::FeatureSegment> pieces;
+    if (request.style.features)
+      pieces =
+          project_features(*request.style.features, request.camera, request.width, request.height,
+                           {view.key.level == 0 ? kFeatureReach_px : kFeatureReachOfCopies_px,
+                            glm::distance(geometry.box_min, geometry.box_max)});
     const bool cut_open = !request.camera.section.empty() && eye_is_cut_away(request.camera);
-    auto looked = scene.mark_pass().look(pieces, view.depth->texture, cut_open, view.seen_marks);
+    auto looked =
+        scene.feature_pass().test_sight(pieces, view.depth->texture, cut_open, view.seen_features);
     if (!looked) return looked;
   }
   surface_ =
@@ -263,8 +266,8 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   }
   STRATA_TRY(scene.tables().flush());
   STRATA_TRY(scene.shade_pass().shade(input, scene.tables()));
-  auto marked =
-      scene.mark_pass().draw(view.seen_marks, view.shading, request.width, request.height, band);
+  auto marked = scene.feature_pass().draw(view.seen_features, view.shading, request.width,
+                                          request.height, band);
   if (!marked) return tl::unexpected(marked.error());
 
   const int rows_below = rect.height - shaded_.done - band.height;
@@ -283,7 +286,7 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   view.background = request.style.background;
   view.background_rows = request.background_rows;
   view.unit_mm = request.style.unit_mm;
-  view.marks = request.style.marks;
+  view.features = request.style.features;
   return true;
 }
 

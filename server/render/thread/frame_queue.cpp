@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMaxBoxes = 64;
 // One is drawn while the other is read back: more would take the places of smaller pictures
 // (GpuThread).
-constexpr std::size_t kMostLarge = 2;
+constexpr std::size_t kMaxLarge = 2;
 
 // Everything that either had to redraw is to be redrawn.
 void inherit(FrameRequest& request, const FrameRequest& other) {
@@ -179,7 +179,7 @@ std::optional<FrameTask> FrameQueue::take_if(const Wanted& wanted) {
 std::optional<FrameTask> FrameQueue::take() {
   std::lock_guard lock(mutex_);
   return take_if([this](const FrameTask& task, const FrameTask::Turn&) {
-    return !task.request.large || large_under_way_ < kMostLarge;
+    return !task.request.large || large_under_way_ < kMaxLarge;
   });
 }
 

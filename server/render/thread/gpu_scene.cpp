@@ -10,7 +10,7 @@ namespace {
 // slice while the next is prepared.
 constexpr std::size_t kTrianglesPerSliceSoftware = 32 * 1024;
 constexpr std::size_t kTrianglesPerSliceHardware = 2 * 1024 * 1024;
-constexpr int kLowestResolution = kTileSize, kHighestResolution = 16384;
+constexpr int kLowestResolution = kTileSize, kMaxResolution = 16384;
 constexpr std::uint64_t kDefaultBudget = std::uint64_t{4} << 30;
 
 std::string text(GLenum name) {
@@ -96,7 +96,7 @@ Result<void> GpuScene::load() {
   STRATA_TRY(keep(edit_pass_, EditPass::create(dir, readback_)));
   STRATA_TRY(keep(tile_reader_, TileReader::create(dir, readback_)));
   STRATA_TRY(keep(gbuffer_pass_, MeshPass::create(MeshPass::Kind::gbuffer, dir, slice)));
-  STRATA_TRY(keep(mark_pass_, MarkPass::create(dir)));
+  STRATA_TRY(keep(feature_pass_, FeaturePass::create(dir)));
   return keep(shade_pass_, ShadePass::create(dir, info_.software));
 }
 
@@ -144,16 +144,16 @@ ModelHandle GpuScene::add(Model model) {
   return handle;
 }
 
-LookHandle GpuScene::add(Look look) {
-  const LookHandle handle = next_handle();
-  looks_.emplace(handle, std::move(look));
+SurfaceImageHandle GpuScene::add(SurfaceImage image) {
+  const SurfaceImageHandle handle = next_handle();
+  images_.emplace(handle, std::move(image));
   return handle;
 }
 
 Result<LayerHandle> GpuScene::add_layer(ModelHandle model_handle, ValueType type, int resolution,
                                         std::shared_ptr<const TileMirror> mirror) {
   STRATA_TRY(model(model_handle));
-  if (resolution < kLowestResolution || resolution > kHighestResolution ||
+  if (resolution < kLowestResolution || resolution > kMaxResolution ||
       !std::has_single_bit(static_cast<unsigned>(resolution))) {
     return fail(ErrorCode::invalid, "Resolution out of range",
                 "A layer's resolution is a power of two from 128 to 16384.", "resolution");
@@ -193,14 +193,14 @@ Result<View*> GpuScene::view(ViewHandle handle) {
   return &found->second;
 }
 
-Result<GpuScene::Look*> GpuScene::look(LookHandle handle) {
-  const auto found = looks_.find(handle);
-  if (found == looks_.end()) return tl::unexpected(unknown("look", handle));
+Result<GpuScene::SurfaceImage*> GpuScene::image(SurfaceImageHandle handle) {
+  const auto found = images_.find(handle);
+  if (found == images_.end()) return tl::unexpected(unknown("look", handle));
   return &found->second;
 }
 
 void GpuScene::remove_model(ModelHandle handle) {
-  std::erase_if(looks_, [&](const auto& entry) { return entry.second.model == handle; });
+  std::erase_if(images_, [&](const auto& entry) { return entry.second.model == handle; });
   std::erase_if(layers_, [&](const auto& entry) { return entry.second.model() == handle; });
   std::erase_if(views_, [&](const auto& entry) { return entry.second.model == handle; });
   if (depths_) depths_->forget_model(handle);

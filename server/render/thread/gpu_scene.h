@@ -8,11 +8,11 @@
 #include "gl/egl_context.h"
 #include "render/edit/edit_pass.h"
 #include "render/memory/gpu_layer.h"
-#include "render/memory/look_texture.h"
+#include "render/memory/surface_image_texture.h"
 #include "render/memory/tile_reader.h"
 #include "render/thread/detail_budget.h"
 #include "render/thread/view_cache.h"
-#include "render/view/mark_pass.h"
+#include "render/view/feature_pass.h"
 #include "render/view/shade_pass.h"
 
 namespace strata::render {
@@ -26,9 +26,9 @@ class GpuScene {
     const MeshBuffers& mesh() const { return *levels.front(); }
     std::map<int, std::unique_ptr<SurfaceMapTextures>> maps;  // by resolution, complete ones only
   };
-  struct Look {
+  struct SurfaceImage {
     ModelHandle model = 0;
-    std::unique_ptr<LookTexture> texture;
+    std::unique_ptr<SurfaceImageTexture> texture;
   };
 
   // `generation` goes into handles; `memory` and `messages` must outlive the scene.
@@ -53,7 +53,7 @@ class GpuScene {
   bool edits_on_cpu() const { return info_.edit_path == EditPath::kernel; }
   MeshPass& gbuffer_pass() { return *gbuffer_pass_; }
   ShadePass& shade_pass() { return *shade_pass_; }
-  MarkPass& mark_pass() { return *mark_pass_; }
+  FeaturePass& feature_pass() { return *feature_pass_; }
   DetailBudget& detail_budget() { return detail_budget_; }
   // How much of a picture is shaded in a step, in pixels of one layer.
   int pixels_per_band() const {
@@ -62,7 +62,7 @@ class GpuScene {
   std::uint64_t next_use() { return ++uses_; }
 
   ModelHandle add(Model model);
-  LookHandle add(Look look);
+  SurfaceImageHandle add(SurfaceImage image);
   // `mirror` may be null: see GpuLayer.
   Result<LayerHandle> add_layer(ModelHandle model, ValueType type, int resolution,
                                 std::shared_ptr<const TileMirror> mirror = nullptr);
@@ -71,9 +71,9 @@ class GpuScene {
   Result<Model*> model(ModelHandle handle);
   Result<GpuLayer*> layer(LayerHandle handle);
   Result<View*> view(ViewHandle handle);
-  Result<Look*> look(LookHandle handle);
+  Result<SurfaceImage*> image(SurfaceImageHandle handle);
   void remove_model(ModelHandle handle);  // and its layers, looks and views
-  void remove_look(LookHandle handle) { looks_.erase(handle); }
+  void remove_surface_image(SurfaceImageHandle handle) { images_.erase(handle); }
   void remove_layer(LayerHandle handle) { layers_.erase(handle); }
   void remove_view(ViewHandle handle) { views_.erase(handle); }
 
@@ -104,12 +104,12 @@ class GpuScene {
   std::optional<TileReader> tile_reader_;
   std::optional<MeshPass> gbuffer_pass_;
   std::optional<ShadePass> shade_pass_;
-  std::optional<MarkPass> mark_pass_;
+  std::optional<FeaturePass> feature_pass_;
   DetailBudget detail_budget_;
   std::unordered_map<ModelHandle, Model> models_;
   std::unordered_map<LayerHandle, GpuLayer> layers_;
   std::unordered_map<ViewHandle, View> views_;
-  std::unordered_map<LookHandle, Look> looks_;
+  std::unordered_map<SurfaceImageHandle, SurfaceImage> images_;
 };
 
 }  // namespace strata::render

@@ -18,7 +18,7 @@ constexpr auto kRecoveryPause = std::chrono::seconds(1);
 constexpr std::size_t kMaxActiveFrames = 4;
 // Of edits before frames: a stroke is some milliseconds, so that only a flood of them takes as
 // long.
-constexpr std::chrono::milliseconds kMostAhead{30};
+constexpr std::chrono::milliseconds kMaxAhead{30};
 
 Error lost_problem() {
   return {ErrorCode::gpu_lost,
@@ -126,7 +126,7 @@ void GpuThread::run() {
 }
 
 bool GpuThread::run_some() {
-  if (ahead_ > kMostAhead) {
+  if (ahead_ > kMaxAhead) {
     const auto begin = Clock::now();
     const bool is_drawn = step_frames();
     ahead_ = is_drawn ? ahead_ - (Clock::now() - begin) : Clock::duration{};

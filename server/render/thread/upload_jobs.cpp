@@ -39,7 +39,7 @@ Result<bool> ModelUpload::advance(GpuScene& scene) {
   return false;
 }
 
-Step LookUpload::step(GpuScene& scene) {
+Step SurfaceImageUpload::step(GpuScene& scene) {
   const auto complete = advance(scene);
   if (!complete) {
     abort(complete.error());
@@ -50,14 +50,14 @@ Step LookUpload::step(GpuScene& scene) {
   return Step::done;
 }
 
-Result<bool> LookUpload::advance(GpuScene& scene) {
+Result<bool> SurfaceImageUpload::advance(GpuScene& scene) {
   STRATA_TRY(scene.model(model_));
   if (!texture_) {
     if (!image_ || image_->levels.empty())
       return fail(ErrorCode::invalid, "Look is empty",
                   "A look needs a picture that is no larger than the GPU takes.", "look");
-    auto texture =
-        STRATA_TRY(LookTexture::create(std::move(image_), scene.info().software, scene.memory()));
+    auto texture = STRATA_TRY(
+        SurfaceImageTexture::create(std::move(image_), scene.info().software, scene.memory()));
     texture_ = std::move(texture);
     return false;
   }

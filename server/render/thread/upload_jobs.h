@@ -22,10 +22,10 @@ class ModelUpload {
   GpuScene::Model model_;
 };
 
-class LookUpload {
+class SurfaceImageUpload {
  public:
-  LookUpload(ModelHandle model, std::shared_ptr<const LookImage> image,
-             Renderer::Done<LookHandle> done)
+  SurfaceImageUpload(ModelHandle model, std::shared_ptr<const MipmappedPicture> image,
+                     Renderer::Done<SurfaceImageHandle> done)
       : model_(model), image_(std::move(image)), done_(std::move(done)) {}
   Step step(GpuScene& scene);
   void abort(const Error& problem) { done_(tl::unexpected(problem)); }
@@ -34,9 +34,9 @@ class LookUpload {
   Result<bool> advance(GpuScene& scene);  // true when complete
 
   const ModelHandle model_;
-  std::shared_ptr<const LookImage> image_;
-  Renderer::Done<LookHandle> done_;
-  std::unique_ptr<LookTexture> texture_;
+  std::shared_ptr<const MipmappedPicture> image_;
+  Renderer::Done<SurfaceImageHandle> done_;
+  std::unique_ptr<SurfaceImageTexture> texture_;
 };
 
 class SurfaceMapUpload {

@@ -12,14 +12,14 @@ void View::drop_buffers() {
   picture = {};
   depth.reset();
   share.reset();
-  seen_marks = {};
+  seen_features = {};
   gbuffer_complete = picture_complete = false;
 }
 
 bool View::shows(const FrameRequest& request) const {
   return picture_complete && unit_mm == request.style.unit_mm &&
          background == request.style.background && background_rows == request.background_rows &&
-         layers == request.style.layers && marks == request.style.marks;
+         layers == request.style.layers && features == request.style.features;
 }
 
 Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& depths,

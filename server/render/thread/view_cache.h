@@ -4,7 +4,7 @@
 
 #include "render/renderer.h"
 #include "render/view/depth_buffers.h"
-#include "render/view/mark_pass.h"
+#include "render/view/feature_pass.h"
 
 namespace strata::render {
 
@@ -16,7 +16,7 @@ struct View {
   std::uint64_t last_used = 0;
 
   DepthKey key;
-  std::vector<LookStyle> looks;  // of the g-buffer, as is the lighting
+  std::vector<SurfaceImageStyle> images;  // of the g-buffer, as is the lighting
   Light lighting;
   bool gbuffer_complete = false;
   std::shared_ptr<DepthBuffer> depth;
@@ -30,8 +30,8 @@ struct View {
   Background background;
   glm::vec2 background_rows{0, 1};
   double unit_mm = 0;
-  MarksShown marks;
-  MarkBuffer seen_marks;  // the marks, as the camera of the g-buffer sees them
+  FeaturesShown features;
+  FeatureBuffer seen_features;  // the marks, as the camera of the g-buffer sees them
 
   bool has_buffers() const { return static_cast<bool>(picture); }
   void drop_buffers();

@@ -20,7 +20,7 @@ const char* light_define(LightMode mode) {
 }
 
 // A plane that faces the viewer is shown in middle grey, however low the light stands.
-constexpr double kRakingOnPlane = 0.5, kMostRaking = 3;
+constexpr double kRakingOnPlane = 0.5, kMaxRaking = 3;
 
 // Smaller triangles are lit at their vertices: who looks sees no difference, and a software
 // renderer draws a thirteenth faster.
@@ -60,7 +60,7 @@ Result<const gl::Program*> MeshPass::program(const MeshView& view, bool lit_at_v
   if (kind_ == Kind::gbuffer) {
     if (const char* light = light_define(view.light)) defines.emplace_back(light);
     if (lit_at_vertices) defines.emplace_back("LIT_VERTICES");
-    defines.push_back("LOOKS " + std::to_string(view.looks.size()));
+    defines.push_back("LOOKS " + std::to_string(view.images.size()));
   }
   if (const auto built = programs_.find(defines); built != programs_.end()) return &built->second;
   auto program = STRATA_TRY(gl::Program::load(
@@ -120,7 +120,7 @@ Result<bool> MeshPass::draw_slice(const MeshBuffers& mesh, const MeshView& view,
   uniforms_.upload_values(0, std::span(&view.uniforms, 1));
   uniforms_.bind_uniform(0);
   built->use();
-  for (std::size_t i = 0; i < view.looks.size(); ++i) view.looks[i]->bind(static_cast<GLuint>(i));
+  for (std::size_t i = 0; i < view.images.size(); ++i) view.images[i]->bind(static_cast<GLuint>(i));
   mesh.vertex_array().bind();
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer.id());
   glViewport(0, 0, target.depth.width(), target.depth.height());
@@ -162,7 +162,7 @@ MeshView mesh_view(const Camera& camera, const glm::dvec3& origin, const Light& 
     const glm::dvec3 towards = glm::normalize(light.direction);
     uniforms.key_light = direction(towards);
     uniforms.key_light.w =
-        static_cast<float>(std::min(kRakingOnPlane / std::max(towards.z, 1e-3), kMostRaking));
+        static_cast<float>(std::min(kRakingOnPlane / std::max(towards.z, 1e-3), kMaxRaking));
   }
   view.light = light.mode;
   uniforms.fill_light = direction({0.80, 0.05, 0.45});

@@ -26,8 +26,8 @@ struct MeshView {
   bool is_mirrored = false;
   // For the g-buffer.
   LightMode light = LightMode::museum;
-  // bottom to top, kMaxLooks at most, with their opacity in the uniforms
-  std::vector<const gl::Texture*> looks;
+  // bottom to top, kMaxSurfaceImages at most, with their opacity in the uniforms
+  std::vector<const gl::Texture*> images;
 };
 // For a model whose coordinates are relative to `origin`; without looks.
 MeshView mesh_view(const Camera& camera, const glm::dvec3& origin, const Light& light = {});

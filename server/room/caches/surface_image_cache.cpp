@@ -8,21 +8,21 @@
 #include "core/text/slug.h"
 #include "media/picture.h"
 #include "room/caches/await.h"
-#include "store/content/looks.h"
+#include "store/content/surface_images.h"
 
 namespace strata::room {
 namespace {
 
-constexpr int kLargestSide = 16384, kSmallestSide = 512;  // texels of a look on the GPU
-constexpr int kMostDivided = 8;                           // as libjpeg-turbo divides the sides
+constexpr int kMaxSide = 16384, kMinSide = 512;  // texels of a look on the GPU
+constexpr int kMaxDivided = 8;                   // as libjpeg-turbo divides the sides
 
 }  // namespace
 
-std::vector<LookView> looks_shown(const std::vector<Look>& by_order) {
-  std::vector<LookView> shown;
-  for (const Look& look : by_order)
-    if (look.visible) shown.push_back({look.id, look.opacity});
-  const std::size_t hidden = shown.size() - std::min(shown.size(), render::kMaxLooksShown);
+std::vector<SurfaceImageView> surface_images_shown(const std::vector<SurfaceImage>& by_order) {
+  std::vector<SurfaceImageView> shown;
+  for (const SurfaceImage& image : by_order)
+    if (image.visible) shown.push_back({image.id, image.opacity});
+  const std::size_t hidden = shown.size() - std::min(shown.size(), render::kMaxSurfaceImagesShown);
   shown.erase(shown.begin(), shown.begin() + static_cast<std::ptrdiff_t>(hidden));
   return shown;
 }
@@ -36,9 +36,9 @@ SurfaceImageCache::SurfaceImageCache(store::Store& store, render::Renderer& rend
       memory_(memory),
       ready_(std::move(ready)) {}
 
-void SurfaceImageCache::put(const Look& look) {
+void SurfaceImageCache::put(const SurfaceImage& image) {
   std::lock_guard lock(mutex_);
-  slots_[look.id].look = look;
+  slots_[image.id].image = image;
 }
 
 void SurfaceImageCache::drop(std::int64_t id) {
@@ -50,28 +50,28 @@ void SurfaceImageCache::drop(std::int64_t id) {
     gone = std::move(found->second);
     slots_.erase(found);
   }
-  if (gone.handle) renderer_.remove_look(gone.handle);
+  if (gone.handle) renderer_.remove_surface_image(gone.handle);
   for (const Loaded& loaded : gone.waiting)
     loaded(fail(ErrorCode::not_found, "No such look", "The look was deleted."));
 }
 
-std::vector<Look> SurfaceImageCache::all() const {
+std::vector<SurfaceImage> SurfaceImageCache::all() const {
   std::lock_guard lock(mutex_);
   return by_order();
 }
 
-std::vector<Look> SurfaceImageCache::by_order() const {
-  std::vector<Look> looks;
-  for (const auto& [id, slot] : slots_) looks.push_back(slot.look);
-  std::stable_sort(looks.begin(), looks.end(),
-                   [](const Look& a, const Look& b) { return a.order < b.order; });
-  return looks;
+std::vector<SurfaceImage> SurfaceImageCache::by_order() const {
+  std::vector<SurfaceImage> images;
+  for (const auto& [id, slot] : slots_) images.push_back(slot.image);
+  std::stable_sort(images.begin(), images.end(),
+                   [](const SurfaceImage& a, const SurfaceImage& b) { return a.order < b.order; });
+  return images;
 }
 
-std::optional<Look> SurfaceImageCache::find(const std::string& ref) const {
+std::optional<SurfaceImage> SurfaceImageCache::find(const std::string& ref) const {
   std::lock_guard lock(mutex_);
   for (const auto& [id, slot] : slots_)
-    if (is_all_digits(ref) ? std::to_string(id) == ref : slot.look.slug == ref) return slot.look;
+    if (is_all_digits(ref) ? std::to_string(id) == ref : slot.image.slug == ref) return slot.image;
   return std::nullopt;
 }
 
@@ -87,41 +87,41 @@ void SurfaceImageCache::stop() {
   for (auto& [id, slot] : slots_) slot.memory.reset();
 }
 
-std::vector<LookView> SurfaceImageCache::shown(
-    const std::optional<std::vector<LookView>>& wanted) const {
-  return wanted ? *wanted : looks_shown(by_order());
+std::vector<SurfaceImageView> SurfaceImageCache::shown(
+    const std::optional<std::vector<SurfaceImageView>>& wanted) const {
+  return wanted ? *wanted : surface_images_shown(by_order());
 }
 
-std::vector<render::LookStyle> SurfaceImageCache::styles(
-    const std::optional<std::vector<LookView>>& wanted) {
-  std::vector<render::LookStyle> styles;
+std::vector<render::SurfaceImageStyle> SurfaceImageCache::styles(
+    const std::optional<std::vector<SurfaceImageView>>& wanted) {
+  std::vector<render::SurfaceImageStyle> styles;
   std::vector<std::int64_t> missing;
   {
     std::lock_guard lock(mutex_);
-    for (const LookView& view : shown(wanted)) {
-      const auto slot = slots_.find(view.look_id);
+    for (const SurfaceImageView& view : shown(wanted)) {
+      const auto slot = slots_.find(view.surface_image_id);
       if (slot == slots_.end()) continue;
       if (slot->second.handle)
         styles.push_back({slot->second.handle, static_cast<float>(view.opacity)});
       else
-        missing.push_back(view.look_id);
+        missing.push_back(view.surface_image_id);
     }
   }
   for (const std::int64_t id : missing) request(id, {});
   return styles;
 }
 
-Result<std::vector<render::LookStyle>> SurfaceImageCache::wait(
-    const std::optional<std::vector<LookView>>& wanted) {
-  std::vector<LookView> views;
+Result<std::vector<render::SurfaceImageStyle>> SurfaceImageCache::wait(
+    const std::optional<std::vector<SurfaceImageView>>& wanted) {
+  std::vector<SurfaceImageView> views;
   {
     std::lock_guard lock(mutex_);
     views = shown(wanted);
   }
-  std::vector<render::LookStyle> styles;
-  for (const LookView& view : views) {
-    auto handle =
-        await<render::LookHandle>([&](auto done) { request(view.look_id, std::move(done)); });
+  std::vector<render::SurfaceImageStyle> styles;
+  for (const SurfaceImageView& view : views) {
+    auto handle = await<render::SurfaceImageHandle>(
+        [&](auto done) { request(view.surface_image_id, std::move(done)); });
     if (!handle) return tl::unexpected(handle.error());
     styles.push_back({*handle, static_cast<float>(view.opacity)});
   }
@@ -129,7 +129,7 @@ Result<std::vector<render::LookStyle>> SurfaceImageCache::wait(
 }
 
 void SurfaceImageCache::request(std::int64_t id, const Loaded& loaded) {
-  std::optional<Result<render::LookHandle>> known;
+  std::optional<Result<render::SurfaceImageHandle>> known;
   {
     std::lock_guard lock(mutex_);
     const auto found = slots_.find(id);
@@ -149,7 +149,7 @@ void SurfaceImageCache::request(std::int64_t id, const Loaded& loaded) {
     return;
   }
   const int gpu_side = renderer_.info().max_texture_size;
-  load(id, gpu_side > 0 ? std::min(kLargestSide, gpu_side) : kLargestSide);
+  load(id, gpu_side > 0 ? std::min(kMaxSide, gpu_side) : kMaxSide);
 }
 
 void SurfaceImageCache::load(std::int64_t id, int largest_side) {
@@ -164,7 +164,7 @@ Result<SurfaceImageCache::Bytes> SurfaceImageCache::encoded_bytes(std::int64_t i
     if (const auto found = slots_.find(id); found != slots_.end() && found->second.encoded)
       return found->second.encoded;
   }
-  auto bytes = STRATA_TRY(store_.looks().picture(id));
+  auto bytes = STRATA_TRY(store_.surface_images().picture(id));
   auto encoded = std::make_shared<const std::vector<std::uint8_t>>(std::move(bytes));
   std::lock_guard lock(mutex_);
   if (const auto found = slots_.find(id); found != slots_.end()) found->second.encoded = encoded;
@@ -183,13 +183,13 @@ Result<int> SurfaceImageCache::reserve_pixels(std::int64_t id, const PictureInfo
       if (found != slots_.end() && !stopped_) found->second.memory = std::move(*share);
       return divisor;
     }
-    if (info.format != PictureFormat::jpeg || divisor == kMostDivided)
+    if (info.format != PictureFormat::jpeg || divisor == kMaxDivided)
       return tl::unexpected(share.error());
   }
 }
 
-Result<std::shared_ptr<const render::LookImage>> SurfaceImageCache::read(std::int64_t id,
-                                                                         int largest_side) {
+Result<std::shared_ptr<const render::MipmappedPicture>> SurfaceImageCache::read(std::int64_t id,
+                                                                                int largest_side) {
   const auto bytes = STRATA_TRY(encoded_bytes(id));
   const std::vector<std::uint8_t>& encoded = *bytes;
   const auto info = STRATA_TRY(inspect_picture(encoded));
@@ -197,12 +197,12 @@ Result<std::shared_ptr<const render::LookImage>> SurfaceImageCache::read(std::in
   auto picture = STRATA_TRY(
       divisor == 1 ? decode_picture(encoded)
                    : decode_coarse(encoded, std::max(info.width, info.height) / divisor));
-  return std::make_shared<const render::LookImage>(render::make_look_image(
-      std::move(picture.rgba), picture.width, picture.height, largest_side));
+  return std::make_shared<const render::MipmappedPicture>(
+      render::make_mipmaps(std::move(picture.rgba), picture.width, picture.height, largest_side));
 }
 
 void SurfaceImageCache::add(std::int64_t id, int largest_side,
-                            const Result<std::shared_ptr<const render::LookImage>>& image) {
+                            const Result<std::shared_ptr<const render::MipmappedPicture>>& image) {
   if (!image) return finish(id, tl::unexpected(image.error()));
   render::ModelHandle model;
   {
@@ -210,27 +210,27 @@ void SurfaceImageCache::add(std::int64_t id, int largest_side,
     if (stopped_) return;
     model = model_;
   }
-  renderer_.add_look(model, *image,
-                     [self = shared_from_this(), id, model,
-                      largest_side](const Result<render::LookHandle>& handle) {
-                       self->on_added(id, model, largest_side, handle);
-                     });
+  renderer_.add_surface_image(model, *image,
+                              [self = shared_from_this(), id, model,
+                               largest_side](const Result<render::SurfaceImageHandle>& handle) {
+                                self->on_added(id, model, largest_side, handle);
+                              });
 }
 
 void SurfaceImageCache::on_added(std::int64_t id, render::ModelHandle model, int largest_side,
-                                 const Result<render::LookHandle>& handle) {
+                                 const Result<render::SurfaceImageHandle>& handle) {
   {
     std::lock_guard lock(mutex_);
     if (stopped_) return;
     // made for a context that is lost
     if (model != model_ && slots_.contains(id)) return load(id, largest_side);
   }
-  if (!handle && handle.error().code == ErrorCode::out_of_memory && largest_side > kSmallestSide)
+  if (!handle && handle.error().code == ErrorCode::out_of_memory && largest_side > kMinSide)
     return load(id, largest_side / 2);
   finish(id, handle);
 }
 
-void SurfaceImageCache::finish(std::int64_t id, const Result<render::LookHandle>& handle) {
+void SurfaceImageCache::finish(std::int64_t id, const Result<render::SurfaceImageHandle>& handle) {
   std::vector<Loaded> waiting;
   bool kept = false;
   {
@@ -246,7 +246,7 @@ void SurfaceImageCache::finish(std::int64_t id, const Result<render::LookHandle>
         slot.damage = handle.error();
     }
   }
-  if (handle && !kept) renderer_.remove_look(*handle);  // deleted meanwhile
+  if (handle && !kept) renderer_.remove_surface_image(*handle);  // deleted meanwhile
   if (!handle)
     log::warning("look " + std::to_string(id) + " cannot be shown: " + handle.error().detail);
   for (const Loaded& loaded : waiting) loaded(handle);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/memory_ledger.h"
-#include "domain/scene/look.h"
+#include "domain/scene/surface_image.h"
 #include "media/picture.h"
 #include "render/renderer.h"
 #include "room/view_settings.h"
@@ -20,7 +20,7 @@ namespace strata::room {
 
 // The looks that are visible by default, bottom to top, of all by order: the topmost where a view
 // takes no more.
-std::vector<LookView> looks_shown(const std::vector<Look>& by_order);
+std::vector<SurfaceImageView> surface_images_shown(const std::vector<SurfaceImage>& by_order);
 
 // The looks of an open model. A look's texture is made when a view first shows it, on a worker, and
 // kept while the room is open; its encoded bytes are kept with it, so that it comes back after a
@@ -34,10 +34,10 @@ class SurfaceImageCache : public std::enable_shared_from_this<SurfaceImageCache>
                     boost::asio::thread_pool& workers, MemoryLedger& memory,
                     std::function<void()> ready);
 
-  void put(const Look& look);
+  void put(const SurfaceImage& image);
   void drop(std::int64_t id);
-  std::vector<Look> all() const;                           // by order
-  std::optional<Look> find(const std::string& ref) const;  // id or slug
+  std::vector<SurfaceImage> all() const;                           // by order
+  std::optional<SurfaceImage> find(const std::string& ref) const;  // id or slug
   // Forgets the textures, which went with the old handle; they are made again when they are asked
   // for.
   void set_model(render::ModelHandle model);
@@ -45,37 +45,40 @@ class SurfaceImageCache : public std::enable_shared_from_this<SurfaceImageCache>
 
   // What a view is to show of `wanted` (nothing: what is visible by default, the topmost where
   // there are too many). Textures that are not there yet are left out, and on their way.
-  std::vector<render::LookStyle> styles(const std::optional<std::vector<LookView>>& wanted);
+  std::vector<render::SurfaceImageStyle> styles(
+      const std::optional<std::vector<SurfaceImageView>>& wanted);
   // The same, once all are there. Blocks.
-  Result<std::vector<render::LookStyle>> wait(const std::optional<std::vector<LookView>>& wanted);
+  Result<std::vector<render::SurfaceImageStyle>> wait(
+      const std::optional<std::vector<SurfaceImageView>>& wanted);
 
  private:
   using Bytes = std::shared_ptr<const std::vector<std::uint8_t>>;
-  using Loaded = std::function<void(const Result<render::LookHandle>&)>;
+  using Loaded = std::function<void(const Result<render::SurfaceImageHandle>&)>;
   struct Slot {
-    Look look;
+    SurfaceImage image;
     Bytes encoded;
-    render::LookHandle handle = 0;
+    render::SurfaceImageHandle handle = 0;
     bool loading = false;
     MemoryLedger::Share memory;   // of its pixels while it loads
     std::optional<Error> damage;  // the picture cannot be shown, ever
     std::vector<Loaded> waiting;
   };
   // under the mutex
-  std::vector<Look> by_order() const;
+  std::vector<SurfaceImage> by_order() const;
   // under the mutex
-  std::vector<LookView> shown(const std::optional<std::vector<LookView>>& wanted) const;
+  std::vector<SurfaceImageView> shown(
+      const std::optional<std::vector<SurfaceImageView>>& wanted) const;
   void request(std::int64_t id, const Loaded& loaded);
   void load(std::int64_t id, int largest_side);
   Result<Bytes> encoded_bytes(std::int64_t id);
   // what its sides are to be divided by
   Result<int> reserve_pixels(std::int64_t id, const PictureInfo& info);
-  Result<std::shared_ptr<const render::LookImage>> read(std::int64_t id, int largest_side);
+  Result<std::shared_ptr<const render::MipmappedPicture>> read(std::int64_t id, int largest_side);
   void add(std::int64_t id, int largest_side,
-           const Result<std::shared_ptr<const render::LookImage>>& image);
+           const Result<std::shared_ptr<const render::MipmappedPicture>>& image);
   void on_added(std::int64_t id, render::ModelHandle model, int largest_side,
-                const Result<render::LookHandle>& handle);
-  void finish(std::int64_t id, const Result<render::LookHandle>& handle);
+                const Result<render::SurfaceImageHandle>& handle);
+  void finish(std::int64_t id, const Result<render::SurfaceImageHandle>& handle);
 
   store::Store& store_;
   render::Renderer& renderer_;

@@ -10,8 +10,8 @@
 #include "room/pipeline/edit_pipeline.h"
 #include "room/pipeline/expression_binding.h"
 #include "room/pipeline/strand.h"
-#include "store/content/bin.h"
 #include "store/content/layers.h"
+#include "store/content/trash.h"
 #include "store/store.h"
 
 namespace strata::room {
@@ -42,7 +42,8 @@ Result<Layer> OpenRoom::LayersPart::find(const std::string& ref) const {
   return room_.state(ref).map([](const LayerState& s) { return s.layer; });
 }
 
-Result<Layer> OpenRoom::LayersPart::create(Layer layer, const store::FirstAnswer<Layer>& answer,
+Result<Layer> OpenRoom::LayersPart::create(Layer layer,
+                                           const store::IdempotentResponse<Layer>& answer,
                                            std::vector<Column> columns) {
   layer.model_id = room_.model_id_;
   STRATA_TRY(check_layer(layer, room_.model()));
@@ -73,7 +74,8 @@ Result<Layer> OpenRoom::LayersPart::create(Layer layer, const store::FirstAnswer
   return created;
 }
 
-Result<Layer> OpenRoom::LayersPart::update(Layer layer, const store::FirstAnswer<Layer>& answer) {
+Result<Layer> OpenRoom::LayersPart::update(Layer layer,
+                                           const store::IdempotentResponse<Layer>& answer) {
   STRATA_TRY(check_layer(layer, room_.model()));
   auto updated = STRATA_TRY(room_.services_.store.layers().update(std::move(layer), answer));
   bool lock_falls = false;
@@ -134,7 +136,7 @@ void OpenRoom::LayersPart::outdate(const std::function<bool(const LayerFormula&)
 
 void OpenRoom::LayersPart::records_changed(std::int64_t table_id) {
   room_.record_colors_->records_changed(table_id);
-  room_.record_marks_->records_changed(table_id);
+  room_.record_features_->records_changed(table_id);
   // Layers that take their colours from the terms of the table.
   for (const Layer& layer : room_.layer_list()) {
     if (!layer.palette_of_terms || layer.table != table_id) continue;
@@ -166,7 +168,7 @@ Result<void> OpenRoom::LayersPart::check_expression(const Expression& expression
 }
 
 Result<Layer> OpenRoom::LayersPart::widen(const Layer& layer, ValueType type,
-                                          const store::FirstAnswer<Layer>& answer) {
+                                          const store::IdempotentResponse<Layer>& answer) {
   if (layer.formula || !widens_to(layer.type, type))
     return fail(
         ErrorCode::invalid, "Type not usable",
@@ -208,15 +210,16 @@ Result<Layer> OpenRoom::LayersPart::widen(const Layer& layer, ValueType type,
   });
 }
 
-Result<void> OpenRoom::LayersPart::erase(std::int64_t id, const store::FirstAnswer<>& answer) {
+Result<void> OpenRoom::LayersPart::erase(std::int64_t id,
+                                         const store::IdempotentResponse<>& answer) {
   return unload(id,
                 [this, id, answer] { return room_.services_.store.layers().remove(id, answer); });
 }
 
 Result<void> OpenRoom::LayersPart::put_in_trash(std::int64_t id,
-                                                const store::FirstAnswer<>& answer) {
+                                                const store::IdempotentResponse<>& answer) {
   return unload(id,
-                [this, id, answer] { return room_.services_.store.bin().put_layer(id, answer); });
+                [this, id, answer] { return room_.services_.store.trash().put_layer(id, answer); });
 }
 
 Result<void> OpenRoom::LayersPart::unload(std::int64_t id,
@@ -249,12 +252,12 @@ Result<void> OpenRoom::LayersPart::unload(std::int64_t id,
   });
 }
 
-Result<store::BinRestored> OpenRoom::LayersPart::restore(
-    const store::BinEntry& entry, const store::FirstAnswer<store::BinRestored>& answer) {
+Result<store::TrashRestored> OpenRoom::LayersPart::restore(
+    const store::TrashEntry& entry, const store::IdempotentResponse<store::TrashRestored>& answer) {
   // In the order of edits: the journal's numbers stay as they are.
-  auto restored =
-      room_.exclusively<store::BinRestored>([this, entry, answer]() -> Result<store::BinRestored> {
-        auto back = STRATA_TRY(room_.services_.store.bin().restore(entry, answer));
+  auto restored = room_.exclusively<store::TrashRestored>(
+      [this, entry, answer]() -> Result<store::TrashRestored> {
+        auto back = STRATA_TRY(room_.services_.store.trash().restore(entry, answer));
         if (auto known = load(entry.id); !known) {
           // It is there, as the database says: the room reads everything again until it has it.
           log::warning("layer " + std::to_string(entry.id) +

@@ -14,15 +14,16 @@ class OpenRoom::LayersPart final : public Layers {
   explicit LayersPart(OpenRoom& room) : room_(room) {}
   std::vector<Layer> all() const override;
   Result<Layer> find(const std::string& ref) const override;
-  Result<Layer> create(Layer layer, const store::FirstAnswer<Layer>& answer,
+  Result<Layer> create(Layer layer, const store::IdempotentResponse<Layer>& answer,
                        std::vector<Column> columns) override;
-  Result<Layer> update(Layer layer, const store::FirstAnswer<Layer>& answer) override;
+  Result<Layer> update(Layer layer, const store::IdempotentResponse<Layer>& answer) override;
   Result<Layer> widen(const Layer& layer, ValueType type,
-                      const store::FirstAnswer<Layer>& answer) override;
-  Result<void> erase(std::int64_t id, const store::FirstAnswer<>& answer) override;
-  Result<void> put_in_trash(std::int64_t id, const store::FirstAnswer<>& answer) override;
-  Result<store::BinRestored> restore(const store::BinEntry& entry,
-                                     const store::FirstAnswer<store::BinRestored>& answer) override;
+                      const store::IdempotentResponse<Layer>& answer) override;
+  Result<void> erase(std::int64_t id, const store::IdempotentResponse<>& answer) override;
+  Result<void> put_in_trash(std::int64_t id, const store::IdempotentResponse<>& answer) override;
+  Result<store::TrashRestored> restore(
+      const store::TrashEntry& entry,
+      const store::IdempotentResponse<store::TrashRestored>& answer) override;
   Result<Layer> mark_computed(std::int64_t id, const std::string& expression, std::int64_t sequence,
                               const std::map<std::int64_t, std::int64_t>& tables) override;
   void records_changed(std::int64_t table_id) override;

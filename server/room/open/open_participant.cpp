@@ -38,11 +38,11 @@ OpenParticipant::View* OpenParticipant::view(std::uint32_t view_id, bool make) {
 
 render::ViewStyle OpenParticipant::style(std::uint32_t view_id, View& view) const {
   render::ViewStyle style;
-  style.looks = room_->surface_image_cache().styles(view.looks);
+  style.images = room_->surface_image_cache().styles(view.images);
   style.light = view.light;
   style.background = view.background;
   style.unit_mm = room_->model().metres() * 1000;
-  std::vector<LayerMarks> marked;
+  std::vector<LayerFeatures> marked;
   std::vector<LayerState> states = room_->layer_states();
   sort_as_shown(states, [&](std::int64_t id) {
     const auto own = view.overrides.find(id);
@@ -58,14 +58,14 @@ render::ViewStyle OpenParticipant::style(std::uint32_t view_id, View& view) cons
                                    static_cast<float>(mine.opacity.value_or(state.layer.opacity))};
     add_styles(shown, state.waiting(), style.layers);
     if (!state.layer.table) continue;
-    if (auto marks = room_->record_marks().find(*state.layer.table, sight_of(role())))
-      marked.push_back({std::move(marks), shown.palette, shown.opacity});
+    if (auto features = room_->record_features().find(*state.layer.table, sight_of(role())))
+      marked.push_back({std::move(features), shown.palette, shown.opacity});
   }
   if (marked != view.marked) {
-    view.marks = room_->record_marks().shown(marked);
+    view.features = room_->record_features().shown(marked);
     view.marked = std::move(marked);
   }
-  style.marks = view.marks;
+  style.features = view.features;
   return style;
 }
 
@@ -113,7 +113,7 @@ Result<void> OpenParticipant::show(std::uint32_t view_id, ViewSettings settings)
   v->palettes.clear();
   const auto before = std::exchange(v->highlights, {});
   v->told.clear();
-  v->looks = std::move(settings.looks);
+  v->images = std::move(settings.images);
   v->light = settings.light;
   v->background = settings.background;
   for (auto& own : settings.layers) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/uuid.h"
-#include "room/caches/record_marks.h"
+#include "room/caches/record_features.h"
 #include "room/listener.h"
 #include "room/participants.h"
 #include "stream/viewer.h"
@@ -50,11 +50,11 @@ class OpenParticipant final : public Participant {
     std::map<std::int64_t, std::shared_ptr<const Palette>> palettes;
     std::map<std::int64_t, std::shared_ptr<const Highlight>> highlights;
     std::map<std::int64_t, std::shared_ptr<const Palette>>
-        by_record;                   // last made from records, drawn until the next is there
-    std::vector<LayerMarks> marked;  // what `marks` was made of
-    render::MarksShown marks;
+        by_record;                      // last made from records, drawn until the next is there
+    std::vector<LayerFeatures> marked;  // what `marks` was made of
+    render::FeaturesShown features;
     std::set<std::shared_ptr<const Error>> told;  // why one cannot be made
-    std::optional<std::vector<LookView>> looks;
+    std::optional<std::vector<SurfaceImageView>> images;
     Light light;
     Background background;
   };

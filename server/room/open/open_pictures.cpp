@@ -78,7 +78,7 @@ Result<void> OpenRoom::PicturesPart::draw(const PictureRequest& asked,
   Borrowed borrowed{room_.services_.renderer, 0, {}};
   const auto model = room_.model_handle();
   render::FrameRequest request;
-  std::vector<LayerMarks> marked;
+  std::vector<LayerFeatures> marked;
   const auto borrow = [&](ValueType type, int resolution,
                           TileMap tiles) -> Result<render::LayerHandle> {
     auto mirror = std::make_shared<TileMirror>(type, resolution);
@@ -100,8 +100,8 @@ Result<void> OpenRoom::PicturesPart::draw(const PictureRequest& asked,
       waiting.reset();
       if (const auto then = asked.provisional.find(item.layer.id);
           then != asked.provisional.end()) {
-        auto marks = STRATA_TRY(borrow(ValueType::u8, item.layer.resolution, then->second));
-        waiting = marks;
+        auto features = STRATA_TRY(borrow(ValueType::u8, item.layer.resolution, then->second));
+        waiting = features;
       }
     }
     const LayerView& mine = asked.shown.of(item.layer.id);
@@ -118,21 +118,21 @@ Result<void> OpenRoom::PicturesPart::draw(const PictureRequest& asked,
     if (!item.layer.table) continue;
     // After the newest edit comes now: records that changed since are of that state, too.
     const bool is_past = asked.at && *asked.at < room_.durable_;
-    auto marks = is_past ? room_.record_marks_->when(*item.layer.table, sight, *asked.at)
-                         : room_.record_marks_->newest(*item.layer.table, sight);
-    if (!marks) return tl::unexpected(marks.error());
-    if (*marks) marked.push_back({std::move(*marks), style.palette, style.opacity});
+    auto features = is_past ? room_.record_features_->when(*item.layer.table, sight, *asked.at)
+                            : room_.record_features_->newest(*item.layer.table, sight);
+    if (!features) return tl::unexpected(features.error());
+    if (*features) marked.push_back({std::move(*features), style.palette, style.opacity});
   }
   auto view = await<render::ViewHandle>(
       [&](auto done) { room_.services_.renderer.add_view(model, std::move(done)); });
   if (!view) return tl::unexpected(room_.gpu_problem(view.error()));
   borrowed.view = request.view = *view;
-  auto looks = room_.surface_image_cache_->wait(asked.shown.looks);
-  if (!looks) return tl::unexpected(room_.gpu_problem(looks.error()));
-  request.style.looks = std::move(*looks);
+  auto images = room_.surface_image_cache_->wait(asked.shown.images);
+  if (!images) return tl::unexpected(room_.gpu_problem(images.error()));
+  request.style.images = std::move(*images);
   request.style.light = asked.shown.light;
   request.style.background = asked.shown.background;
-  request.style.marks = show_marks(marked);
+  request.style.features = show_features(marked);
   request.style.unit_mm = room_.model().metres() * 1000;
   for (std::size_t i = 0; i < parts.size(); ++i)
     STRATA_TRY(draw_in_bands(request, parts[i], i, see));

@@ -7,15 +7,15 @@
 #include "core/text/slug.h"
 #include "room/open/open_edits.h"
 #include "room/open/open_layers.h"
-#include "room/open/open_looks.h"
 #include "room/open/open_participants.h"
 #include "room/open/open_pictures.h"
 #include "room/open/open_queries.h"
 #include "room/open/open_surface.h"
+#include "room/open/open_surface_images.h"
 #include "room/pipeline/gpu_problem.h"
 #include "room/pipeline/strand.h"
-#include "store/content/looks.h"
 #include "store/content/models.h"
+#include "store/content/surface_images.h"
 #include "store/journal/journal_reads.h"
 #include "store/store.h"
 
@@ -38,10 +38,11 @@ OpenRoom::OpenRoom(const RoomServices& services, Model model, render::ModelGeome
       queries_part_(std::make_unique<QueriesPart>(*this)),
       surface_part_(std::make_unique<SurfacePart>(*this)),
       pictures_part_(std::make_unique<PicturesPart>(*this)),
-      looks_part_(std::make_unique<LooksPart>(*this)),
+      surface_images_part_(std::make_unique<SurfaceImagesPart>(*this)),
       participants_part_(std::make_unique<ParticipantsPart>(*this)) {
-  parts_ = {layers_part_.get(),   edits_part_.get(), queries_part_.get(),     surface_part_.get(),
-            pictures_part_.get(), looks_part_.get(), participants_part_.get()};
+  parts_ = {layers_part_.get(),      edits_part_.get(),    queries_part_.get(),
+            surface_part_.get(),     pictures_part_.get(), surface_images_part_.get(),
+            participants_part_.get()};
 }
 
 OpenRoom::~OpenRoom() = default;
@@ -57,7 +58,7 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomServices& services,
   room->geometry_share_ = std::move(share);
   auto journal = read_journal(services.store, room->model_id_, {});
   if (!journal) return tl::unexpected(journal.error());
-  auto looks = STRATA_TRY(services.store.looks().of_model(room->model_id_));
+  auto images = STRATA_TRY(services.store.surface_images().of_model(room->model_id_));
   for (LayerState& state : journal->layers) {
     const std::int64_t id = state.layer.id;
     room->layers_.emplace(id, std::move(state));
@@ -80,10 +81,10 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomServices& services,
   room->surface_image_cache_ = std::make_shared<SurfaceImageCache>(
       services.store, services.renderer, services.workers, services.memory, restyle);
   room->record_colors_ = std::make_shared<RecordColors>(services.store, services.workers, restyle);
-  room->record_marks_ =
-      std::make_shared<RecordMarks>(services.store, services.workers, room->id(), restyle);
+  room->record_features_ =
+      std::make_shared<RecordFeatures>(services.store, services.workers, room->id(), restyle);
   room->surface_image_cache_->set_model(gpu->model);
-  for (const Look& look : looks) room->surface_image_cache_->put(look);
+  for (const SurfaceImage& image : images) room->surface_image_cache_->put(image);
   room->sequence_ = room->durable_ = journal->last_sequence;
   room->pipeline_ = std::make_shared<EditPipeline>(
       EditPipeline::Parts{services.store, services.writer, services.renderer, services.workers,
@@ -162,7 +163,7 @@ render::ModelHandle OpenRoom::model_handle() const {
   return model_handle_;
 }
 
-Result<Model> OpenRoom::update_model(Model model, const store::FirstAnswer<Model>& answer) {
+Result<Model> OpenRoom::update_model(Model model, const store::IdempotentResponse<Model>& answer) {
   auto updated = STRATA_TRY(services_.store.models().update(std::move(model), answer));
   run_on(strand_, [&] {
     {
@@ -271,7 +272,7 @@ void OpenRoom::close(const Error& why) {
   maps_->stop();
   surface_image_cache_->stop();
   record_colors_->stop();
-  record_marks_->stop();
+  record_features_->stop();
   surface_lookup_->stop();
   run_on(strand_, [&] {
     recovery_.closed = true;

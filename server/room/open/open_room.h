@@ -19,7 +19,7 @@
 #include "domain/scene/model.h"
 #include "room/at.h"
 #include "room/caches/record_colors.h"
-#include "room/caches/record_marks.h"
+#include "room/caches/record_features.h"
 #include "room/caches/surface_image_cache.h"
 #include "room/caches/surface_lookup.h"
 #include "room/caches/surface_maps.h"
@@ -62,7 +62,7 @@ class OpenRoom final : public Room,
   ~OpenRoom() override;
 
   Model model() const override;
-  Result<Model> update_model(Model model, const store::FirstAnswer<Model>& answer) override;
+  Result<Model> update_model(Model model, const store::IdempotentResponse<Model>& answer) override;
   Result<void> settle();  // returns when every edit before is durable; blocks
 
   // --- PipelineHost (on the strand)
@@ -86,7 +86,7 @@ class OpenRoom final : public Room,
   stream::StreamContext stream_context() const { return services_.stream; }
   SurfaceImageCache& surface_image_cache() const { return *surface_image_cache_; }
   RecordColors& record_colors() const { return *record_colors_; }
-  RecordMarks& record_marks() const { return *record_marks_; }
+  RecordFeatures& record_features() const { return *record_features_; }
   std::vector<LayerState> layer_states() const;  // in drawing order
   std::optional<LayerState> layer_state(std::int64_t id) const;
 
@@ -114,7 +114,7 @@ class OpenRoom final : public Room,
   class QueriesPart;
   class SurfacePart;
   class PicturesPart;
-  class LooksPart;
+  class SurfaceImagesPart;
 
   // Runs `work` on a worker when every edit before it is durable. No edit starts meanwhile, and no
   // recovery. Blocks.
@@ -146,7 +146,7 @@ class OpenRoom final : public Room,
   const std::shared_ptr<SurfaceMaps> maps_;
   std::shared_ptr<SurfaceImageCache> surface_image_cache_;
   std::shared_ptr<RecordColors> record_colors_;
-  std::shared_ptr<RecordMarks> record_marks_;
+  std::shared_ptr<RecordFeatures> record_features_;
   const std::shared_ptr<SurfaceLookup> surface_lookup_;
   std::shared_ptr<EditPipeline> pipeline_;
 
@@ -181,7 +181,7 @@ class OpenRoom final : public Room,
   const std::unique_ptr<QueriesPart> queries_part_;
   const std::unique_ptr<SurfacePart> surface_part_;
   const std::unique_ptr<PicturesPart> pictures_part_;
-  const std::unique_ptr<LooksPart> looks_part_;
+  const std::unique_ptr<SurfaceImagesPart> surface_images_part_;
   const std::unique_ptr<ParticipantsPart> participants_part_;
 };
 

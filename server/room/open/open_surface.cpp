@@ -3,7 +3,7 @@
 
 #include "domain/layers/mask_texels.h"
 #include "mesh/texels/slot_bits.h"
-#include "query/maps/dabs.h"
+#include "query/maps/point_splats.h"
 #include "room/open/open_surface.h"
 #include "room/pipeline/gpu_problem.h"
 #include "room/pipeline/seen_texels.h"
@@ -36,15 +36,15 @@ Camera camera_along(const glm::dvec3& direction, const mesh::Geometry& geometry)
 
 }  // namespace
 
-Result<TileMap> OpenRoom::SurfacePart::dabs(const Layer& layer,
-                                            const std::vector<PlacedValue>& values, double radius,
-                                            double tolerance) {
+Result<TileMap> OpenRoom::SurfacePart::point_splats(const Layer& layer,
+                                                    const std::vector<PlacedValue>& values,
+                                                    double radius, double tolerance) {
   room_.touch();
   const auto map = room_.maps_->wait(layer.resolution);
   if (!map) return tl::unexpected(room_.gpu_problem(map.error()));
   const auto graph = STRATA_TRY(room_.surface_lookup_->graph(**map));
   const auto tree = room_.surface_lookup_->tree();
-  std::vector<query::Dab> dabs;
+  std::vector<query::PointSplat> point_splats;
   for (const PlacedValue& value : values) {
     const auto hit = tree->nearest(glm::vec3(value.world - room_.geometry_->origin),
                                    static_cast<float>(tolerance));
@@ -55,10 +55,10 @@ Result<TileMap> OpenRoom::SurfacePart::dabs(const Layer& layer,
                       ": no surface is as near as the tolerance allows. Check unit and " +
                       "coordinates, or allow more.",
                   "body");
-    dabs.push_back({*texel, hit->position, value.bits});
+    point_splats.push_back({*texel, hit->position, value.bits});
   }
-  auto painted =
-      STRATA_TRY(query::paint_dabs(**map, *graph, dabs, static_cast<float>(radius), layer.type));
+  auto painted = STRATA_TRY(query::paint_point_splats(**map, *graph, point_splats,
+                                                      static_cast<float>(radius), layer.type));
   return as_tile_map(std::move(painted));
 }
 

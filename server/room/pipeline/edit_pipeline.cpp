@@ -205,7 +205,7 @@ void EditPipeline::on_known(const std::vector<store::JournalRow>& known) {
       continue;
     }
     if (row != known.end()) {
-      const EditAnswer first = first_answer(*row);
+      const EditAnswer first = idempotent_response(*row);
       if (item.applied) item.applied(first);
       answer(item.request.id, item.saved, first);
       continue;

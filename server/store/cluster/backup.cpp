@@ -25,7 +25,7 @@ using nlohmann::json;
 constexpr int kFormat = 1;
 constexpr const char* kDump = "database.dump";
 constexpr const char* kManifest = "manifest.json";
-constexpr std::uintmax_t kLargestManifest = 64u << 20;
+constexpr std::uintmax_t kMaxManifest = 64u << 20;
 constexpr auto kGlance = std::chrono::milliseconds(100);
 
 Error damaged(const fs::path& folder, const std::string& why) {
@@ -238,7 +238,7 @@ Result<BackupFacts> read_manifest(const fs::path& folder) {
     return fail(
         ErrorCode::not_found, "No backup",
         "There is no " + file.string() + ": name a folder that `strata backup` has written.");
-  if (size > kLargestManifest) return tl::unexpected(damaged(folder, "the manifest is too large."));
+  if (size > kMaxManifest) return tl::unexpected(damaged(folder, "the manifest is too large."));
   std::ifstream in(file);
   const json manifest = json::parse(in, nullptr, false);
   try {

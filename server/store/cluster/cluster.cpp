@@ -32,13 +32,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr std::size_t kLongestSocketPath = 107;  // sockaddr_un
-constexpr std::uintmax_t kLargestLog = 16u << 20;
+constexpr std::size_t kMaxSocketPathLength = 107;  // sockaddr_un
+constexpr std::uintmax_t kMaxLog = 16u << 20;
 
 // Where the socket lies: in the folder, or in a short one where its path would be too long for a
 // socket.
 fs::path socket_folder(const fs::path& folder) {
-  if ((folder / ".s.PGSQL.65535.lock").string().size() <= kLongestSocketPath) return folder;
+  if ((folder / ".s.PGSQL.65535.lock").string().size() <= kMaxSocketPathLength) return folder;
   return "/tmp/strata-" + to_hex(sha256(folder.string())).substr(0, 16);
 }
 
@@ -170,7 +170,7 @@ struct Cluster::Impl {
         return fail(ErrorCode::internal, "Socket folder not usable",
                     sockets.string() + " belongs to someone else. Remove it.");
     }
-    if (fs::exists(log_file, error) && fs::file_size(log_file, error) > kLargestLog)
+    if (fs::exists(log_file, error) && fs::file_size(log_file, error) > kMaxLog)
       fs::rename(log_file, folder / "postgres.log.1", error);
 
     const int major = version_of(data);

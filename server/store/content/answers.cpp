@@ -5,7 +5,7 @@ namespace strata::store {
 namespace {
 
 Result<void> check_key(const std::string& key) {
-  if (key.empty() || key.size() > kLongestName)
+  if (key.empty() || key.size() > kMaxNameLength)
     return fail(ErrorCode::malformed, "Bad Idempotency-Key",
                 "An Idempotency-Key has 1 to 255 bytes.", "Idempotency-Key");
   return check_text(key, "Idempotency-Key");

@@ -10,15 +10,15 @@
 namespace strata::store {
 namespace {
 
-constexpr std::size_t kLongestText = 10'000;  // characters
+constexpr std::size_t kMaxTextLength = 10'000;  // characters
 
-// Who sees the layer that the thread is about, in the Bin or not, sees the thread. Also of a
+// Who sees the layer that the thread is about, in the Trash or not, sees the thread. Also of a
 // comment that a statement has just made.
 #define STRATA_COMMENT_VISIBILITY                                                                                         \
   "CASE WHEN c.thread_id IS NULL THEN coalesce((SELECT visibility FROM all_layers WHERE id = c.layer_id), c.visibility) " \
   "ELSE (SELECT coalesce(l.visibility, f.visibility) FROM comments f LEFT JOIN all_layers l ON l.id = f.layer_id "        \
   "WHERE f.id = c.thread_id) END"
-// One in the Bin is not told, and is there again when it comes back.
+// One in the Trash is not told, and is there again when it comes back.
 #define STRATA_COMMENT_LAYER "(SELECT id FROM layers WHERE id = c.layer_id) AS layer_id"
 #define STRATA_COMMENT_COLUMNS                                                 \
   "c.id, c.model_id, c.thread_id, c.position, c.normal, " STRATA_COMMENT_LAYER \
@@ -69,9 +69,9 @@ Result<void> check_words(const std::string& text) {
   const auto begins_character = [](char c) {
     return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
   };
-  if (static_cast<std::size_t>(std::ranges::count_if(text, begins_character)) > kLongestText)
+  if (static_cast<std::size_t>(std::ranges::count_if(text, begins_character)) > kMaxTextLength)
     return fail(ErrorCode::invalid, "Text too long",
-                "`text` has at most " + std::to_string(kLongestText) + " characters.", "text");
+                "`text` has at most " + std::to_string(kMaxTextLength) + " characters.", "text");
   return {};
 }
 
@@ -165,7 +165,8 @@ Result<Comment> Comments::comment(std::int64_t id, Role seen_by) {
   return found;
 }
 
-Result<Comment> Comments::create(const Comment& comment, const FirstAnswer<Comment>& answer) {
+Result<Comment> Comments::create(const Comment& comment,
+                                 const IdempotentResponse<Comment>& answer) {
   STRATA_TRY(check_words(comment.text));
   STRATA_TRY(check_text(comment.user, "user"));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Comment> {
@@ -180,9 +181,9 @@ Result<Comment> Comments::create(const Comment& comment, const FirstAnswer<Comme
     if (model.rows() == 0) return no_such("model", std::to_string(model_id));
     auto count = STRATA_TRY(connection.query("SELECT count(*) FROM comments WHERE model_id = $1",
                                              Params().integer(model_id)));
-    if (count.integer(0, 0) >= kMostComments)
+    if (count.integer(0, 0) >= kMaxComments)
       return fail(ErrorCode::conflict, "Too many comments",
-                  "A model holds at most " + std::to_string(kMostComments) +
+                  "A model holds at most " + std::to_string(kMaxComments) +
                       " comments. Delete some first.");
     PgArray position(oid::kFloat8), normal(oid::kFloat8);
     if (comment.place) {
@@ -206,7 +207,8 @@ Result<Comment> Comments::create(const Comment& comment, const FirstAnswer<Comme
   });
 }
 
-Result<Comment> Comments::update(const Comment& comment, const FirstAnswer<Comment>& answer) {
+Result<Comment> Comments::update(const Comment& comment,
+                                 const IdempotentResponse<Comment>& answer) {
   if (!comment.deleted) STRATA_TRY(check_words(comment.text));
   const auto resolver = comment.resolved ? std::optional(comment.resolved->user) : std::nullopt;
   if (resolver) STRATA_TRY(check_text(*resolver, "user"));
@@ -229,7 +231,7 @@ Result<Comment> Comments::update(const Comment& comment, const FirstAnswer<Comme
 }
 
 Result<Comments::Removal> Comments::remove(const Comment& comment,
-                                           const FirstAnswer<Removal>& answer) {
+                                           const IdempotentResponse<Removal>& answer) {
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Removal> {
     const std::int64_t thread = comment.thread.value_or(comment.id);
     auto first = load(connection, thread, Lock::change);

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "domain/people/visibility.h"
-#include "store/content/first_answer.h"
+#include "store/content/idempotent_response.h"
 
 namespace strata::store {
 
@@ -48,7 +48,7 @@ struct Comment {
 // for what is not there, stale or away.
 class Comments {
  public:
-  static constexpr std::int64_t kMostComments = 10'000;  // of a model, replies and all
+  static constexpr std::int64_t kMaxComments = 10'000;  // of a model, replies and all
 
   explicit Comments(Pool& pool) : pool_(pool) {}
 
@@ -73,10 +73,10 @@ class Comments {
   // Id, times and version are given here; of a reply the model is that of its thread. Refused: text
   // that is blank or too long (invalid), a reply to a reply (invalid), one comment too many
   // (conflict).
-  Result<Comment> create(const Comment& comment, const FirstAnswer<Comment>& answer = {});
+  Result<Comment> create(const Comment& comment, const IdempotentResponse<Comment>& answer = {});
   // Text, and who has resolved it, where version equals; what it was resolved for already stays
   // with who did it first.
-  Result<Comment> update(const Comment& comment, const FirstAnswer<Comment>& answer = {});
+  Result<Comment> update(const Comment& comment, const IdempotentResponse<Comment>& answer = {});
   // What became of a thread when one of its comments was deleted: those that are gone, and the
   // first one where it stays without its text.
   struct Removal {
@@ -85,7 +85,7 @@ class Comments {
     std::optional<Comment> left;
   };
   // Where version equals. conflict: it is deleted and stands there for its replies.
-  Result<Removal> remove(const Comment& comment, const FirstAnswer<Removal>& answer = {});
+  Result<Removal> remove(const Comment& comment, const IdempotentResponse<Removal>& answer = {});
 
  private:
   Pool& pool_;

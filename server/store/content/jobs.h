@@ -24,8 +24,8 @@ struct StoredJob {
 };
 
 // What is known of long work after a restart; of a Store, and as thread-safe and blocking as that.
-// A job's success is written in the transaction of what it made (`FirstAnswer::job`), so that
-// neither is there without the other.
+// A job's success is written in the transaction of what it made (`IdempotentResponse::job`), so
+// that neither is there without the other.
 class Jobs {
  public:
   static constexpr int kDaysKept = 7;

@@ -132,7 +132,7 @@ Result<void> set_formula(PgConnection& connection, const Layer& layer) {
   return set ? Result<void>{} : tl::unexpected(set.error());
 }
 
-constexpr std::size_t kLongestDescription = 40000;  // bytes of 10000 characters
+constexpr std::size_t kMaxDescriptionLength = 40000;  // bytes of 10000 characters
 Result<void> keep_origin(PgConnection& connection, std::int64_t layer_id, const Layer& layer) {
   if (!layer.origin) return {};
   auto kept = connection.query(
@@ -152,7 +152,8 @@ Result<void> check(const Layer& layer) {
                 "opacity");
   STRATA_TRY(check_json(to_json(layer.palette), "palette"));
   STRATA_TRY(check_labels(layer.labels));
-  if (auto good = check_texts_by_language(layer.descriptions, kLongestDescription, "descriptions");
+  if (auto good =
+          check_texts_by_language(layer.descriptions, kMaxDescriptionLength, "descriptions");
       !good)
     return good;
   return check_texts(
@@ -222,7 +223,7 @@ Result<Layer> Layers::find(std::int64_t model_id, const std::string& ref, Role s
   });
 }
 
-Result<Layer> Layers::create(Layer layer, const FirstAnswer<Layer>& answer,
+Result<Layer> Layers::create(Layer layer, const IdempotentResponse<Layer>& answer,
                              std::vector<Column> columns) {
   STRATA_TRY(check(layer));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Layer> {
@@ -270,7 +271,7 @@ Result<Layer> Layers::create(Layer layer, const FirstAnswer<Layer>& answer,
   });
 }
 
-Result<Layer> Layers::update(Layer layer, const FirstAnswer<Layer>& answer) {
+Result<Layer> Layers::update(Layer layer, const IdempotentResponse<Layer>& answer) {
   STRATA_TRY(check(layer));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Layer> {
     auto row = STRATA_TRY(connection.query(
@@ -411,7 +412,8 @@ Result<void> widen_revisions(PgConnection& connection, const Layer& layer, Value
 
 }  // namespace
 
-Result<Layer> Layers::widen(const Layer& layer, ValueType type, const FirstAnswer<Layer>& answer) {
+Result<Layer> Layers::widen(const Layer& layer, ValueType type,
+                            const IdempotentResponse<Layer>& answer) {
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Layer> {
     auto row = STRATA_TRY(connection.query(
         "UPDATE layers SET type = $3, version = version + 1 WHERE id = $1 AND version = $2 AND type = $4 RETURNING id",
@@ -425,7 +427,7 @@ Result<Layer> Layers::widen(const Layer& layer, ValueType type, const FirstAnswe
   });
 }
 
-Result<void> Layers::remove(std::int64_t id, const FirstAnswer<>& answer) {
+Result<void> Layers::remove(std::int64_t id, const IdempotentResponse<>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<void> {
     auto known =
         STRATA_TRY(connection.query("SELECT 1 FROM layers WHERE id = $1", Params().integer(id)));

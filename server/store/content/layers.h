@@ -11,7 +11,7 @@
 #include "domain/layers/value_type.h"
 #include "domain/people/role.h"
 #include "domain/tables/table.h"
-#include "store/content/first_answer.h"
+#include "store/content/idempotent_response.h"
 #include "store/journal/journal.h"
 
 namespace strata::store {
@@ -28,14 +28,15 @@ class Layers {
   Result<std::vector<Layer>> of_model(std::int64_t model_id, Role seen_by);
   Result<Layer> find(std::int64_t model_id, const std::string& ref, Role seen_by);
   // A database layer that names no table gets one of its own name with `columns`.
-  Result<Layer> create(Layer layer, const FirstAnswer<Layer>& answer = {},
+  Result<Layer> create(Layer layer, const IdempotentResponse<Layer>& answer = {},
                        std::vector<Column> columns = {});
-  Result<Layer> update(Layer layer, const FirstAnswer<Layer>& answer = {});
-  // for ever; people's go by the Bin
-  Result<void> remove(std::int64_t id, const FirstAnswer<>& answer = {});
+  Result<Layer> update(Layer layer, const IdempotentResponse<Layer>& answer = {});
+  // for ever; people's go by the Trash
+  Result<void> remove(std::int64_t id, const IdempotentResponse<>& answer = {});
   // Room for larger keys or values: its content, with all of its history, in a type that it
   // widens_to. Where version equals.
-  Result<Layer> widen(const Layer& layer, ValueType type, const FirstAnswer<Layer>& answer = {});
+  Result<Layer> widen(const Layer& layer, ValueType type,
+                      const IdempotentResponse<Layer>& answer = {});
   // Where the tables stand that the layer's formula reads, by id.
   Result<std::map<std::int64_t, std::int64_t>> table_sequences_of(std::int64_t layer_id);
   // The layer shows what `expression` is of everything up to these sequences of its model and of

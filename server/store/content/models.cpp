@@ -3,9 +3,9 @@
 #include "core/progress.h"
 #include "core/text/hex.h"
 #include "domain/scene/up.h"
-#include "store/content/look_rows.h"
-#include "store/content/looks.h"
 #include "store/content/models.h"
+#include "store/content/surface_image_rows.h"
+#include "store/content/surface_images.h"
 #include "store/pg/blobs.h"
 #include "store/store_impl.h"
 
@@ -143,15 +143,15 @@ Result<PgResult> insert_model(PgConnection& connection, const Model& m, const st
       params);
 }
 
-Look look_of(const NewModel::NewLook& fresh, std::size_t position) {
-  Look look;
-  look.name = fresh.name;
-  look.media_type = fresh.media_type;
-  look.width = fresh.width;
-  look.height = fresh.height;
-  look.visible = position == 0;
-  look.order = static_cast<int>(position);
-  return look;
+SurfaceImage surface_image_of(const NewModel::NewSurfaceImage& fresh, std::size_t position) {
+  SurfaceImage image;
+  image.name = fresh.name;
+  image.media_type = fresh.media_type;
+  image.width = fresh.width;
+  image.height = fresh.height;
+  image.visible = position == 0;
+  image.order = static_cast<int>(position);
+  return image;
 }
 
 Result<Model> model_by_id(PgConnection& connection, std::int64_t id) {
@@ -164,24 +164,26 @@ Result<Model> model_by_id(PgConnection& connection, std::int64_t id) {
 }  // namespace
 
 Result<Model> Models::create(const NewModel& fresh, const std::function<bool()>& cancelled,
-                             const FirstAnswer<Model>& answer) {
+                             const IdempotentResponse<Model>& answer) {
   STRATA_TRY(check(fresh.model));
   for (const auto& source : fresh.sources) {
-    if (source.name.empty() || source.name.size() > kLongestName)
+    if (source.name.empty() || source.name.size() > kMaxNameLength)
       return fail(ErrorCode::malformed, "Bad file name", "A file's name must have 1 to 255 bytes.",
                   "source_files");
     STRATA_TRY(check_text(source.name, "source_files"));
   }
-  if (fresh.looks.size() > Looks::kMostLooks)
-    return fail(ErrorCode::invalid, "Too many looks",
-                "A model holds at most " + std::to_string(Looks::kMostLooks) + " looks.", "looks");
-  for (std::size_t i = 0; i < fresh.looks.size(); ++i)
-    STRATA_TRY(check_look(look_of(fresh.looks[i], i)));
+  if (fresh.images.size() > SurfaceImages::kMaxSurfaceImages)
+    return fail(
+        ErrorCode::invalid, "Too many looks",
+        "A model holds at most " + std::to_string(SurfaceImages::kMaxSurfaceImages) + " looks.",
+        "looks");
+  for (std::size_t i = 0; i < fresh.images.size(); ++i)
+    STRATA_TRY(check_surface_image(surface_image_of(fresh.images[i], i)));
   // The geometry, its coarser copies, the looks, the source files.
   std::vector<Content> contents{content_of(Bytes(fresh.geometry))};
   for (const auto& level : fresh.detail_levels) contents.push_back(content_of(Bytes(level)));
-  const std::size_t first_look = contents.size();
-  for (const auto& look : fresh.looks) contents.push_back(content_of(Bytes(look.bytes)));
+  const std::size_t first_surface_image = contents.size();
+  for (const auto& image : fresh.images) contents.push_back(content_of(Bytes(image.bytes)));
   const std::size_t first_source = contents.size();
   for (const auto& source : fresh.sources) {
     auto content = STRATA_TRY(content_of(source.file, cancelled));
@@ -200,15 +202,15 @@ Result<Model> Models::create(const NewModel& fresh, const std::function<bool()>&
         m.slug.empty() ? m.name : m.slug,
         [&](const std::string& slug) { return insert_model(connection, m, slug, geometry); }));
     const std::int64_t id = row.integer(0, 0);
-    for (std::size_t i = 1; i < first_look; ++i) {
+    for (std::size_t i = 1; i < first_surface_image; ++i) {
       STRATA_TRY(connection.query(
           "INSERT INTO detail_levels (model_id, level, geometry) VALUES ($1, $2, $3)",
           Params().integer(id).integer(static_cast<std::int64_t>(i)).bytes(contents[i].hash)));
     }
-    for (std::size_t i = 0; i < fresh.looks.size(); ++i) {
-      Look look = look_of(fresh.looks[i], i);
-      look.model_id = id;
-      STRATA_TRY(insert_look(connection, look, contents[first_look + i].hash));
+    for (std::size_t i = 0; i < fresh.images.size(); ++i) {
+      SurfaceImage image = surface_image_of(fresh.images[i], i);
+      image.model_id = id;
+      STRATA_TRY(insert_surface_image(connection, image, contents[first_surface_image + i].hash));
     }
     for (std::size_t i = 0; i < fresh.sources.size(); ++i) {
       STRATA_TRY(connection.query(
@@ -247,7 +249,7 @@ Result<Model> Models::find(const std::string& ref) {
   });
 }
 
-Result<Model> Models::update(Model m, const FirstAnswer<Model>& answer) {
+Result<Model> Models::update(Model m, const IdempotentResponse<Model>& answer) {
   STRATA_TRY(check(m));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Model> {
     auto row = STRATA_TRY(connection.query(
@@ -271,7 +273,7 @@ Result<Model> Models::update(Model m, const FirstAnswer<Model>& answer) {
   });
 }
 
-Result<void> Models::remove(std::int64_t id, const FirstAnswer<>& answer) {
+Result<void> Models::remove(std::int64_t id, const IdempotentResponse<>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<void> {
     auto known =
         STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(id)));

@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 #include "domain/scene/model.h"
-#include "store/content/first_answer.h"
+#include "store/content/idempotent_response.h"
 
 namespace strata::store {
 
@@ -26,12 +26,13 @@ struct NewModel {
     std::filesystem::path file;
   };
   std::vector<Source> sources;  // streamed in bit for bit, hashed on the way
-  struct NewLook {
+  struct NewSurfaceImage {
     std::string name, media_type;     // "image/jpeg" or "image/png"
     std::vector<std::uint8_t> bytes;  // of the encoded picture
     int width = 0, height = 0;
   };
-  std::vector<NewLook> looks;  // bottom to top; the first is shown, the others wait to be chosen
+  std::vector<NewSurfaceImage>
+      images;  // bottom to top; the first is shown, the others wait to be chosen
 };
 
 // 3D models with their geometry and source files. Part of Store: its rules for threads and errors
@@ -41,12 +42,12 @@ class Models {
   explicit Models(Pool& pool) : pool_(pool) {}
 
   Result<Model> create(const NewModel& model, const std::function<bool()>& cancelled,
-                       const FirstAnswer<Model>& answer = {});  // one transaction
+                       const IdempotentResponse<Model>& answer = {});  // one transaction
   Result<std::vector<Model>> all(std::optional<std::int64_t> project_id = {});
   Result<Model> find(const std::string& ref);
-  Result<Model> update(Model model, const FirstAnswer<Model>& answer = {});
-  // for ever; people's go by the Bin
-  Result<void> remove(std::int64_t id, const FirstAnswer<>& answer = {});
+  Result<Model> update(Model model, const IdempotentResponse<Model>& answer = {});
+  // for ever; people's go by the Trash
+  Result<void> remove(std::int64_t id, const IdempotentResponse<>& answer = {});
   Result<std::vector<std::uint8_t>> geometry(std::int64_t model_id);
   // finest first
   Result<std::vector<std::vector<std::uint8_t>>> detail_levels(std::int64_t model_id);

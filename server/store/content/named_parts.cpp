@@ -73,7 +73,8 @@ Result<NamedPart> NamedParts::find(std::int64_t model_id, const std::string& ref
   });
 }
 
-Result<NamedPart> NamedParts::create(const NamedPart& part, const FirstAnswer<NamedPart>& answer) {
+Result<NamedPart> NamedParts::create(const NamedPart& part,
+                                     const IdempotentResponse<NamedPart>& answer) {
   STRATA_TRY(check_part(part));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<NamedPart> {
     // Locked, so that of two at once the later one counts the earlier.
@@ -117,7 +118,8 @@ tl::unexpected<Error> missed(const Result<PgResult>& known, const NamedParts::Ki
 
 }  // namespace
 
-Result<NamedPart> NamedParts::update(const NamedPart& part, const FirstAnswer<NamedPart>& answer) {
+Result<NamedPart> NamedParts::update(const NamedPart& part,
+                                     const IdempotentResponse<NamedPart>& answer) {
   STRATA_TRY(check_part(part));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<NamedPart> {
     auto row = STRATA_TRY(connection.query(
@@ -137,7 +139,7 @@ Result<NamedPart> NamedParts::update(const NamedPart& part, const FirstAnswer<Na
   });
 }
 
-Result<void> NamedParts::remove(const NamedPart& part, const FirstAnswer<>& answer) {
+Result<void> NamedParts::remove(const NamedPart& part, const IdempotentResponse<>& answer) {
   return change(pool_, answer, [&](PgConnection& connection) -> Result<void> {
     auto done =
         STRATA_TRY(connection.query(sql("DELETE FROM TABLE WHERE id = $1 AND version = $2").c_str(),

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "store/content/first_answer.h"
+#include "store/content/idempotent_response.h"
 
 namespace strata::store {
 
@@ -53,11 +53,11 @@ class NamedParts {
 
   // Id, slug, time and version are given here. Refused: an empty name (malformed), one too many
   // (conflict).
-  Result<NamedPart> create(const NamedPart& part, const FirstAnswer<NamedPart>& answer = {});
+  Result<NamedPart> create(const NamedPart& part, const IdempotentResponse<NamedPart>& answer = {});
   // Name, text and content, where version equals; the slug stays, so that links go on.
-  Result<NamedPart> update(const NamedPart& part, const FirstAnswer<NamedPart>& answer = {});
+  Result<NamedPart> update(const NamedPart& part, const IdempotentResponse<NamedPart>& answer = {});
   // where version equals
-  Result<void> remove(const NamedPart& part, const FirstAnswer<>& answer = {});
+  Result<void> remove(const NamedPart& part, const IdempotentResponse<>& answer = {});
 
  private:
   std::string sql(std::string text) const;

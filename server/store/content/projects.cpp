@@ -86,7 +86,7 @@ Result<std::string> Projects::state(std::int64_t id) {
   });
 }
 
-Result<Project> Projects::create(Project project, const FirstAnswer<Project>& answer) {
+Result<Project> Projects::create(Project project, const IdempotentResponse<Project>& answer) {
   STRATA_TRY(check(project));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Project> {
     auto row = STRATA_TRY(insert_with_slug(
@@ -101,7 +101,7 @@ Result<Project> Projects::create(Project project, const FirstAnswer<Project>& an
   });
 }
 
-Result<Project> Projects::update(Project project, const FirstAnswer<Project>& answer) {
+Result<Project> Projects::update(Project project, const IdempotentResponse<Project>& answer) {
   STRATA_TRY(check(project));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Project> {
     auto row = STRATA_TRY(connection.query(
@@ -123,7 +123,7 @@ Result<Project> Projects::update(Project project, const FirstAnswer<Project>& an
   });
 }
 
-Result<void> Projects::remove(std::int64_t id, const FirstAnswer<>& answer) {
+Result<void> Projects::remove(std::int64_t id, const IdempotentResponse<>& answer) {
   return change(pool_, answer, [&](PgConnection& connection) -> Result<void> {
     auto row = STRATA_TRY(connection.query(
         "SELECT slug::text, (SELECT count(*) FROM models WHERE project_id = p.id), "

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "domain/people/role.h"
 #include "domain/scene/model.h"
-#include "store/content/first_answer.h"
+#include "store/content/idempotent_response.h"
 #include "store/people/activity.h"
 
 namespace strata::store {
@@ -30,11 +30,11 @@ class Projects {
 
   Result<std::vector<Project>> all();
   Result<Project> find(const std::string& ref);
-  Result<Project> create(Project project, const FirstAnswer<Project>& answer = {});
+  Result<Project> create(Project project, const IdempotentResponse<Project>& answer = {});
   // Where version equals; returns it with version + 1.
-  Result<Project> update(Project project, const FirstAnswer<Project>& answer = {});
+  Result<Project> update(Project project, const IdempotentResponse<Project>& answer = {});
   // refused (conflict) while it has models, and for `default`
-  Result<void> remove(std::int64_t id, const FirstAnswer<>& answer = {});
+  Result<void> remove(std::int64_t id, const IdempotentResponse<>& answer = {});
   Result<std::size_t> names_until(const NamedId& place, std::span<const NamedId> sorted);
   // Of all that is stored of it but edits, comments and people: another text whenever one of its
   // models, layers, looks, views or tables was changed, made or deleted, or a record of its tables.

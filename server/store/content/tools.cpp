@@ -58,7 +58,7 @@ Result<Tool> Tools::find(const std::string& ref) {
 }
 
 Result<Tool> Tools::create(const Tool& tool, const ShapeBits& shape,
-                           const FirstAnswer<Tool>& answer) {
+                           const IdempotentResponse<Tool>& answer) {
   STRATA_TRY(check_name(tool.name));
   STRATA_TRY(check_text(tool.slug, "slug"));
   const auto cells = bytes_of(shape);
@@ -67,9 +67,9 @@ Result<Tool> Tools::create(const Tool& tool, const ShapeBits& shape,
     STRATA_TRY(connection.query("LOCK TABLE tool_shapes IN SHARE ROW EXCLUSIVE MODE"));
     auto count =
         STRATA_TRY(connection.query("SELECT count(*) FROM tool_shapes WHERE deleted IS NULL"));
-    if (count.integer(0, 0) >= kMostTools)
+    if (count.integer(0, 0) >= kMaxTools)
       return fail(ErrorCode::conflict, "Too many tools",
-                  "A site has at most " + std::to_string(kMostTools) + " tools. Delete one first.");
+                  "A site has at most " + std::to_string(kMaxTools) + " tools. Delete one first.");
     auto row = STRATA_TRY(insert_with_slug(
         connection,
         "SELECT slug::text FROM tool_shapes WHERE slug LIKE $1 AND deleted IS NULL "
@@ -84,7 +84,7 @@ Result<Tool> Tools::create(const Tool& tool, const ShapeBits& shape,
   });
 }
 
-Result<Tool> Tools::update(const Tool& tool, const FirstAnswer<Tool>& answer) {
+Result<Tool> Tools::update(const Tool& tool, const IdempotentResponse<Tool>& answer) {
   STRATA_TRY(check_name(tool.name));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Tool> {
     auto row = STRATA_TRY(connection.query(
@@ -99,7 +99,7 @@ Result<Tool> Tools::update(const Tool& tool, const FirstAnswer<Tool>& answer) {
   });
 }
 
-Result<void> Tools::remove(std::int64_t id, const FirstAnswer<>& answer) {
+Result<void> Tools::remove(std::int64_t id, const IdempotentResponse<>& answer) {
   return change(pool_, answer, [&](PgConnection& connection) -> Result<void> {
     auto done = STRATA_TRY(connection.query(
         "UPDATE tool_shapes SET deleted = now(), version = version + 1 WHERE id = $1 AND deleted IS NULL RETURNING id",

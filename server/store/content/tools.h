@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "domain/scene/tool.h"
 #include "media/shape_texture.h"
-#include "store/content/first_answer.h"
+#include "store/content/idempotent_response.h"
 
 namespace strata::store {
 
@@ -18,15 +18,15 @@ class Tools {
  public:
   explicit Tools(Pool& pool) : pool_(pool) {}
 
-  static constexpr int kMostTools = 200;  // that are not deleted
+  static constexpr int kMaxTools = 200;  // that are not deleted
 
   Result<std::vector<Tool>> all();  // that are not deleted, by name
   // By slug, those that are not deleted; by id, deleted ones, too.
   Result<Tool> find(const std::string& ref);
   Result<Tool> create(const Tool& tool, const ShapeBits& shape,
-                      const FirstAnswer<Tool>& answer = {});
-  Result<Tool> update(const Tool& tool, const FirstAnswer<Tool>& answer = {});  // its name
-  Result<void> remove(std::int64_t id, const FirstAnswer<>& answer = {});
+                      const IdempotentResponse<Tool>& answer = {});
+  Result<Tool> update(const Tool& tool, const IdempotentResponse<Tool>& answer = {});  // its name
+  Result<void> remove(std::int64_t id, const IdempotentResponse<>& answer = {});
   Result<ShapeBits> shape(std::int64_t id);  // deleted or not
 
  private:

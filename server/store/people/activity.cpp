@@ -8,7 +8,7 @@
 namespace strata::store {
 namespace {
 
-// Of what is about a layer, or in a thread about one: to whoever sees that layer, in the Bin or
+// Of what is about a layer, or in a thread about one: to whoever sees that layer, in the Trash or
 // not, or saw it when it was erased.
 #define STRATA_ACTIVITY_IS_SEEN                                                                                          \
   "coalesce((SELECT l.visibility FROM all_layers l WHERE l.id = activities.layer_id), activities.visibility) = any($6) " \

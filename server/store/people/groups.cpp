@@ -11,7 +11,7 @@
 namespace strata::store {
 namespace {
 
-constexpr std::size_t kLongestGroupName = 100;  // characters
+constexpr std::size_t kMaxGroupNameLength = 100;  // characters
 
 #define STRATA_GROUP_COLUMNS                                                      \
   "g.id, g.name, (SELECT count(*) FROM group_people p WHERE p.group_id = g.id), " \
@@ -94,7 +94,7 @@ Result<void> check_name(PgConnection& connection, const std::string& name, std::
 Result<void> check_spelling(const std::string& name) {
   const auto is_blank = [](char c) { return static_cast<unsigned char>(c) <= ' '; };
   const auto characters = std::ranges::count_if(name, [](char c) { return (c & 0xc0) != 0x80; });
-  if (name.empty() || static_cast<std::size_t>(characters) > kLongestGroupName ||
+  if (name.empty() || static_cast<std::size_t>(characters) > kMaxGroupNameLength ||
       is_blank(name.front()) || is_blank(name.back()))
     return fail(ErrorCode::invalid, "Bad name",
                 "A group's name has 1 to 100 characters, and no blank before or behind it.",
@@ -128,9 +128,9 @@ Result<void> check_not_too_full(PgConnection& connection, std::int64_t group_id,
                                 const char* field) {
   auto count = STRATA_TRY(connection.query("SELECT count(*) FROM group_people WHERE group_id = $1",
                                            Params().integer(group_id)));
-  if (count.integer(0, 0) > Groups::kMostPeople)
+  if (count.integer(0, 0) > Groups::kMaxPeople)
     return fail(ErrorCode::conflict, "Too many people",
-                "A group has at most " + std::to_string(Groups::kMostPeople) + " people.", field);
+                "A group has at most " + std::to_string(Groups::kMaxPeople) + " people.", field);
   return {};
 }
 
@@ -203,9 +203,9 @@ Result<GroupDetail> Groups::create(const std::string& name,
   return pool_.write([&](PgConnection& connection) -> Result<GroupDetail> {
     STRATA_TRY(check_name(connection, name, 0));
     auto count = STRATA_TRY(connection.query("SELECT count(*) FROM groups"));
-    if (count.integer(0, 0) >= kMostGroups)
+    if (count.integer(0, 0) >= kMaxGroups)
       return fail(ErrorCode::conflict, "Too many groups",
-                  "There are " + std::to_string(kMostGroups) + " groups. Delete some first.",
+                  "There are " + std::to_string(kMaxGroups) + " groups. Delete some first.",
                   "name");
     auto made =
         connection.query("INSERT INTO groups (name) VALUES ($1) RETURNING id", Params().text(name));

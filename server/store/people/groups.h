@@ -66,7 +66,7 @@ struct Regrouped {
 // not there or away. `by`: who asked, for the projects' activity; empty: it is not told there.
 class Groups {
  public:
-  static constexpr std::int64_t kMostGroups = 200, kMostPeople = 1000;  // of the site; in a group
+  static constexpr std::int64_t kMaxGroups = 200, kMaxPeople = 1000;  // of the site; in a group
 
   explicit Groups(Pool& pool) : pool_(pool) {}
 

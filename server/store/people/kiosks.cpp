@@ -98,9 +98,9 @@ Result<NewKiosk> Kiosks::create(std::int64_t tour_id, const std::string& name,
     auto count = STRATA_TRY(connection.query(
         "SELECT count(*) FROM kiosks k WHERE k.tour_id = $1 AND " STRATA_GOOD_KIOSK,
         Params().integer(tour_id)));
-    if (count.integer(0, 0) >= kMostKiosks)
+    if (count.integer(0, 0) >= kMaxKiosks)
       return fail(ErrorCode::conflict, "Too many kiosks",
-                  "A tour has links for at most " + std::to_string(kMostKiosks) +
+                  "A tour has links for at most " + std::to_string(kMaxKiosks) +
                       " kiosks. Revoke some first.");
     NewKiosk made;
     made.secret = random_token();

@@ -33,7 +33,7 @@ struct NewKiosk {
 // what is not there or away.
 class Kiosks {
  public:
-  static constexpr std::int64_t kMostKiosks = 100;  // good ones of a tour
+  static constexpr std::int64_t kMaxKiosks = 100;  // good ones of a tour
 
   explicit Kiosks(Pool& pool) : pool_(pool) {}
 

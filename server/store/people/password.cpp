@@ -15,19 +15,19 @@ Result<void> check_password(std::string_view password, std::string_view user,
     return std::tolower(static_cast<unsigned char>(a)) ==
            std::tolower(static_cast<unsigned char>(b));
   };
-  if (password.size() > kLongestPassword)
+  if (password.size() > kMaxPasswordLength)
     return fail(ErrorCode::invalid, "Password too long",
-                "A password has at most " + std::to_string(kLongestPassword) + " bytes.", field);
+                "A password has at most " + std::to_string(kMaxPasswordLength) + " bytes.", field);
   const auto characters =
       std::ranges::count_if(password, [](char c) { return (c & 0xc0) != 0x80; });
-  if (static_cast<std::size_t>(characters) < kShortestPassword)
+  if (static_cast<std::size_t>(characters) < kMinPasswordLength)
     return fail(
         ErrorCode::invalid, "Password too short",
-        "A password has " + std::to_string(kShortestPassword) +
+        "A password has " + std::to_string(kMinPasswordLength) +
             " characters or more. A few words that belong together to nobody but you are good.",
         field);
   if (std::ranges::search(password, user, same).size() > 0 &&
-      password.size() < user.size() + kShortestPassword)
+      password.size() < user.size() + kMinPasswordLength)
     return fail(ErrorCode::invalid, "Password too easy",
                 "The name and little more is the first thing that is tried.", field);
   return {};

@@ -7,7 +7,8 @@
 
 namespace strata::store {
 
-inline constexpr std::size_t kShortestPassword = 10, kLongestPassword = 1024;  // characters; bytes
+inline constexpr std::size_t kMinPasswordLength = 10,
+                             kMaxPasswordLength = 1024;  // characters; bytes
 
 // Whether a person may choose it (invalid at `field`): long enough, and not the name. No other
 // rules: they make passwords worse (NIST SP 800-63B, 5.1.1.2).

@@ -140,7 +140,7 @@ Result<NewToken> open_session(PgConnection& connection, const Person& person,
       connection,
       "UPDATE tokens SET revoked = now() WHERE id IN (SELECT id FROM tokens WHERE user_name = $1 AND "
       "kind = 'session' AND " STRATA_GOOD_TOKEN " ORDER BY id DESC OFFSET $2)",
-      Params().text(person.name).integer(kMostTokens)));
+      Params().text(person.name).integer(kMaxTokens)));
   return made;
 }
 
@@ -426,9 +426,9 @@ Result<NewToken> Tokens::create(TokenKind kind, const std::string& user, Role ro
     if (kind == TokenKind::session) return open_session(connection, person, lifetime, label);
     const auto good = count_good(connection, person.name, kind);
     if (!good) return tl::unexpected(good.error());
-    if (kind == TokenKind::script && *good >= static_cast<std::int64_t>(kMostTokens))
+    if (kind == TokenKind::script && *good >= static_cast<std::int64_t>(kMaxTokens))
       return fail(ErrorCode::conflict, "Too many tokens",
-                  "There are " + std::to_string(kMostTokens) + " tokens. Revoke some first.");
+                  "There are " + std::to_string(kMaxTokens) + " tokens. Revoke some first.");
     if (project) {
       STRATA_TRY(check_project_role(role));
       STRATA_TRY(lock_project(connection, *project));

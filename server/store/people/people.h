@@ -12,7 +12,7 @@ namespace strata::store {
 
 inline constexpr std::chrono::hours kInvitationLifetime{24 * 7};
 // good sessions of a person, and as many for scripts
-inline constexpr std::size_t kMostTokens = 100;
+inline constexpr std::size_t kMaxTokens = 100;
 
 // Someone with an account. `name` is what they sign in with, in any case, and what journals say of
 // them.

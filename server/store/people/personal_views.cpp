@@ -4,7 +4,7 @@
 namespace strata::store {
 namespace {
 
-constexpr std::size_t kMostBytes = 1 << 20;  // as the table has it
+constexpr std::size_t kMaxBytes = 1 << 20;  // as the table has it
 
 }  // namespace
 
@@ -22,7 +22,7 @@ Result<void> PersonalViews::keep(const std::string& user, std::int64_t model_id,
   STRATA_TRY(check_json(layers, "layers"));
   // PostgreSQL writes a blank behind every comma and colon: half of the room is enough for any of
   // them.
-  if (layers.dump().size() > kMostBytes / 2)
+  if (layers.dump().size() > kMaxBytes / 2)
     return fail(ErrorCode::too_large, "Too much to keep",
                 "What is kept of a model for a person has at most 512 KiB.", "layers");
   return pool_.write([&](PgConnection& connection) -> Result<void> {

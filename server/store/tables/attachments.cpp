@@ -124,7 +124,7 @@ Result<Attached> Attachments::attach(std::int64_t table_id, std::int64_t key,
                                      std::optional<std::int64_t> column_id,
                                      const std::vector<NewAttachment>& files,
                                      std::optional<std::int64_t> version, const Author& who,
-                                     const FirstAnswer<Attached>& answer) {
+                                     const IdempotentResponse<Attached>& answer) {
   STRATA_TRY(check_text(who.user, "user"));
   std::vector<Content> contents;
   for (const NewAttachment& file : files) {
@@ -180,7 +180,7 @@ Result<Attached> Attachments::attach(std::int64_t table_id, std::int64_t key,
 }
 
 Result<TableChange> Attachments::detach(std::int64_t attachment_id, const std::string& user,
-                                        const FirstAnswer<TableChange>& answer) {
+                                        const IdempotentResponse<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<TableChange> {
     auto owner = STRATA_TRY(connection.query("SELECT table_id FROM attachments WHERE id = $1",
@@ -207,7 +207,7 @@ Result<TableChange> Attachments::detach(std::int64_t attachment_id, const std::s
       return fail(ErrorCode::not_found, "Not found",
                   "No record has the attachment " + std::to_string(attachment_id) + " any more.");
     edit.record["records"] = edit.records.size();
-    if (keys.size() > kMostRowProblems) keys.resize(kMostRowProblems);
+    if (keys.size() > kMaxRowProblems) keys.resize(kMaxRowProblems);
     edit.record["keys"] = keys;
     return without_problems(apply_edit(connection, open, std::move(edit)));
   });
@@ -236,7 +236,7 @@ Result<std::vector<Attachment>> Attachments::of_table(std::int64_t table_id, con
 }
 
 Result<Attachment> Attachments::show(std::int64_t id, Visibility visibility,
-                                     const FirstAnswer<Attachment>& answer) {
+                                     const IdempotentResponse<Attachment>& answer) {
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Attachment> {
     auto row = STRATA_TRY(connection.query(
         "WITH a AS (UPDATE attachments SET visibility = $2 WHERE id = $1 RETURNING *) SELECT " STRATA_ATTACHMENT_COLUMNS

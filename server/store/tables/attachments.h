@@ -12,7 +12,7 @@
 #include "domain/people/role.h"
 #include "domain/people/visibility.h"
 #include "domain/tables/attachment.h"
-#include "store/content/first_answer.h"
+#include "store/content/idempotent_response.h"
 #include "store/tables/table_changes.h"
 
 namespace strata::store {
@@ -45,18 +45,18 @@ class Attachments {
                           std::optional<std::int64_t> column_id,
                           const std::vector<NewAttachment>& files,
                           std::optional<std::int64_t> version, const Author& who,
-                          const FirstAnswer<Attached>& answer = {});
+                          const IdempotentResponse<Attached>& answer = {});
   // Takes it out of all cells that list it; `not_found` where none does. It stays for undo and for
   // reading the past.
   Result<TableChange> detach(std::int64_t attachment_id, const std::string& user,
-                             const FirstAnswer<TableChange>& answer = {});
+                             const IdempotentResponse<TableChange>& answer = {});
   // One that they do not see is not found.
   Result<Attachment> find(std::int64_t id, const Author& seen_by);
   // Those of the ids that the table has and they see, by id.
   Result<std::vector<Attachment>> of_table(std::int64_t table_id, const Author& seen_by,
                                            std::span<const std::int64_t> ids);
   Result<Attachment> show(std::int64_t id, Visibility visibility,
-                          const FirstAnswer<Attachment>& answer = {});
+                          const IdempotentResponse<Attachment>& answer = {});
   // The bytes from `begin` to before `end`, in pieces ≤ 1 MiB; `sink` returns false to stop.
   Result<void> read(const Attachment& attachment, std::uint64_t begin, std::uint64_t end,
                     const std::function<bool(std::span<const std::uint8_t>)>& sink);

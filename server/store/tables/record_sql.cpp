@@ -18,7 +18,7 @@ using Op = Expression::Op;
 // Days as doubles tell milliseconds apart for some 100 000 years.
 constexpr const char* kToEndOfDay = "0.99999999";
 
-enum class Kind { number, truth, text, time, keys, marks };
+enum class Kind { number, truth, text, time, keys, features };
 
 const char* in_words(Kind kind) {
   switch (kind) {
@@ -26,7 +26,7 @@ const char* in_words(Kind kind) {
     case Kind::truth: return "true or false";
     case Kind::text: return "texts";
     case Kind::time: return "times";
-    case Kind::marks: return "lines or points";
+    case Kind::features: return "lines or points";
     default: return "keys of records";
   }
 }
@@ -44,7 +44,7 @@ Kind kind_of(const Column& column) {
     case ColumnKind::picture:
     case ColumnKind::document: return Kind::keys;
     case ColumnKind::line:
-    case ColumnKind::point: return Kind::marks;
+    case ColumnKind::point: return Kind::features;
     default: return Kind::text;
   }
 }
@@ -370,11 +370,12 @@ class Writer {
       const Sql b = time(second);
       return turned ? comparison_of_times(e.op, b, a) : comparison_of_times(e.op, a, b);
     }
-    if (a.kind == Kind::keys || a.kind == Kind::truth || a.kind == Kind::marks)
-      refuse(wrong(first, a, Kind::number) + (a.kind == Kind::keys ? ": ask a_contains(…, (key))"
-                                              : a.kind == Kind::marks ? ": ask whether it is null"
+    if (a.kind == Kind::keys || a.kind == Kind::truth || a.kind == Kind::features)
+      refuse(
+          wrong(first, a, Kind::number) + (a.kind == Kind::keys ? ": ask a_contains(…, (key))"
+                                           : a.kind == Kind::features ? ": ask whether it is null"
                                                                       : ""),
-             first);
+          first);
     if (a.kind == Kind::text) check_choice(a, second);
     if (a.kind == Kind::number && second.is_text()) refuse(wrong(first, a, Kind::text), first);
     const std::string b = a.kind == Kind::text ? text(second) : number(second);
@@ -430,7 +431,7 @@ class Writer {
     if (relation.kind != Kind::keys) refuse(wrong(e.parts[0], relation, Kind::keys), e.parts[0]);
     std::vector<std::int64_t> keys;
     for (const Expression& part : e.parts[1].parts) {
-      if (part.op != Op::number || !(part.number >= 0 && part.number <= kHighestKey) ||
+      if (part.op != Op::number || !(part.number >= 0 && part.number <= kMaxRecordKey) ||
           part.number != std::floor(part.number)) {
         refuse("Keys are whole numbers from 0 to 4294967295", part);
         return {};

@@ -17,7 +17,7 @@ namespace {
 nlohmann::json keys_json(const std::vector<std::int64_t>& keys) {
   return nlohmann::json(std::vector(
       keys.begin(),
-      keys.begin() + static_cast<std::ptrdiff_t>(std::min(keys.size(), kMostRowProblems))));
+      keys.begin() + static_cast<std::ptrdiff_t>(std::min(keys.size(), kMaxRowProblems))));
 }
 
 // Whole numbers without a fraction, also of columns that may have one.
@@ -80,7 +80,7 @@ class Intake {
   // The cells that change; of a new record also those of its defaults.
   Result<std::pair<std::int64_t, Cells>> cells_for(const RecordInput& input) {
     const std::size_t index = next_index_++;
-    if (input.key && (*input.key < 0 || *input.key > kHighestKey))
+    if (input.key && (*input.key < 0 || *input.key > kMaxRecordKey))
       return fail(ErrorCode::invalid, "Bad key", "Keys are whole numbers from 0 to 4294967295.",
                   "key");
     const auto now = input.key ? now_.find(*input.key) : now_.end();
@@ -97,7 +97,7 @@ class Intake {
                       " was a record's that is deleted. Keys are not given again.",
                   "key");
     while (!input.key && named_.contains(next_key_)) ++next_key_;
-    if (!input.key && next_key_ > kHighestKey)
+    if (!input.key && next_key_ > kMaxRecordKey)
       return fail(ErrorCode::conflict, "No keys left", "All keys up to 4294967295 were given.",
                   "key");
     const std::int64_t key = input.key ? *input.key : next_key_++;
@@ -127,7 +127,7 @@ class Intake {
   }
 
   void add_problem(std::size_t index, const Error& problem) {
-    if (problems_.size() < kMostRowProblems)
+    if (problems_.size() < kMaxRowProblems)
       problems_.push_back({asked_.records[index].key.value_or(0), problem, index});
   }
 
@@ -174,11 +174,11 @@ Result<std::optional<std::vector<Record>>> rows_if_past(PgConnection& connection
 
 Result<TableChange> Records::write(std::int64_t table_id, const WriteRecords& asked,
                                    const std::string& user,
-                                   const FirstAnswer<TableChange>& answer) {
+                                   const IdempotentResponse<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
-  if (asked.records.size() > kMostRecordsAtOnce)
+  if (asked.records.size() > kMaxRecordsAtOnce)
     return fail(ErrorCode::too_large, "Too many records",
-                "At most " + std::to_string(kMostRecordsAtOnce) + " records go in one call.");
+                "At most " + std::to_string(kMaxRecordsAtOnce) + " records go in one call.");
   // What is only tried, and what has problems, is rolled back, and told all the same.
   std::optional<TableChange> told;
   auto done = change(
@@ -196,7 +196,7 @@ Result<TableChange> Records::write(std::int64_t table_id, const WriteRecords& as
 
 Result<TableChange> Records::remove(std::int64_t table_id, std::int64_t key,
                                     std::optional<std::int64_t> version, const std::string& user,
-                                    bool dry_run, const FirstAnswer<TableChange>& answer) {
+                                    bool dry_run, const IdempotentResponse<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
   std::optional<TableChange> told;
   auto done = change(pool_, answer, [&](PgConnection& connection) -> Result<TableChange> {
@@ -263,24 +263,25 @@ Result<std::vector<KeyText>> Records::texts(std::int64_t table_id, Role seen_by,
   });
 }
 
-Result<std::vector<KeyMark>> Records::marks(std::int64_t table_id, Role seen_by,
-                                            std::int64_t model_id, std::optional<std::int64_t> at) {
-  return pool_.read([&](PgConnection& connection) -> Result<std::vector<KeyMark>> {
+Result<std::vector<KeyFeature>> Records::features(std::int64_t table_id, Role seen_by,
+                                                  std::int64_t model_id,
+                                                  std::optional<std::int64_t> at) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<KeyFeature>> {
     auto transaction = STRATA_TRY(Transaction::begin_reading(connection));
     auto open = STRATA_TRY(read_table(connection, table_id, seen_by));
     auto past = STRATA_TRY(rows_if_past(connection, open, at));
     std::vector<Column> columns;
     for (const Column& column : open.table.columns)
-      if (holds_marks(column.kind)) columns.push_back(column);
-    std::vector<KeyMark> found;
+      if (holds_features(column.kind)) columns.push_back(column);
+    std::vector<KeyFeature> found;
     if (columns.empty()) return found;
     auto rows = STRATA_TRY(past ? Result<std::vector<Record>>(std::move(*past))
                                 : load_all_rows(connection, table_id, columns));
     for (const Record& row : rows)
       for (const Column& column : columns)
-        for (Mark& mark : marks_of(row, column))
-          if (mark.model == model_id) found.push_back({row.key, std::move(mark)});
-    std::ranges::stable_sort(found, {}, &KeyMark::key);
+        for (SurfaceFeature& feature : features_of(row, column))
+          if (feature.model == model_id) found.push_back({row.key, std::move(feature)});
+    std::ranges::stable_sort(found, {}, &KeyFeature::key);
     STRATA_TRY(transaction.commit());
     return found;
   });
@@ -389,7 +390,8 @@ Result<UndoPlan> Tables::plan_undo(std::int64_t table_id, const std::string& use
 }
 
 Result<TableChange> Tables::undo(std::int64_t table_id, const std::string& user, bool redo,
-                                 std::int64_t planned_at, const FirstAnswer<TableChange>& answer) {
+                                 std::int64_t planned_at,
+                                 const IdempotentResponse<TableChange>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<TableChange> {
     auto open = STRATA_TRY(lock_table(connection, table_id));
     if (open.table.sequence != planned_at) return stale("table");

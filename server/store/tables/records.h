@@ -12,10 +12,10 @@
 #include "domain/layers/key_colors.h"
 #include "domain/layers/key_numbers.h"
 #include "domain/people/role.h"
-#include "domain/tables/mark.h"
+#include "domain/tables/surface_feature.h"
 #include "domain/tables/table.h"
 #include "expression/expression.h"
-#include "store/content/first_answer.h"
+#include "store/content/idempotent_response.h"
 #include "store/tables/table_changes.h"
 
 namespace strata::store {
@@ -60,14 +60,17 @@ class Records {
                                      const std::string& field);
   // The lines and points that records of a table have on a model, by key; after sequence `at` of
   // the table, or now.
-  Result<std::vector<KeyMark>> marks(std::int64_t table_id, Role seen_by, std::int64_t model_id,
-                                     std::optional<std::int64_t> at = {});
+  Result<std::vector<KeyFeature>> features(std::int64_t table_id, Role seen_by,
+                                           std::int64_t model_id,
+                                           std::optional<std::int64_t> at = {});
   // All or none: where the change has problems, nothing was written.
   Result<TableChange> write(std::int64_t table_id, const WriteRecords& asked,
-                            const std::string& user, const FirstAnswer<TableChange>& answer = {});
+                            const std::string& user,
+                            const IdempotentResponse<TableChange>& answer = {});
   Result<TableChange> remove(std::int64_t table_id, std::int64_t key,
                              std::optional<std::int64_t> version, const std::string& user,
-                             bool dry_run = false, const FirstAnswer<TableChange>& answer = {});
+                             bool dry_run = false,
+                             const IdempotentResponse<TableChange>& answer = {});
   Result<std::vector<std::int64_t>> missing(std::int64_t table_id,
                                             std::span<const std::int64_t> keys);
 

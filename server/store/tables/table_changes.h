@@ -13,10 +13,10 @@
 
 namespace strata::store {
 
-inline constexpr std::int64_t kMostRecords = 1'000'000;     // of a table
-inline constexpr std::size_t kMostRecordsAtOnce = 100'000;  // of a call
-inline constexpr std::size_t kMostRowProblems = 100;        // that are told
-inline constexpr std::size_t kLongestUniqueText = 1000;     // bytes: what an index takes
+inline constexpr std::int64_t kMaxRecords = 1'000'000;     // of a table
+inline constexpr std::size_t kMaxRecordsAtOnce = 100'000;  // of a call
+inline constexpr std::size_t kMaxRowProblems = 100;        // that are told
+inline constexpr std::size_t kMaxUniqueTextLength = 1000;  // bytes: what an index takes
 
 // What is asked of one record.
 struct RecordInput {
@@ -70,9 +70,9 @@ struct TableEditRow {
     std::int64_t id = 0;  // key or column
     Cells before, after;
   };
-  std::vector<Change> changes;  // the first kMostToldChanges of them
+  std::vector<Change> changes;  // the first kMaxToldChanges of them
   std::int64_t total_changes = 0;
 };
-inline constexpr int kMostToldChanges = 100;
+inline constexpr int kMaxToldChanges = 100;
 
 }  // namespace strata::store

@@ -176,7 +176,7 @@ Result<TableHistory> read_history(PgConnection& connection, std::int64_t table_i
             .integer(table_id)
             .integer(row.sequence)
             .optional_integer(key)
-            .integer(kMostToldChanges)));
+            .integer(kMaxToldChanges)));
     for (int c = 0; c < changes.rows(); ++c)
       row.changes.push_back({changes.boolean(c, 0), changes.integer(c, 1),
                              cells_from(changes.json(c, 2)), cells_from(changes.json(c, 3))});

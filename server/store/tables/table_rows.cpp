@@ -238,7 +238,7 @@ Result<void> make_way(PgConnection& connection, std::int64_t table_id) {
 Result<void> make_rows_table(PgConnection& connection, std::int64_t table_id) {
   return run(connection, "CREATE TABLE " + table_name(table_id) +
                              " (key bigint PRIMARY KEY CHECK (key BETWEEN 0 AND " +
-                             std::to_string(kHighestKey) + "), version bigint NOT NULL)");
+                             std::to_string(kMaxRecordKey) + "), version bigint NOT NULL)");
 }
 
 Result<void> drop_rows_table(PgConnection& connection, std::int64_t table_id) {
@@ -358,7 +358,7 @@ Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, std::i
     }
   }
   auto page =
-      load_page(connection, table_id, open.table.columns, {}, {}, Params(), order, {kMostRecords});
+      load_page(connection, table_id, open.table.columns, {}, {}, Params(), order, {kMaxRecords});
   if (!page) return tl::unexpected(page.error());
   std::vector<std::int64_t> keys;
   if (terms)

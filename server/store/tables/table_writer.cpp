@@ -172,9 +172,9 @@ class Writer {
     }
     records_ = open_.table.records + static_cast<std::int64_t>(change_.created.size()) -
                static_cast<std::int64_t>(change_.deleted.size());
-    if (records_ > kMostRecords)
+    if (records_ > kMaxRecords)
       return fail(ErrorCode::conflict, "Table full",
-                  "A table has at most " + std::to_string(kMostRecords) + " records.");
+                  "A table has at most " + std::to_string(kMaxRecords) + " records.");
     for (const Record& record : then) check_record(record);
     if (!change_.problems.empty()) return {};
     STRATA_TRY(delete_rows(connection_, open_.table.id, keys));
@@ -195,7 +195,7 @@ class Writer {
     for (const Column& column : open_.table.columns) {
       if (column.target) STRATA_TRY(check_targets(column, then));
       if (holds_attachments(column.kind)) STRATA_TRY(check_attached(column, then));
-      if (holds_marks(column.kind)) STRATA_TRY(check_marked(column, then));
+      if (holds_features(column.kind)) STRATA_TRY(check_marked(column, then));
     }
     STRATA_TRY(check_named());
     change_.records = std::move(then);
@@ -210,10 +210,10 @@ class Writer {
       const auto value = record.values.find(column.id);
       const nlohmann::json held = value == record.values.end() ? nlohmann::json() : value->second;
       if (column.unique && held.is_string() &&
-          held.get_ref<const std::string&>().size() > kLongestUniqueText)
+          held.get_ref<const std::string&>().size() > kMaxUniqueTextLength)
         add_problem(record.key, {ErrorCode::invalid, "Text too long",
                                  "Texts of a unique column have at most " +
-                                     std::to_string(kLongestUniqueText) + " bytes.",
+                                     std::to_string(kMaxUniqueTextLength) + " bytes.",
                                  field_of(column)});
       const bool is_written = after.contains(std::to_string(column.id)) || after.contains(kExists);
       if (!is_written || (!edit_.checks_values && !(column.required && held.is_null()))) continue;
@@ -296,8 +296,8 @@ class Writer {
       const Cells& after = edit_.records.at(row.key);
       if (value == row.values.end() || value->second.is_null()) continue;
       if (!after.contains(std::to_string(column.id)) && !after.contains(kExists)) continue;
-      for (const auto& mark : value->second) {
-        const auto model = mark.at("model").get<std::int64_t>();
+      for (const auto& feature : value->second) {
+        const auto model = feature.at("model").get<std::int64_t>();
         if (known.contains(model)) continue;
         add_problem(row.key, {ErrorCode::invalid, "No such model",
                               "\"" + column.name + "\" lies on model " + std::to_string(model) +
@@ -354,11 +354,11 @@ class Writer {
                           " Change the records first.",
                       "column");
         if (column.unique && held.is_string() &&
-            held.get_ref<const std::string&>().size() > kLongestUniqueText)
+            held.get_ref<const std::string&>().size() > kMaxUniqueTextLength)
           return fail(ErrorCode::conflict, "Values do not fit",
                       "Record " + std::to_string(row.key) +
                           ": texts of a unique column have at most " +
-                          std::to_string(kLongestUniqueText) + " bytes.",
+                          std::to_string(kMaxUniqueTextLength) + " bytes.",
                       "unique");
       }
       if (column.target || holds_attachments(column.kind)) {
@@ -443,7 +443,7 @@ class Writer {
   }
 
   void add_problem(std::int64_t key, Error problem) {
-    if (change_.problems.size() < kMostRowProblems)
+    if (change_.problems.size() < kMaxRowProblems)
       change_.problems.push_back({key, std::move(problem), {}});
   }
 
@@ -562,9 +562,9 @@ Result<void> fit_column(PgConnection& connection, const OpenTable& open, Column&
 }
 
 Result<Column> insert_column(PgConnection& connection, const OpenTable& open, Column column) {
-  if (open.all.size() >= static_cast<std::size_t>(kMostColumns))
+  if (open.all.size() >= static_cast<std::size_t>(kMaxColumns))
     return fail(ErrorCode::conflict, "Too many columns",
-                "A table has at most " + std::to_string(kMostColumns) +
+                "A table has at most " + std::to_string(kMaxColumns) +
                     " columns, those that were dropped among them.");
   column.hidden = true;
   auto row = STRATA_TRY(connection.query(

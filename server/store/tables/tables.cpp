@@ -55,7 +55,7 @@ Result<TableChange> retype(PgConnection& connection, OpenTable& open, const Colu
       ++converted;
     } else {
       ++lost_count;
-      if (lost.size() < kMostRowProblems) lost.push_back(row.key);
+      if (lost.size() < kMaxRowProblems) lost.push_back(row.key);
     }
   }
   edit.record["converted"] = converted;
@@ -93,12 +93,12 @@ Result<Table> Tables::find(const std::string& ref, Role seen_by) {
   });
 }
 
-Result<Table> Tables::create(const Table& table, const FirstAnswer<Table>& answer) {
+Result<Table> Tables::create(const Table& table, const IdempotentResponse<Table>& answer) {
   return change(pool_, answer,
                 [&](PgConnection& connection) { return insert_table(connection, table); });
 }
 
-Result<Table> Tables::update(const Table& table, const FirstAnswer<Table>& answer) {
+Result<Table> Tables::update(const Table& table, const IdempotentResponse<Table>& answer) {
   STRATA_TRY(check_name(table.name));
   STRATA_TRY(check_text(table.description, "description"));
   STRATA_TRY(check_labels(table.labels));
@@ -134,7 +134,7 @@ Result<Table> Tables::update(const Table& table, const FirstAnswer<Table>& answe
   });
 }
 
-Result<void> Tables::remove(std::int64_t id, const FirstAnswer<>& answer) {
+Result<void> Tables::remove(std::int64_t id, const IdempotentResponse<>& answer) {
   auto gone = change(pool_, answer, [&](PgConnection& connection) -> Result<void> {
     STRATA_TRY(lock_table(connection, id));
     // What is gone for ever keeps no table, though its content is not erased yet.
@@ -191,7 +191,7 @@ Result<std::vector<Layer>> Layers::of_table(std::int64_t table_id, Role seen_by)
 
 Result<TableChange> Tables::create_column(std::int64_t table_id, const Column& column,
                                           const std::string& user,
-                                          const FirstAnswer<TableChange>& answer) {
+                                          const IdempotentResponse<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
   const auto work = [&](PgConnection& connection) -> Result<TableChange> {
     auto open = STRATA_TRY(lock_table(connection, table_id));
@@ -214,7 +214,7 @@ Result<TableChange> Tables::create_column(std::int64_t table_id, const Column& c
 Result<TableChange> Tables::update_column(std::int64_t table_id, const Column& column,
                                           std::optional<std::int64_t> version,
                                           const std::string& user,
-                                          const FirstAnswer<TableChange>& answer) {
+                                          const IdempotentResponse<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
   const auto work = [&](PgConnection& connection) -> Result<TableChange> {
     auto open = STRATA_TRY(lock_table(connection, table_id));
@@ -240,7 +240,7 @@ Result<TableChange> Tables::update_column(std::int64_t table_id, const Column& c
 
 Result<Table> Tables::show_column(std::int64_t table_id, std::int64_t column_id,
                                   Visibility visibility, std::int64_t version,
-                                  const FirstAnswer<Table>& answer) {
+                                  const IdempotentResponse<Table>& answer) {
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Table> {
     auto open = STRATA_TRY(lock_table(connection, table_id));
     auto found = STRATA_TRY(shown_column(open, column_id, version));
@@ -267,7 +267,7 @@ Result<Table> Tables::show_column(std::int64_t table_id, std::int64_t column_id,
 Result<TableChange> Tables::drop_column(std::int64_t table_id, std::int64_t column_id,
                                         std::optional<std::int64_t> version,
                                         const std::string& user,
-                                        const FirstAnswer<TableChange>& answer) {
+                                        const IdempotentResponse<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<TableChange> {
     auto open = STRATA_TRY(lock_table(connection, table_id));

@@ -11,7 +11,7 @@
 #include "domain/people/visibility.h"
 #include "domain/tables/table.h"
 #include "domain/tables/term.h"
-#include "store/content/first_answer.h"
+#include "store/content/idempotent_response.h"
 #include "store/tables/table_changes.h"
 
 namespace strata::store {
@@ -46,36 +46,36 @@ class Tables {
   Result<std::vector<Table>> of_project(std::int64_t project_id, Role seen_by);  // by name
   Result<Table> find(const std::string& ref, Role seen_by);
   // with its columns
-  Result<Table> create(const Table& table, const FirstAnswer<Table>& answer = {});
+  Result<Table> create(const Table& table, const IdempotentResponse<Table>& answer = {});
   // name, labels, description
-  Result<Table> update(const Table& table, const FirstAnswer<Table>& answer = {});
+  Result<Table> update(const Table& table, const IdempotentResponse<Table>& answer = {});
   // refused (conflict) while something names it
-  Result<void> remove(std::int64_t id, const FirstAnswer<>& answer = {});
+  Result<void> remove(std::int64_t id, const IdempotentResponse<>& answer = {});
   Result<std::vector<TableChange>> create_several(
       const std::vector<NewTable>& tables, bool dry_run, const std::string& user,
-      const std::string& op, const FirstAnswer<std::vector<TableChange>>& answer = {});
+      const std::string& op, const IdempotentResponse<std::vector<TableChange>>& answer = {});
   // Terms come into a list (conflict: the table is none) as one entry of its journal: those whose
   // URI or code is there change that record, the others are new, and what the text does not have
   // stays. All or none; problems name the term by its place.
   Result<TableChange> import_terms(std::int64_t table_id, const TermList& list, bool dry_run,
                                    const std::string& user,
-                                   const FirstAnswer<TableChange>& answer = {});
+                                   const IdempotentResponse<TableChange>& answer = {});
   // Where the kind or target changes, the column makes way for a new one that takes over what it
   // can hold: `record` of the change says how much that was (`converted`, `lost`, `lost_keys`).
   Result<TableChange> create_column(std::int64_t table_id, const Column& column,
                                     const std::string& user,
-                                    const FirstAnswer<TableChange>& answer = {});
+                                    const IdempotentResponse<TableChange>& answer = {});
   Result<TableChange> update_column(std::int64_t table_id, const Column& column,
                                     std::optional<std::int64_t> version, const std::string& user,
-                                    const FirstAnswer<TableChange>& answer = {});
+                                    const IdempotentResponse<TableChange>& answer = {});
   // Who sees the column, now and in the past: no entry of the journal, so that nothing is seen
   // again by undo. Where version equals. Refused (invalid): a list of terms lives by the column, or
   // who writes records would not see it and must fill it.
   Result<Table> show_column(std::int64_t table_id, std::int64_t column_id, Visibility visibility,
-                            std::int64_t version, const FirstAnswer<Table>& answer = {});
+                            std::int64_t version, const IdempotentResponse<Table>& answer = {});
   Result<TableChange> drop_column(std::int64_t table_id, std::int64_t column_id,
                                   std::optional<std::int64_t> version, const std::string& user,
-                                  const FirstAnswer<TableChange>& answer = {});
+                                  const IdempotentResponse<TableChange>& answer = {});
   // Of the last change until a time, as `sequence_at`.
   Result<std::int64_t> sequence_at(std::int64_t table_id, const std::string& utc);
   // The same until an edit of a model was made.
@@ -89,7 +89,8 @@ class Tables {
   // none. Done where the table is as it was when it was planned (stale).
   Result<UndoPlan> plan_undo(std::int64_t table_id, const std::string& user, bool redo);
   Result<TableChange> undo(std::int64_t table_id, const std::string& user, bool redo,
-                           std::int64_t planned_at, const FirstAnswer<TableChange>& answer = {});
+                           std::int64_t planned_at,
+                           const IdempotentResponse<TableChange>& answer = {});
 
  private:
   Pool& pool_;

@@ -85,7 +85,7 @@ class TermIntake {
         key = by_uri->second;
       else if (by_code != key_of_code_.end())
         key = by_code->second;
-      else if (next > kHighestKey)
+      else if (next > kMaxRecordKey)
         return fail(ErrorCode::conflict, "No keys left", "All keys up to 4294967295 were given.",
                     "key");
       else
@@ -208,7 +208,7 @@ class TermIntake {
   }
 
   void add_problem(std::size_t index, const Error& problem) {
-    if (problems_.size() < kMostRowProblems)
+    if (problems_.size() < kMaxRowProblems)
       problems_.push_back({keys_.size() > index ? keys_[index] : 0, problem, index});
   }
 
@@ -247,7 +247,7 @@ Result<TableChange> insert_with_terms(PgConnection& connection, Table table, con
 
 Result<std::vector<TableChange>> Tables::create_several(
     const std::vector<NewTable>& tables, bool dry_run, const std::string& user,
-    const std::string& op, const FirstAnswer<std::vector<TableChange>>& answer) {
+    const std::string& op, const IdempotentResponse<std::vector<TableChange>>& answer) {
   STRATA_TRY(check_text(user, "user"));
   std::optional<std::vector<TableChange>> told;
   const auto work = [&](PgConnection& connection) -> Result<std::vector<TableChange>> {
@@ -275,7 +275,7 @@ Result<std::vector<TableChange>> Tables::create_several(
 
 Result<TableChange> Tables::import_terms(std::int64_t table_id, const TermList& list, bool dry_run,
                                          const std::string& user,
-                                         const FirstAnswer<TableChange>& answer) {
+                                         const IdempotentResponse<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
   std::optional<TableChange> told;
   const auto work = [&](PgConnection& connection) -> Result<TableChange> {
@@ -303,7 +303,7 @@ Result<std::optional<Palette>> term_palette_of(PgConnection& connection, std::in
   if (!columns) return std::optional<Palette>();
   const RecordOrder by_key[] = {{0, false}};
   auto page = STRATA_TRY(load_page(connection, table_id, open.table.columns, {}, {}, Params(),
-                                   by_key, {static_cast<std::int64_t>(kMostTermColors)}));
+                                   by_key, {static_cast<std::int64_t>(kMaxTermColors)}));
   return std::optional(terms_palette(list_terms(*columns, page.rows)));
 }
 

@@ -104,17 +104,17 @@ TEST_F(UseCases, what_was_in_the_trash_for_long_enough_is_erased_and_nothing_els
   ASSERT_TRUE(send(stroke(other, 9, {{320, 240}}, 20)));
   ASSERT_TRUE(room()->layers().put_in_trash(layer.id, {.key = {}, .make = {}, .user = "carl"}));
   const auto in_trash = [&] {
-    return store_->bin()
+    return store_->trash()
         .of_project(model_.project_id, {Role::owner, std::chrono::days(30)}, 10, 0)
         ->total;
   };
   {
-    TrashPurger keeper(store_->bin(), std::chrono::days(30));
+    TrashPurger keeper(store_->trash(), std::chrono::days(30));
     keeper.stop();
   }
   EXPECT_EQ(in_trash(), 1);
-  TrashPurger keeper(store_->bin(), std::chrono::days(0));
-  keeper.look();
+  TrashPurger keeper(store_->trash(), std::chrono::days(0));
+  keeper.check_now();
   EXPECT_TRUE(wait_until([&] { return in_trash() == 0; }));
   keeper.stop();
   EXPECT_TRUE(room()->layers().find(other.slug));

@@ -13,9 +13,9 @@
 #include "mesh/io/load.h"
 #include "mesh/texels/surface_map.h"
 #include "store/content/layers.h"
-#include "store/content/looks.h"
 #include "store/content/models.h"
 #include "store/content/projects.h"
+#include "store/content/surface_images.h"
 #include "store/journal/journal_reads.h"
 #include "store/pg/pg.h"
 #include "strata_dirs.h"
@@ -152,13 +152,13 @@ TEST_F(Import, a_textured_scan_keeps_its_files_and_its_picture_becomes_the_first
   ASSERT_EQ(model->source_files.size(), 3u);
   EXPECT_EQ(model->source_files[2].name, "skin.png");
   EXPECT_EQ(model->source_files[2].sha256, to_hex(sha256(png)));
-  const auto looks = store_->looks().of_model(model->id);
-  ASSERT_TRUE(looks);
-  ASSERT_EQ(looks->size(), 1u);
-  EXPECT_EQ((*looks)[0].name, "Base colour");
-  EXPECT_EQ((*looks)[0].media_type, "image/png");
-  EXPECT_EQ((*looks)[0].width, 64);
-  EXPECT_EQ((*looks)[0].sha256, to_hex(sha256(png))) << "byte for byte";
+  const auto images = store_->surface_images().of_model(model->id);
+  ASSERT_TRUE(images);
+  ASSERT_EQ(images->size(), 1u);
+  EXPECT_EQ((*images)[0].name, "Base colour");
+  EXPECT_EQ((*images)[0].media_type, "image/png");
+  EXPECT_EQ((*images)[0].width, 64);
+  EXPECT_EQ((*images)[0].sha256, to_hex(sha256(png))) << "byte for byte";
 }
 
 TEST_F(Import, a_zip_is_kept_as_it_is_and_what_is_in_it_is_imported) {

@@ -25,7 +25,7 @@ class RoomAreas : public RoomTest {
     RoomTest::SetUp();
     wet_ = make_layer(ValueType::u8, 2048, "wet");
     crack_ = make_layer(ValueType::u8, 2048, "crack");
-    marks_ = make_layer(ValueType::u16, 2048, "marks");
+    features_ = make_layer(ValueType::u16, 2048, "marks");
   }
 
   // What the fixture's strokes are seen through.
@@ -95,7 +95,7 @@ class RoomAreas : public RoomTest {
     return edit;
   }
 
-  Layer wet_, crack_, marks_;
+  Layer wet_, crack_, features_;
 };
 
 std::uint64_t valid_texels(const TileMap& tiles) {
@@ -130,24 +130,24 @@ TEST_F(RoomAreas, a_fill_where_a_condition_holds_follows_the_other_layers) {
   fill.value_bits = 900;
   fill.region = FillEdit::Where{of(Op::all, {of(Op::equal, {layer_value("wet"), number(5)}),
                                              of(Op::negation, {valid("crack")})})};
-  expect_durable_and_undoable(marks_, request(marks_, fill));
-  const TileMap wet = tiles("wet"), crack = tiles("crack"), marks = tiles("marks");
+  expect_durable_and_undoable(features_, request(features_, fill));
+  const TileMap wet = tiles("wet"), crack = tiles("crack"), features = tiles("marks");
   std::uint64_t checked = 0;
   for (const auto& [address, tile] : wet)
     for_each_texel(tile->valid, [&](int texel) {
       const bool cracked = crack.contains(address) && crack.at(address)->valid.test(texel);
       const bool expected = tile->bits(texel) == 5 && !cracked;
-      const bool is = marks.contains(address) && marks.at(address)->valid.test(texel);
+      const bool is = features.contains(address) && features.at(address)->valid.test(texel);
       ASSERT_EQ(is, expected) << address.x << "," << address.y << " texel " << texel;
       checked += is;
     });
-  EXPECT_EQ(checked, valid_texels(marks)) << "nothing else is painted, gutter included";
+  EXPECT_EQ(checked, valid_texels(features)) << "nothing else is painted, gutter included";
 }
 
 TEST_F(RoomAreas, a_fill_over_a_layer_that_is_not_there_is_refused_and_paints_nothing) {
   FillEdit fill;
   fill.region = FillEdit::Where{valid("salt")};
-  const auto answer = send(request(marks_, fill));
+  const auto answer = send(request(features_, fill));
   ASSERT_FALSE(answer);
   EXPECT_EQ(answer.error().code, ErrorCode::invalid);
   EXPECT_EQ(answer.error().field, "where");
@@ -156,13 +156,13 @@ TEST_F(RoomAreas, a_fill_over_a_layer_that_is_not_there_is_refused_and_paints_no
 }
 
 TEST_F(RoomAreas, a_layer_can_be_filled_by_what_it_holds_itself) {
-  ASSERT_TRUE(send(stroke(marks_, 3, {{300, 240}}, 30)));
-  ASSERT_TRUE(send(stroke(marks_, 4, {{340, 240}}, 30)));
+  ASSERT_TRUE(send(stroke(features_, 3, {{300, 240}}, 30)));
+  ASSERT_TRUE(send(stroke(features_, 4, {{340, 240}}, 30)));
   const auto before = room()->queries().statistics("marks");
   FillEdit fill;
   fill.erase = true;
   fill.region = FillEdit::Where{of(Op::greater, {layer_value("marks"), number(3)})};
-  const auto answer = send(request(marks_, fill));
+  const auto answer = send(request(features_, fill));
   ASSERT_TRUE(answer) << answer.error().detail;
   const auto after = room()->queries().statistics("marks");
   EXPECT_FALSE(after->keys.contains(4));
@@ -174,8 +174,8 @@ TEST_F(RoomAreas, the_piece_under_a_pixel_is_the_whole_pot_across_all_its_seams)
   FillEdit fill;
   fill.value_bits = 12;
   fill.region = FillEdit::Island{room::PixelPlace{view(), 320, 240}};
-  const auto edit = request(marks_, fill);
-  expect_durable_and_undoable(marks_, edit);
+  const auto edit = request(features_, fill);
+  expect_durable_and_undoable(features_, edit);
   const double area_m2 = room()->model().area_m2();
   EXPECT_NEAR(room()->queries().statistics("marks")->area_m2, area_m2, area_m2 * 1e-3);
   // The same from a point in space, for another layer.
@@ -186,14 +186,14 @@ TEST_F(RoomAreas, the_piece_under_a_pixel_is_the_whole_pot_across_all_its_seams)
 }
 
 TEST_F(RoomAreas, what_is_connected_with_a_place_is_filled_and_nothing_else) {
-  ASSERT_TRUE(send(stroke(marks_, 3, {{260, 240}}, 25)));
+  ASSERT_TRUE(send(stroke(features_, 3, {{260, 240}}, 25)));
   const TileMap one = tiles("marks");
-  ASSERT_TRUE(send(stroke(marks_, 3, {{380, 240}}, 25)));
+  ASSERT_TRUE(send(stroke(features_, 3, {{380, 240}}, 25)));
   const auto both = room()->queries().statistics("marks")->keys.at(3).texels;
   FillEdit fill;
   fill.value_bits = 7;
   fill.region = FillEdit::Connected{room::PixelPlace{view(), 380, 240}};
-  expect_durable_and_undoable(marks_, request(marks_, fill));
+  expect_durable_and_undoable(features_, request(features_, fill));
   const auto keys = room()->queries().statistics("marks")->keys;
   EXPECT_EQ(keys.at(3).texels + keys.at(7).texels, both);
   for (const auto& [address, tile] : one)
@@ -203,12 +203,12 @@ TEST_F(RoomAreas, what_is_connected_with_a_place_is_filled_and_nothing_else) {
 }
 
 TEST_F(RoomAreas, from_where_nothing_is_all_that_holds_nothing_is_filled) {
-  ASSERT_TRUE(send(stroke(marks_, 3, {{320, 240}}, 40)));
+  ASSERT_TRUE(send(stroke(features_, 3, {{320, 240}}, 40)));
   const auto painted = room()->queries().statistics("marks")->texels;
   FillEdit fill;
   fill.value_bits = 1;
   fill.region = FillEdit::Connected{room::PixelPlace{view(), 320, 320}};
-  ASSERT_TRUE(send(request(marks_, fill)));
+  ASSERT_TRUE(send(request(features_, fill)));
   const auto statistics = room()->queries().statistics("marks");
   EXPECT_EQ(statistics->keys.at(3).texels, painted);
   const double area_m2 = room()->model().area_m2();
@@ -218,7 +218,7 @@ TEST_F(RoomAreas, from_where_nothing_is_all_that_holds_nothing_is_filled) {
 TEST_F(RoomAreas, a_place_beside_the_model_is_refused) {
   FillEdit fill;
   fill.region = FillEdit::Island{room::PixelPlace{view(), 2, 2}};
-  const auto answer = send(request(marks_, fill));
+  const auto answer = send(request(features_, fill));
   ASSERT_FALSE(answer);
   EXPECT_EQ(answer.error().code, ErrorCode::invalid);
   EXPECT_EQ(answer.error().field, "at");
@@ -247,14 +247,14 @@ TEST_F(RoomAreas, a_polygon_paints_what_a_square_brush_of_its_shape_does) {
 
 TEST_F(RoomAreas, a_polygon_is_durable_and_undoable) {
   expect_durable_and_undoable(
-      marks_, request(marks_, polygon({{220, 140}, {420, 200}, {300, 220}, {360, 360}}, 77)));
+      features_, request(features_, polygon({{220, 140}, {420, 200}, {300, 220}, {360, 360}}, 77)));
 }
 
 TEST_F(RoomAreas, a_polygon_erases_and_its_notch_stays) {
-  ASSERT_TRUE(send(request(marks_, FillEdit{false, 5})));
+  ASSERT_TRUE(send(request(features_, FillEdit{false, 5})));
   auto edit = polygon({{200, 150}, {440, 150}, {440, 330}, {320, 240}, {200, 330}}, 0);
   edit.erase = true;
-  ASSERT_TRUE(send(request(marks_, edit)));
+  ASSERT_TRUE(send(request(features_, edit)));
   const auto value_at = [&](double x, double y) {
     return room()->queries().pick(view(), x, y, {"marks"})->values.at(0);
   };
@@ -264,11 +264,12 @@ TEST_F(RoomAreas, a_polygon_erases_and_its_notch_stays) {
 }
 
 TEST_F(RoomAreas, a_polygon_out_of_the_window_paints_nothing_and_is_an_edit_all_the_same) {
-  const auto answer = send(request(marks_, polygon({{-900, -900}, {-800, -900}, {-800, -800}}, 1)));
+  const auto answer =
+      send(request(features_, polygon({{-900, -900}, {-800, -900}, {-800, -800}}, 1)));
   ASSERT_TRUE(answer) << answer.error().detail;
   EXPECT_EQ(answer->texels_changed, 0u);
   const auto whole =
-      send(request(marks_, polygon({{-1e6, -1e6}, {1e6, -1e6}, {1e6, 1e6}, {-1e6, 1e6}}, 1)));
+      send(request(features_, polygon({{-1e6, -1e6}, {1e6, -1e6}, {1e6, 1e6}, {-1e6, 1e6}}, 1)));
   ASSERT_TRUE(whole);
   EXPECT_GT(whole->texels_changed, 10'000u);
 }

@@ -172,7 +172,7 @@ struct UnsavedEars : room::Listener {
   }
   void layer_changed(LayerChange, const Layer&) override {}
   void model_changed(const Model&) override {}
-  void look_changed(LayerChange, const Look&) override {}
+  void surface_image_changed(LayerChange, const SurfaceImage&) override {}
   void model_deleted() override {}
   void presence_changed() override {}
   void view_refused(std::uint32_t, const Error&) override {}
@@ -193,7 +193,7 @@ TEST_F(RoomTest, edits_whose_commit_fails_are_taken_back_everywhere) {
   auto member = room()->participants().join({"anna", Role::owner}, {}, &ears,
                                             [](const stream::FrameMessages&) {});
 
-  // Reading goes on, writing does not.
+  // PointMeasurement goes on, writing does not.
   execute(dsn_, "alter table edits add constraint no_more check (sequence < 2) not valid");
   std::vector<std::future<Result<room::EditAnswer>>> answers;
   std::vector<room::EditRequest> lost;

@@ -35,7 +35,7 @@ TEST_F(RoomMaps, readings_are_painted_around_their_places_over_what_is_there) {
   ASSERT_TRUE(a.hit && b.hit);
   const double radius = 3;
   auto tiles =
-      room()->surface().dabs(layer_, {{a.position, 1, 2}, {b.position, 2, 3}}, radius, 0.5);
+      room()->surface().point_splats(layer_, {{a.position, 1, 2}, {b.position, 2, 3}}, radius, 0.5);
   ASSERT_TRUE(tiles) << tiles.error().detail;
   const auto answer = paint(*tiles);
   ASSERT_TRUE(answer) << answer.error().detail;
@@ -58,7 +58,7 @@ TEST_F(RoomMaps, readings_are_painted_around_their_places_over_what_is_there) {
 
 TEST_F(RoomMaps, a_reading_too_far_from_the_surface_is_refused_with_its_line) {
   const auto a = pick(300, 240);
-  const auto tiles = room()->surface().dabs(
+  const auto tiles = room()->surface().point_splats(
       layer_, {{a.position, 1, 2}, {a.position + glm::dvec3(0, -500, 0), 2, 7}}, 3, 1);
   ASSERT_FALSE(tiles);
   EXPECT_EQ(tiles.error().code, ErrorCode::invalid);

@@ -25,7 +25,7 @@ class RoomQueries : public RoomTest {
  protected:
   void SetUp() override {
     RoomTest::SetUp();
-    marks_ = make_layer(ValueType::u8, 2048, "marks");
+    features_ = make_layer(ValueType::u8, 2048, "marks");
     depth_ = make_layer(ValueType::f32, 2048, "depth");
   }
 
@@ -39,14 +39,14 @@ class RoomQueries : public RoomTest {
     return room()->queries().pick(view(), x, y, {})->position;
   }
 
-  Layer marks_, depth_;
+  Layer features_, depth_;
 };
 
 TEST_F(RoomQueries, every_question_can_be_asked_of_the_past) {
-  ASSERT_TRUE(send(stroke(marks_, 3, {{300, 240}}, 40)));
+  ASSERT_TRUE(send(stroke(features_, 3, {{300, 240}}, 40)));
   const auto then = room()->edits().sequence();
   const auto before = room()->queries().statistics("marks");
-  ASSERT_TRUE(send(stroke(marks_, 9, {{320, 240}, {360, 240}}, 60)));
+  ASSERT_TRUE(send(stroke(features_, 9, {{320, 240}, {360, 240}}, 60)));
   EXPECT_TRUE(room()->queries().statistics("marks")->keys.contains(9));
 
   room::Selection past;
@@ -73,8 +73,8 @@ TEST_F(RoomQueries, every_question_can_be_asked_of_the_past) {
 }
 
 TEST_F(RoomQueries, a_selection_adds_up_to_what_the_layers_hold_there) {
-  ASSERT_TRUE(send(stroke(marks_, 3, {{300, 240}}, 50)));
-  ASSERT_TRUE(send(stroke(marks_, 4, {{420, 240}}, 30)));
+  ASSERT_TRUE(send(stroke(features_, 3, {{300, 240}}, 50)));
+  ASSERT_TRUE(send(stroke(features_, 4, {{420, 240}}, 30)));
   ASSERT_TRUE(send(stroke(depth_, 0.5, {{310, 240}}, 20)));
   const auto all = room()->queries().statistics("marks");
 
@@ -127,7 +127,7 @@ TEST_F(RoomQueries, inside_an_outline_lies_what_a_polygon_paints) {
   room::PolygonEdit polygon;
   polygon.value_bits = 8;
   polygon.outline = {view(), path, false};
-  const auto painted = send(request(marks_, polygon));
+  const auto painted = send(request(features_, polygon));
   ASSERT_TRUE(painted);
   room::Selection selection;
   selection.within = room::Outline{view(), path, false};
@@ -191,7 +191,7 @@ TEST_F(RoomQueries, records_decide_what_their_keys_cover) {
   fill.value_bits = 5;
   fill.region = room::FillEdit::Where{
       *query::parse_condition("pieces.state = 'firm' and pieces.thickness < 9", "where")};
-  const auto filled = send(request(marks_, fill));
+  const auto filled = send(request(features_, fill));
   ASSERT_TRUE(filled) << filled.error().detail;
   EXPECT_NEAR(filled->area_m2, second, 1e-9 * second);
 
@@ -209,7 +209,7 @@ TEST_F(RoomQueries, records_decide_what_their_keys_cover) {
 }
 
 TEST_F(RoomQueries, a_cross_table_holds_each_layers_area) {
-  ASSERT_TRUE(send(stroke(marks_, 3, {{300, 240}}, 50)));
+  ASSERT_TRUE(send(stroke(features_, 3, {{300, 240}}, 50)));
   const Layer units = make_layer(ValueType::u16, 4096, "units");
   ASSERT_TRUE(send(stroke(units, 700, {{340, 240}}, 50)));
   const auto table = room()->queries().cross_table("units", "marks");
@@ -227,9 +227,9 @@ TEST_F(RoomQueries, a_cross_table_holds_each_layers_area) {
 }
 
 TEST_F(RoomQueries, statistics_after_a_stroke_are_those_of_a_fresh_count) {
-  ASSERT_TRUE(send(stroke(marks_, 3, {{300, 240}}, 50)));
+  ASSERT_TRUE(send(stroke(features_, 3, {{300, 240}}, 50)));
   ASSERT_TRUE(room()->queries().statistics("marks"));
-  ASSERT_TRUE(send(stroke(marks_, 5, {{320, 250}}, 30)));
+  ASSERT_TRUE(send(stroke(features_, 5, {{320, 250}}, 30)));
   const auto kept = room()->queries().statistics("marks");
   restart();
   const auto fresh = room()->queries().statistics("marks");

@@ -37,7 +37,7 @@ class Ears : public room::Listener {
   void edits_unsaved(const std::vector<Edit>&, const Error&) override {}
   void layer_changed(LayerChange, const Layer&) override {}
   void model_changed(const Model&) override {}
-  void look_changed(LayerChange, const Look&) override {}
+  void surface_image_changed(LayerChange, const SurfaceImage&) override {}
   void model_deleted() override { count(deleted_); }
   void presence_changed() override { count(presence_); }
   void view_refused(std::uint32_t, const Error&) override {}

@@ -283,7 +283,7 @@ TEST_F(Reviews, a_picture_of_the_newest_durable_state_is_hatched_as_that_of_now_
   };
   // Sends edits whose last is seen before any is durable, and looks at the newest durable state
   // then.
-  const auto while_unsaved = [&](std::vector<room::EditRequest> edits, const auto& look) {
+  const auto while_unsaved = [&](std::vector<room::EditRequest> edits, const auto& image) {
     execute("begin");
     execute("lock table edits in share row exclusive mode");  // may be read, and not written
     const auto seen = std::make_shared<std::promise<void>>();
@@ -297,7 +297,7 @@ TEST_F(Reviews, a_picture_of_the_newest_durable_state_is_hatched_as_that_of_now_
     const bool is_seen =
         seen->get_future().wait_for(std::chrono::minutes(2)) == std::future_status::ready;
     EXPECT_TRUE(is_seen);
-    if (is_seen) look(room()->edits().durable_state());
+    if (is_seen) image(room()->edits().durable_state());
     execute("commit");
     for (auto& saved : answers) EXPECT_TRUE(saved.get());
   };
@@ -395,7 +395,7 @@ TEST_F(Reviews, any_order_of_edits_undos_and_decisions_equals_the_oracle) {
         strokes[waiting].in_force = decision == Decision::accept;
       }
     }
-    TileMap content, marks;
+    TileMap content, features;
     for (const auto& [sequence, stroke] : strokes) {
       if (!stroke.in_force) continue;
       for (const auto& [address, written] : stroke.written) {
@@ -404,25 +404,25 @@ TEST_F(Reviews, any_order_of_edits_undos_and_decisions_equals_the_oracle) {
         for (int texel = 0; texel < kTexelsPerTile; ++texel)
           if (written.test(texel)) tile->write(texel, stroke.value);
         content[address] = tile;
-        auto mark =
-            std::make_shared<TileData>(marks[address] ? *marks[address] : TileData(ValueType::u8));
+        auto feature = std::make_shared<TileData>(features[address] ? *features[address]
+                                                                    : TileData(ValueType::u8));
         for (int texel = 0; texel < kTexelsPerTile; ++texel)
           if (written.test(texel) && stroke.review == Review::pending)
-            mark->write(texel, 1);
+            feature->write(texel, 1);
           else if (written.test(texel))
-            mark->clear(texel);
-        marks[address] = mark;
+            feature->clear(texel);
+        features[address] = feature;
       }
     }
     const auto drop_empty = [](TileMap& map) {
       std::erase_if(map, [](auto& entry) { return !entry.second->valid.any(); });
     };
     drop_empty(content);
-    drop_empty(marks);
+    drop_empty(features);
     EXPECT_TRUE(test::equal(tiles(), content)) << "seed " << seed;
-    EXPECT_TRUE(test::equal(room::read_provisional(*store_, layer_).value(), marks))
+    EXPECT_TRUE(test::equal(room::read_provisional(*store_, layer_).value(), features))
         << "seed " << seed;
-    EXPECT_TRUE(test::equal(room()->edits().durable_state().provisional[layer_.id], marks))
+    EXPECT_TRUE(test::equal(room()->edits().durable_state().provisional[layer_.id], features))
         << "seed " << seed;
     // the marks that the room kept up to date are those of the journal
     expect_picture_of_journal();

@@ -34,7 +34,7 @@ std::vector<std::string> told(const ActivityPage& page) {
 }
 
 template <class... Effect>
-FirstAnswer<Effect...> by(const std::string& user) {
+IdempotentResponse<Effect...> by(const std::string& user) {
   return {.key = {}, .make = {}, .user = user};
 }
 

@@ -27,8 +27,8 @@ class Analysis : public ::testing::Test {
   const Model model_ = test::make_model(*store_);
 };
 
-Column marks(const std::string& name, ColumnKind kind,
-             Visibility visibility = Visibility::everyone) {
+Column feature_column(const std::string& name, ColumnKind kind,
+                      Visibility visibility = Visibility::everyone) {
   Column column;
   column.name = name;
   column.kind = kind;
@@ -63,9 +63,10 @@ TEST_F(Analysis, lines_and_points_of_records_are_well_known_text) {
   Table table;
   table.project_id = model_.project_id;
   table.name = "Damage";
-  table.columns = {marks("Crack", ColumnKind::line), marks("Sample", ColumnKind::point),
-                   marks("Tomb", ColumnKind::point, Visibility::curators),
-                   marks("Crack (wkt)", ColumnKind::text)};
+  table.columns = {feature_column("Crack", ColumnKind::line),
+                   feature_column("Sample", ColumnKind::point),
+                   feature_column("Tomb", ColumnKind::point, Visibility::curators),
+                   feature_column("Crack (wkt)", ColumnKind::text)};
   table = store_->tables().create(table).value();
   EXPECT_EQ(
       ask("SELECT string_agg(attname, ', ' ORDER BY attnum) FROM pg_attribute WHERE attrelid = "

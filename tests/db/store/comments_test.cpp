@@ -204,9 +204,9 @@ TEST_F(CommentsOfAModel, of_replies_deleted_at_once_the_last_takes_the_deleted_f
 }
 
 TEST_F(CommentsOfAModel, an_answer_is_kept_with_the_comment) {
-  const FirstAnswer<Comment> answer{"k", [](const Comment& made) {
-                                      return nlohmann::json{{"id", made.id}};
-                                    }};
+  const IdempotentResponse<Comment> answer{"k", [](const Comment& made) {
+                                             return nlohmann::json{{"id", made.id}};
+                                           }};
   const auto first = comments_.create(thread("Look"), answer).value();
   EXPECT_EQ(store_->answers().find("k").value()->at("id"), first.id);
   EXPECT_EQ(comments_.create(thread("Look"), answer).error().code, ErrorCode::conflict);
@@ -249,9 +249,9 @@ TEST_F(CommentsOfAModel, of_who_is_deleted_no_name_is_left_in_them) {
           .value();
   settled.resolved = {"Ada.L", {}};
   ASSERT_TRUE(comments_.update(settled));
-  const FirstAnswer<Comment> answer{"k", [](const Comment& made) {
-                                      return nlohmann::json{{"body", made.text}};
-                                    }};
+  const IdempotentResponse<Comment> answer{"k", [](const Comment& made) {
+                                             return nlohmann::json{{"body", made.text}};
+                                           }};
   ASSERT_TRUE(comments_.create(reply(settled.id, "For @ada.l only"), answer));
   ASSERT_TRUE(store_->accounts().remove("ada.l"));
   EXPECT_EQ(comments_.comment(hers.id, Role::owner)->user, former);

@@ -6,7 +6,7 @@
 
 #include <map>
 
-#include "store/content/first_answer.h"
+#include "store/content/idempotent_response.h"
 #include "store/content/projects.h"
 #include "store/pg/pg.h"
 #include "store/store.h"
@@ -84,12 +84,13 @@ TEST(Jobs, success_is_written_with_what_it_made) {
   Project fresh;
   fresh.name = "Made by a job";
   const auto answer = [](std::int64_t job) {
-    return FirstAnswer<Project>{{},
-                                [](const Project& made) {
-                                  return nlohmann::json{{"request", "x"}, {"model", made.id}};
-                                },
-                                {},
-                                job};
+    return IdempotentResponse<Project>{
+        {},
+        [](const Project& made) {
+          return nlohmann::json{{"request", "x"}, {"model", made.id}};
+        },
+        {},
+        job};
   };
   const auto made = store->projects().create(fresh, answer(21));
   ASSERT_TRUE(made);

@@ -178,7 +178,7 @@ TEST_F(KiosksOfATour, links_go_with_their_tour_and_names_with_their_person) {
 
 TEST_F(KiosksOfATour, a_tour_has_a_bounded_number_of_good_links) {
   const auto first = made("First");
-  for (int i = 1; i < Kiosks::kMostKiosks; ++i) made("More");
+  for (int i = 1; i < Kiosks::kMaxKiosks; ++i) made("More");
   EXPECT_EQ(kiosks_.create(tour_, "Too many", "carl", {}).error().code, ErrorCode::conflict);
   ASSERT_TRUE(kiosks_.revoke(first.kiosk.id));
   EXPECT_TRUE(kiosks_.create(tour_, "In its place", "carl", {}));

@@ -137,8 +137,8 @@ TEST(People, a_session_is_opened_only_by_the_password_that_holds) {
   EXPECT_EQ(open("old").error().code, ErrorCode::unauthenticated);
   const auto first = open("new").value().secret;
   EXPECT_EQ(store->tokens().find(first).value()->roles.everywhere, Role::annotator);
-  for (std::size_t i = 0; i < kMostTokens; ++i) ASSERT_TRUE(open("new"));
-  EXPECT_EQ(store->tokens().of_user("Ada", TokenKind::session)->size(), kMostTokens);
+  for (std::size_t i = 0; i < kMaxTokens; ++i) ASSERT_TRUE(open("new"));
+  EXPECT_EQ(store->tokens().of_user("Ada", TokenKind::session)->size(), kMaxTokens);
   EXPECT_FALSE(store->tokens().find(first).value()) << "the oldest gives way";
 }
 
@@ -369,7 +369,7 @@ TEST(Passwords, fit_only_their_own_hash) {
     EXPECT_FALSE(password_fits(broken, "a password that nobody has").value()) << broken;
 }
 
-FirstAnswer<Project> answer_of(const std::string& key) {
+IdempotentResponse<Project> answer_of(const std::string& key) {
   return {key, [](const Project& made) {
             return nlohmann::json{{"status", 201}, {"id", made.id}, {"area", 0.1}};
           }};

@@ -184,7 +184,7 @@ TEST_F(Tables, required_and_unique_columns_hold_for_every_way_in) {
   EXPECT_EQ(twice.error().code, ErrorCode::conflict);
   EXPECT_NE(twice.error().detail.find("Record 1"), std::string::npos);
   EXPECT_EQ(put(table, 1, {{"code", nullptr}}).error().code, ErrorCode::invalid);
-  EXPECT_EQ(put(table, 2, {{"code", std::string(kLongestUniqueText + 1, 'x')}}).error().field,
+  EXPECT_EQ(put(table, 2, {{"code", std::string(kMaxUniqueTextLength + 1, 'x')}}).error().field,
             "values.code");
   // Two in one call, and a swap, which is only right as a whole.
   ASSERT_TRUE(put(table, 2, {{"code", "B"}}));

@@ -85,20 +85,20 @@ TEST_F(Tools, bad_names_and_unknown_ids_are_refused) {
 }
 
 TEST_F(Tools, a_site_has_no_more_than_its_limit_however_many_ask_at_once) {
-  for (int i = 0; i < store::Tools::kMostTools - 2; ++i)
+  for (int i = 0; i < store::Tools::kMaxTools - 2; ++i)
     ASSERT_TRUE(store_->tools().create(named("n"), flag_));
   std::vector<std::thread> people;
   for (int i = 0; i < 4; ++i)
     people.emplace_back([&] { (void)store_->tools().create(named("n"), flag_); });
   for (auto& person : people) person.join();
-  EXPECT_EQ(store_->tools().all()->size(), std::size_t{store::Tools::kMostTools});
+  EXPECT_EQ(store_->tools().all()->size(), std::size_t{store::Tools::kMaxTools});
   EXPECT_EQ(store_->tools().create(named("n"), flag_).error().code, ErrorCode::conflict);
   ASSERT_TRUE(store_->tools().remove(store_->tools().all()->front().id));
   EXPECT_TRUE(store_->tools().create(named("n"), flag_)) << "deleted ones do not count";
 }
 
 TEST_F(Tools, the_answer_is_kept_with_what_it_answers_for) {
-  const FirstAnswer<Tool> answer{"key", [](const Tool& made) { return to_json(made); }};
+  const IdempotentResponse<Tool> answer{"key", [](const Tool& made) { return to_json(made); }};
   const auto tool = store_->tools().create(named("Flag"), flag_, answer).value();
   EXPECT_EQ(store_->answers().find("key").value().value()["id"], tool.id);
   EXPECT_EQ(store_->tools().create(named("Flag"), flag_, answer).error().code, ErrorCode::conflict);

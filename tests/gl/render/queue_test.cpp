@@ -193,10 +193,10 @@ TEST_F(FrameTurns, bands_of_large_pictures_take_turns_with_live_views_and_leave_
 TEST_F(FrameTurns, a_hundred_onlookers_and_one_who_acts_have_half_of_the_time_each) {
   FrameQueue queue(256);
   constexpr ViewHandle kActor = 500;
-  const auto look_on = [&](ViewHandle view) { push(queue, part(view)); };
+  const auto surface_image_on = [&](ViewHandle view) { push(queue, part(view)); };
   const auto act = [&] { push(queue, acting(part(kActor))); };
-  for (ViewHandle view = 1; view <= 100; ++view) look_on(view);
-  for (int i = 0; i < 50; ++i) look_on(draw(queue, 20));
+  for (ViewHandle view = 1; view <= 100; ++view) surface_image_on(view);
+  for (int i = 0; i < 50; ++i) surface_image_on(draw(queue, 20));
   act();
   EXPECT_EQ(draw(queue, 20), kActor) << "who comes waits for one picture at most";
   std::map<ViewHandle, int> turns;
@@ -204,18 +204,18 @@ TEST_F(FrameTurns, a_hundred_onlookers_and_one_who_acts_have_half_of_the_time_ea
     act();
     const ViewHandle view = draw(queue, 20);
     ++turns[view];
-    if (view != kActor) look_on(view);
+    if (view != kActor) surface_image_on(view);
   }
   EXPECT_NEAR(turns[kActor], 200, 2);
   EXPECT_EQ(turns.size(), 101u) << "everybody sees something";
   for (const auto& [view, count] : turns) EXPECT_LE(count, view == kActor ? 202 : 3) << view;
   // Alone, onlookers have all of it, which is no credit for who acts later.
-  for (int i = 0; i < 400; ++i) look_on(draw(queue, 20));
+  for (int i = 0; i < 400; ++i) surface_image_on(draw(queue, 20));
   int acted = 0;
   for (int i = 0; i < 20; ++i) {
     act();
     const ViewHandle view = draw(queue, 20);
-    view == kActor ? ++acted : (look_on(view), 0);
+    view == kActor ? ++acted : (surface_image_on(view), 0);
   }
   EXPECT_NEAR(acted, 10, 1);
 }
@@ -245,8 +245,8 @@ TEST_F(FrameTurns, rectangles_do_not_use_up_the_time_of_whole_pictures_of_those_
   };
   std::deque<Drawing> under_way;  // as GpuThread has them: what comes before others in front
   double turning_ms = 0, painting_ms = 0, onlookers_ms = 0;
-  const auto look_on = [&](ViewHandle view) { push(queue, part(view)); };
-  for (ViewHandle view = 1; view <= 100; ++view) look_on(view);
+  const auto surface_image_on = [&](ViewHandle view) { push(queue, part(view)); };
+  for (ViewHandle view = 1; view <= 100; ++view) surface_image_on(view);
   for (int now_ms = 0; now_ms < 20'000; now_ms += 5) {
     // Newer requests take the place of what waits all the time.
     push(queue, acting(whole(kTurning, now_ms + 1)));
@@ -266,7 +266,7 @@ TEST_F(FrameTurns, rectangles_do_not_use_up_the_time_of_whole_pictures_of_those_
     if (drawing.busy_ms < (view == kTurning ? 60 : view == kPainting ? 10 : 30)) continue;
     queue.finished(drawing.task, drawing.busy_ms);
     under_way.pop_front();
-    if (view < kTurning) look_on(view);
+    if (view < kTurning) surface_image_on(view);
   }
   EXPECT_NEAR(onlookers_ms, 10'000, 500);
   EXPECT_NEAR(turning_ms, 5'000, 500);
@@ -346,8 +346,8 @@ TEST_F(FrameTurns, pictures_that_differ_in_anything_are_not_shared) {
   others[2].height = 4;
   others[3].camera.view[3][0] = 1;
   others[4].style.layers = {{1, nullptr, 1}};
-  others[5].style.looks = {{1, 1}};
-  others[6].style.marks = std::make_shared<const std::vector<DrawnMark>>();
+  others[5].style.images = {{1, 1}};
+  others[6].style.features = std::make_shared<const std::vector<DrawnFeature>>();
   others[7].style.unit_mm = 1;
   others[8].changed.reset();  // nobody is sent a whole picture who lacks a rectangle
   push(queue, base);

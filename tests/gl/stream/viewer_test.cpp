@@ -375,7 +375,7 @@ TEST_F(StreamViewer,
     view->set_camera(number, camera(0.02 * double(number)), true);
     last =
         client.wait_for([&](const FrameHeader& h) { return h.camera_seq == number; }, last.frame);
-    std::this_thread::sleep_for(1.5 * LinkPace::kLongestWait);
+    std::this_thread::sleep_for(1.5 * LinkPace::kMaxWait);
     view->ack(client.frames().back().frame);
   }
   EXPECT_LT(last.full_width, std::uint32_t(kWidth));

@@ -104,7 +104,7 @@ TEST_F(Editors, who_comes_hears_what_there_is_in_the_project) {
 }
 
 TEST_F(Editors, a_connection_has_so_many_records_and_no_more) {
-  const auto most = static_cast<std::int64_t>(RecordEditLocks::kMostOfSession);
+  const auto most = static_cast<std::int64_t>(RecordEditLocks::kMaxOfSession);
   for (std::int64_t key = 0; key < most; ++key) EXPECT_TRUE(begin({4, key}, ada));
   EXPECT_TRUE(begin({4, 0}, ada)) << "one that it has is no more";
   const auto refused = book.begin(1, {4, most}, ada, false, tell);

@@ -48,7 +48,7 @@ TEST(ColumnValue, texts_are_utf8_and_blank_ones_are_none) {
   expect_refused(column(ColumnKind::text), 3);
   expect_refused(column(ColumnKind::text), "\xff");
   expect_refused(column(ColumnKind::text), std::string("a\0b", 3));
-  expect_refused(column(ColumnKind::text), std::string(kLongestText + 1, 'a'));
+  expect_refused(column(ColumnKind::text), std::string(kMaxTextLength + 1, 'a'));
 }
 
 TEST(ColumnValue, numbers_keep_to_the_limits_of_their_column) {

@@ -16,7 +16,7 @@ using namespace strata;
 using testing::HasSubstr;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::uint64_t kMost = 1 << 20;
+constexpr std::uint64_t kMax = 1 << 20;
 
 Bytes decoded(const std::string& base64) {
   return mesh::decode_data_uri("data:;base64," + base64).value();
@@ -71,7 +71,7 @@ Bytes expected_elements() {
 
 TEST(MeshMeshopt, the_second_version_of_attributes_is_decoded) {
   const auto found =
-      mesh::decode_meshopt(decoded(kStream), {"ATTRIBUTES", "", kCount, kStride}, kMost);
+      mesh::decode_meshopt(decoded(kStream), {"ATTRIBUTES", "", kCount, kStride}, kMax);
   ASSERT_TRUE(found) << found.error();
   EXPECT_EQ(*found, expected_elements());
 }
@@ -82,29 +82,29 @@ TEST(MeshMeshopt, a_stream_that_is_cut_or_longer_or_of_an_unknown_channel_is_ref
   for (std::size_t size = 0; size < whole.size(); ++size) {
     // of exactly this size
     const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
-    EXPECT_FALSE(mesh::decode_meshopt(cut, shape, kMost)) << size;
+    EXPECT_FALSE(mesh::decode_meshopt(cut, shape, kMax)) << size;
   }
   Bytes longer = whole;
   longer.insert(longer.begin() + 1, 0);
-  EXPECT_FALSE(mesh::decode_meshopt(longer, shape, kMost));
+  EXPECT_FALSE(mesh::decode_meshopt(longer, shape, kMax));
   for (const int mode : {3, 0x10, 0x21, 0x1f}) {
     Bytes wrong = whole;
     wrong.back() = static_cast<std::uint8_t>(mode);
-    EXPECT_FALSE(mesh::decode_meshopt(wrong, shape, kMost)) << mode;
+    EXPECT_FALSE(mesh::decode_meshopt(wrong, shape, kMax)) << mode;
   }
 }
 
 TEST(MeshMeshopt, colours_are_turned_from_luma_and_chroma) {
   const auto bytes = mesh::decode_meshopt(
       decoded("of8Afn2BAswA/f3+AGUAg4KAAAAAAH1+/cwAAAAAAAAAAAAAAAAAAAAAAAAAQH/B/wA="),
-      {"ATTRIBUTES", "COLOR", 6, 4}, kMost);
+      {"ATTRIBUTES", "COLOR", 6, 4}, kMax);
   ASSERT_TRUE(bytes) << bytes.error();
   EXPECT_EQ(*bytes, (Bytes{254, 1,   0,   255, 0, 254, 0, 255, 1,  0,   255, 128,
                            255, 255, 255, 255, 0, 0,   0, 0,   51, 102, 153, 204}));
   const auto wide = mesh::decode_meshopt(
       decoded("of/9AAECAQLMAAYFFh0MAAICAQBlAA0PEAAHAAYAAwIAFhUIAAAAAAIBAswAAAUGDQwAAAAAAAAA"
               "AAAAAAAAAAAE/wcB/P8PAAA="),
-      {"ATTRIBUTES", "COLOR", 6, 8}, kMost);
+      {"ATTRIBUTES", "COLOR", 6, 8}, kMax);
   ASSERT_TRUE(wide) << wide.error();
   std::vector<std::uint16_t> numbers(24);
   std::memcpy(numbers.data(), wide->data(), 48);
@@ -131,12 +131,12 @@ TEST(MeshMeshopt, what_a_view_says_of_itself_must_fit) {
       {{"ATTRIBUTES", "", 400'000'000, 4}, "cannot hold 400000000 elements"},
       {{"ATTRIBUTES", "", 60'000, 20}, "it becomes too large"}};
   for (const auto& [shape, says] : wrong) {
-    const auto found = mesh::decode_meshopt(stream, shape, kMost);
+    const auto found = mesh::decode_meshopt(stream, shape, kMax);
     ASSERT_FALSE(found) << says;
     EXPECT_THAT(found.error(), HasSubstr(says));
   }
-  EXPECT_FALSE(mesh::decode_meshopt({}, {"ATTRIBUTES", "", 3, 4}, kMost));
-  EXPECT_TRUE(mesh::decode_meshopt({}, {"ATTRIBUTES", "", 0, 4}, kMost));
+  EXPECT_FALSE(mesh::decode_meshopt({}, {"ATTRIBUTES", "", 3, 4}, kMax));
+  EXPECT_TRUE(mesh::decode_meshopt({}, {"ATTRIBUTES", "", 0, 4}, kMax));
 }
 
 TEST(MeshMeshopt, every_index_mode_gives_what_was_encoded) {
@@ -144,7 +144,7 @@ TEST(MeshMeshopt, every_index_mode_gives_what_was_encoded) {
   Bytes sequence(meshopt_encodeIndexSequenceBound(indices.size(), 70'001));
   sequence.resize(meshopt_encodeIndexSequence(sequence.data(), sequence.size(), indices.data(),
                                               indices.size()));
-  const auto found = mesh::decode_meshopt(sequence, {"INDICES", "NONE", indices.size(), 4}, kMost);
+  const auto found = mesh::decode_meshopt(sequence, {"INDICES", "NONE", indices.size(), 4}, kMax);
   ASSERT_TRUE(found) << found.error();
   EXPECT_EQ(std::memcmp(found->data(), indices.data(), found->size()), 0);
 }

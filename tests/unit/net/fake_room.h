@@ -6,11 +6,11 @@
 #include "room/edits.h"
 #include "room/layers.h"
 #include "room/listener.h"
-#include "room/looks.h"
 #include "room/participants.h"
 #include "room/queries.h"
 #include "room/room.h"
 #include "room/selection.h"
+#include "room/surface_images.h"
 #include "room/view_settings.h"
 
 // A room for tests of live sessions, without a database and a renderer.
@@ -56,19 +56,25 @@ class FakeLayers final : public room::Layers {
     if (ref == "cracks" || ref == "7") return layer_;
     return fail(ErrorCode::not_found, "No such layer", "There is no layer '" + ref + "'.");
   }
-  Result<Layer> create(Layer layer, const store::FirstAnswer<Layer>&,
+  Result<Layer> create(Layer layer, const store::IdempotentResponse<Layer>&,
                        std::vector<Column>) override {
     return layer;
   }
-  Result<Layer> update(Layer layer, const store::FirstAnswer<Layer>&) override { return layer; }
-  Result<Layer> widen(const Layer& layer, ValueType, const store::FirstAnswer<Layer>&) override {
+  Result<Layer> update(Layer layer, const store::IdempotentResponse<Layer>&) override {
     return layer;
   }
-  Result<void> erase(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
-  Result<void> put_in_trash(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
-  Result<store::BinRestored> restore(const store::BinEntry& entry,
-                                     const store::FirstAnswer<store::BinRestored>&) override {
-    return store::BinRestored{entry, {}, {}};
+  Result<Layer> widen(const Layer& layer, ValueType,
+                      const store::IdempotentResponse<Layer>&) override {
+    return layer;
+  }
+  Result<void> erase(std::int64_t, const store::IdempotentResponse<>&) override { return {}; }
+  Result<void> put_in_trash(std::int64_t, const store::IdempotentResponse<>&) override {
+    return {};
+  }
+  Result<store::TrashRestored> restore(
+      const store::TrashEntry& entry,
+      const store::IdempotentResponse<store::TrashRestored>&) override {
+    return store::TrashRestored{entry, {}, {}};
   }
   Result<Layer> mark_computed(std::int64_t, const std::string&, std::int64_t,
                               const std::map<std::int64_t, std::int64_t>&) override {
@@ -150,23 +156,26 @@ class FakeQueries final : public room::Queries {
   query::SurfacePoint found;
 };
 
-class FakeLooks final : public room::Looks {
+class FakeSurfaceImages final : public room::SurfaceImages {
  public:
-  std::vector<Look> all() const override { return {look_}; }
-  Result<Look> find(const std::string& ref) const override {
-    if (ref == "uv-light" || ref == "9") return look_;
+  std::vector<SurfaceImage> all() const override { return {image_}; }
+  Result<SurfaceImage> find(const std::string& ref) const override {
+    if (ref == "uv-light" || ref == "9") return image_;
     return fail(ErrorCode::not_found, "No such look", "There is no look '" + ref + "'.");
   }
-  Result<Look> create(Look look, std::span<const std::uint8_t>,
-                      const store::FirstAnswer<Look>&) override {
-    return look;
+  Result<SurfaceImage> create(SurfaceImage image, std::span<const std::uint8_t>,
+                              const store::IdempotentResponse<SurfaceImage>&) override {
+    return image;
   }
-  Result<Look> update(const Look& look, const store::FirstAnswer<Look>&) override { return look; }
-  Result<void> erase(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
+  Result<SurfaceImage> update(const SurfaceImage& image,
+                              const store::IdempotentResponse<SurfaceImage>&) override {
+    return image;
+  }
+  Result<void> erase(std::int64_t, const store::IdempotentResponse<>&) override { return {}; }
 
  private:
-  const Look look_{9, 1,   "UV light",           "uv-light", "",    "image/png", 16,
-                   8, 100, std::string(64, 'a'), 1,          false, 0,           1};
+  const SurfaceImage image_{9, 1,   "UV light",           "uv-light", "",    "image/png", 16,
+                            8, 100, std::string(64, 'a'), 1,          false, 0,           1};
 };
 
 class FakeParticipants final : public room::Participants {
@@ -199,7 +208,7 @@ class FakeRoom final : public room::Room {
     parts_.layers = &layers_;
     parts_.edits = &edits_;
     parts_.queries = &queries_;
-    parts_.looks = &looks_;
+    parts_.images = &images_;
     parts_.participants = &participants_;
   }
   Model model() const override {
@@ -209,14 +218,14 @@ class FakeRoom final : public room::Room {
     model.name = model.slug = "pot";
     return model;
   }
-  Result<Model> update_model(Model model, const store::FirstAnswer<Model>&) override {
+  Result<Model> update_model(Model model, const store::IdempotentResponse<Model>&) override {
     return model;
   }
 
   FakeLayers layers_;
   FakeEdits edits_;
   FakeQueries queries_;
-  FakeLooks looks_;
+  FakeSurfaceImages images_;
   FakeParticipants participants_;
 };
 

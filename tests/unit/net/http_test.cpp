@@ -410,7 +410,7 @@ TEST(Upload, the_files_of_a_scan_come_together_with_their_folders) {
   EXPECT_EQ(take(part("a.obj", "1") + part("a.obj", "2") + "--X--\r\n").error().code,
             ErrorCode::invalid);
   std::string many;
-  for (std::size_t i = 0; i <= kMostFormFiles; ++i) many += part("f" + std::to_string(i), "x");
+  for (std::size_t i = 0; i <= kMaxFormFiles; ++i) many += part("f" + std::to_string(i), "x");
   EXPECT_EQ(take(many + "--X--\r\n").error().code, ErrorCode::too_large);
   EXPECT_EQ(
       take("--X\r\nContent-Disposition: form-data; name=\"f\"\r\n\r\nv\r\n--X--\r\n").error().code,

@@ -67,7 +67,7 @@ struct Live : testing::Test {
                                             room::Portrait{"Anna Ost"}, std::nullopt, socket);
     shared->sockets->add(socket, session, "secret");
   }
-  // Looks for the record on a worker, where it begins.
+  // SurfaceImages for the record on a worker, where it begins.
   void edit_record(LiveSession& of, std::int64_t key, bool editing,
                    const json& more = json::object()) {
     json message{{"op", "record.edit"}, {"table", 4}, {"key", key}, {"editing", editing}};

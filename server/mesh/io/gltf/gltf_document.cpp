@@ -16,9 +16,9 @@ namespace {
 using nlohmann::json;
 
 constexpr std::uint32_t kGlbMagic = 0x46546c67, kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;
-constexpr std::size_t kMostJson = std::size_t{256} << 20;
+constexpr std::size_t kMaxJson = std::size_t{256} << 20;
 // Bytes that compressed views may become, all together: twice what the largest mesh needs.
-constexpr std::uint64_t kMostDecoded = std::uint64_t{4} << 30;
+constexpr std::uint64_t kMaxDecoded = std::uint64_t{4} << 30;
 
 // Extensions that a file may require and that are read, or that change only how it looks.
 constexpr std::array<std::string_view, 12> kKnownExtensions{
@@ -112,7 +112,7 @@ Result<void> GltfDocument::read_container() {
     }
     if (text.empty()) return refuse_file("The GLB has no JSON part.");
   }
-  if (text.size() > kMostJson) return refuse_file("The JSON of the glTF has more than 256 MB.");
+  if (text.size() > kMaxJson) return refuse_file("The JSON of the glTF has more than 256 MB.");
   json_ = json::parse(text.begin(), text.end(), nullptr, false);
   if (!json_.is_object()) return refuse_file("This is not a glTF: its text is not a JSON object.");
   return {};
@@ -228,7 +228,7 @@ Result<GltfDocument::View> GltfDocument::decompress(const json& view, const json
   auto out =
       decode_meshopt(whole.subspan(*offset, *length),
                      {text_of(extension, "mode"), text_of(extension, "filter"), *count, *stride},
-                     kMostDecoded - decoded_bytes_);
+                     kMaxDecoded - decoded_bytes_);
   if (!out)
     return refuse_file(name + " is not what " + extension_name + " makes: " + out.error() + ".");
   decoded_bytes_ += out->size();

@@ -57,9 +57,9 @@ Result<GltfInstances> GltfInstances::read(GltfDocument& document, const json& no
                          (part.components == 4
                               ? " numbers of FLOAT, or of BYTE or SHORT that are normalised."
                               : " numbers of FLOAT."));
-    if (form.count > kMostInstances)
+    if (form.count > kMaxInstances)
       return refuse_file("The glTF repeats a mesh " + std::to_string(form.count) + " times by " +
-                         kExtension + "; up to " + std::to_string(kMostInstances) +
+                         kExtension + "; up to " + std::to_string(kMaxInstances) +
                          " are read. Export the parts that you need as meshes.");
     if (count && *count != form.count)
       return refuse_file(name + " in the glTF has " + std::to_string(form.count) +

@@ -7,7 +7,7 @@
 namespace strata::mesh {
 
 // More of one node are refused: nobody paints on them one by one.
-constexpr std::uint64_t kMostInstances = 1'000'000;
+constexpr std::uint64_t kMaxInstances = 1'000'000;
 
 // Translation, rotation (a quaternion x y z w, of any length) and scale, as glTF applies them.
 glm::dmat4 gltf_transform(const glm::dvec3& translation, const glm::dvec4& rotation,
@@ -17,7 +17,7 @@ glm::dmat4 gltf_transform(const glm::dvec3& translation, const glm::dvec4& rotat
 class GltfInstances {
  public:
   // Of a node without the extension: one, where the node is. Refused as by `refuse_file`: counts
-  // that differ, numbers of other types than the extension has, more than kMostInstances.
+  // that differ, numbers of other types than the extension has, more than kMaxInstances.
   static Result<GltfInstances> read(GltfDocument& document, const nlohmann::json& node);
 
   std::uint64_t count() const { return count_; }

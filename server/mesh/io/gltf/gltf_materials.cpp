@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostNotes = 100;
+constexpr std::size_t kMaxNotes = 100;
 
 Wrap wrap_of(std::uint64_t mode) {
   if (mode == 33071) return Wrap::clamp;
@@ -90,7 +90,7 @@ class MaterialReader {
     }
     const auto source = STRATA_TRY(image_of(*texture));
     if (!source) {
-      if (pictureless_.insert(*index).second && pictureless_.size() <= kMostNotes)
+      if (pictureless_.insert(*index).second && pictureless_.size() <= kMaxNotes)
         note(repairs_, "texture without a picture: " + title_of(*texture, *index), 1);
       return {};
     }

@@ -18,9 +18,9 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr std::uint8_t kSecondVersion = 0xa1;
 // More than this many times its size no stream can become: of version 0, two bits stand for 16
 // bytes of a vertex, and of version 1 for 256.
-constexpr std::uint64_t kMostGain = 64, kMostGainOfSecond = 1024;
+constexpr std::uint64_t kMaxGain = 64, kMaxGainOfSecond = 1024;
 constexpr std::size_t kGroup = 16;
-constexpr std::size_t kLeastTail = 24;
+constexpr std::size_t kMinTail = 24;
 
 std::uint8_t unzigzag(std::uint8_t v) { return static_cast<std::uint8_t>((v >> 1) ^ -(v & 1)); }
 std::uint16_t unzigzag16(std::uint16_t v) {
@@ -35,7 +35,7 @@ class AttributeStream {
       : bytes_(bytes), count_(count), stride_(stride) {}
 
   bool decode(Bytes& out) {
-    const std::size_t tail = stride_ + stride_ / 4, padded = std::max(tail, kLeastTail);
+    const std::size_t tail = stride_ + stride_ / 4, padded = std::max(tail, kMinTail);
     if (bytes_.size() < 1 + padded) return false;
     at_ = 1;
     end_ = bytes_.size() - padded;
@@ -152,7 +152,7 @@ class AttributeStream {
 // this one either.
 template <class Unsigned, class Signed>
 void decode_colors(Bytes& out, std::size_t count) {
-  constexpr double kLargest = std::numeric_limits<Unsigned>::max();
+  constexpr double kMax = std::numeric_limits<Unsigned>::max();
   for (std::size_t i = 0; i < count; ++i) {
     std::array<Unsigned, 4> in;
     std::uint8_t* at = out.data() + i * sizeof in;
@@ -162,9 +162,10 @@ void decode_colors(Bytes& out, std::size_t count) {
     const int alpha = in[3] & scale >> 1;
     const std::array<int, 4> rgba{y + co - cg, y + cg, y - co - cg, alpha << 1 | (alpha & 1)};
     for (std::size_t k = 0; k < 4; ++k)
-      in[k] = scale == 0 ? Unsigned{0}
-                         : static_cast<Unsigned>(
-                               std::clamp(std::round(rgba[k] * (kLargest / scale)), 0.0, kLargest));
+      in[k] =
+          scale == 0
+              ? Unsigned{0}
+              : static_cast<Unsigned>(std::clamp(std::round(rgba[k] * (kMax / scale)), 0.0, kMax));
     std::memcpy(at, in.data(), sizeof in);
   }
 }
@@ -201,7 +202,7 @@ tl::expected<Bytes, std::string> decode_meshopt(std::span<const std::uint8_t> by
                           "\" does not belong to elements of " + std::to_string(stride) +
                           " bytes in the mode " + mode);
   const bool second = attributes && !bytes.empty() && bytes[0] == kSecondVersion;
-  if (count > 256 + (bytes.size() + 64) * (second ? kMostGainOfSecond : kMostGain) / stride)
+  if (count > 256 + (bytes.size() + 64) * (second ? kMaxGainOfSecond : kMaxGain) / stride)
     return tl::unexpected("its " + std::to_string(bytes.size()) + " bytes cannot hold " +
                           std::to_string(count) + " elements");
   if (count > most_bytes / stride) return tl::unexpected(std::string("it becomes too large"));

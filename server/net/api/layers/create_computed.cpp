@@ -68,7 +68,7 @@ Result<Response> create_formula_layer(const RouteContext& context, JobIdempotenc
       !made)
     shown = tl::unexpected(made.error());
   else
-    shown = layers.show(first_answer<Layer>(request, answer));
+    shown = layers.show(idempotent_response<Layer>(request, answer));
   if (!shown) {
     layers.take_back();
     return tl::unexpected(shown.error());

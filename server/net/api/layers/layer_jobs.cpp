@@ -5,7 +5,7 @@
 #include "jobs/job_queue.h"
 #include "net/http/idempotency_store.h"
 #include "room/room.h"
-#include "store/content/first_answer.h"
+#include "store/content/idempotent_response.h"
 #include "store/content/models.h"
 #include "store/store.h"
 
@@ -19,15 +19,15 @@ Result<jobs::JobResult> run(room::Room& room, app::NewLayers& layers, const Make
   jobs::JobResult result(room.model().id);
   result.layers = layers.ids();
   result.report = std::move(report);
-  const store::FirstAnswer<Layer> answer{key,
-                                         [&](const Layer&) {
-                                           return nlohmann::json{{"request", print},
-                                                                 {"model", result.model},
-                                                                 {"layers", result.layers},
-                                                                 {"report", result.report}};
-                                         },
-                                         {},
-                                         progress.job()};
+  const store::IdempotentResponse<Layer> answer{key,
+                                                [&](const Layer&) {
+                                                  return nlohmann::json{{"request", print},
+                                                                        {"model", result.model},
+                                                                        {"layers", result.layers},
+                                                                        {"report", result.report}};
+                                                },
+                                                {},
+                                                progress.job()};
   STRATA_TRY(layers.show(answer));
   return result;
 }

@@ -29,9 +29,9 @@ Result<Response> extent(const RouteContext& context, const Request& request) {
       room::highlighted_keys(context.store, *layer.table, request.role(), highlight, "filter");
   if (!keys) return tl::unexpected(keys.error());
   auto areas = STRATA_TRY((*room)->queries().key_areas(layer.slug));
-  const auto marks =
-      context.store.records().marks(*layer.table, request.role(), (*room)->model().id);
-  if (!marks) return tl::unexpected(marks.error());
+  const auto features =
+      context.store.records().features(*layer.table, request.role(), (*room)->model().id);
+  if (!features) return tl::unexpected(features.error());
   query::KeyArea all;
   CompensatedSum area_m2;
   bool is_somewhere = false;
@@ -52,10 +52,10 @@ Result<Response> extent(const RouteContext& context, const Request& request) {
   }
   const std::set<std::int64_t> wanted(keys->begin(), keys->end());
   std::set<std::int64_t> marked;
-  for (const auto& [key, mark] : *marks) {
+  for (const auto& [key, feature] : *features) {
     if (!wanted.contains(key)) continue;
     marked.insert(key);
-    for (const glm::dvec3& place : mark.places) add_bounds(place, place);
+    for (const glm::dvec3& place : feature.places) add_bounds(place, place);
   }
   nlohmann::json json{{"records", keys->size()},
                       {"painted", painted},

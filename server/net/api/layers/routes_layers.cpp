@@ -173,8 +173,8 @@ Result<Response> create_layer(const RouteContext& context, JobIdempotency& book,
   if (layer.formula)
     return create_formula_layer(context, book, request, room, std::move(layer),
                                 asked.palette.has_value(), answer);
-  auto created = room->layers().create(std::move(layer), first_answer<Layer>(request, answer),
-                                       std::move(*columns));
+  auto created = room->layers().create(
+      std::move(layer), idempotent_response<Layer>(request, answer), std::move(*columns));
   if (!created) return tl::unexpected(created.error());
   return answer(*created);
 }
@@ -250,7 +250,8 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
     if (!(asked == alone))
       return fail(ErrorCode::invalid, "Type with other changes",
                   "Change the type of a layer in a call of its own.", "type");
-    auto widened = room->layers().widen(*layer, *asked.type, first_answer<Layer>(request, answer));
+    auto widened =
+        room->layers().widen(*layer, *asked.type, idempotent_response<Layer>(request, answer));
     return widened ? Result<Response>(answer(*widened)) : tl::unexpected(widened.error());
   }
   if (asked.name) layer->name = *asked.name;
@@ -281,7 +282,8 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
                   "Accept or reject what waits on this layer before it is computed.", "expression");
   }
   STRATA_TRY(app::check_shows_nothing(context.store, *layer, room->layers().all()));
-  auto changed = room->layers().update(std::move(*layer), first_answer<Layer>(request, answer));
+  auto changed =
+      room->layers().update(std::move(*layer), idempotent_response<Layer>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   tell_threads(context, *changed, before, request.user());
   return answer(*changed);
@@ -292,9 +294,9 @@ Result<Response> delete_layer(const RouteContext& context, const Request& reques
   auto layer = STRATA_TRY(room->layers().find(request.param("layer")));
   STRATA_TRY(check_if_match(request, layer.version));
   auto gone = room->layers().put_in_trash(
-      layer.id, first_answer<>(request, [] { return empty_response(204); }));
+      layer.id, idempotent_response<>(request, [] { return empty_response(204); }));
   if (!gone) return tl::unexpected(gone.error());
-  if (context.options.bin_days == 0) context.trash_purger.look();
+  if (context.options.trash_days == 0) context.trash_purger.check_now();
   return empty_response(204);
 }
 

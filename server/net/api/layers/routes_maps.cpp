@@ -18,7 +18,7 @@
 #include "net/serialization/map_json.h"
 #include "net/serialization/map_query.h"
 #include "net/transport/server_options.h"
-#include "query/maps/readings.h"
+#include "query/maps/point_measurements.h"
 #include "room/edit.h"
 #include "room/layers.h"
 #include "room/room.h"
@@ -31,7 +31,7 @@
 namespace strata::net {
 namespace {
 
-constexpr double kLargestLength_mm = 1e7;
+constexpr double kMaxLength_mm = 1e7;
 
 struct Painted {
   TileMap tiles;
@@ -69,24 +69,24 @@ Handler painting(const RouteContext& context, std::string op, Paint paint) {
   };
 }
 
-Result<Painted> paint_readings(const Request& request, const Target& target) {
+Result<Painted> paint_point_measurements(const Request& request, const Target& target) {
   const auto file = MappedFile::open(request.body_file);
   if (!file || file->bytes().empty())
     return fail(ErrorCode::malformed, "Empty body", "Send the file as the body.", "body");
-  const auto radius_mm = STRATA_TRY(number_of(request, "radius_mm", 1e-6, kLargestLength_mm));
+  const auto radius_mm = STRATA_TRY(number_of(request, "radius_mm", 1e-6, kMaxLength_mm));
   const auto tolerance_mm =
-      STRATA_TRY(number_of(request, "tolerance_mm", 0, kLargestLength_mm, radius_mm));
-  const auto readings = STRATA_TRY(query::parse_readings(file->view()));
+      STRATA_TRY(number_of(request, "tolerance_mm", 0, kMaxLength_mm, radius_mm));
+  const auto measurements = STRATA_TRY(query::parse_point_measurements(file->view()));
   std::vector<room::PlacedValue> values;
-  for (const query::Reading& reading : readings) {
-    const auto bits =
-        app::bits_of(target.layer, reading.value, "Line " + std::to_string(reading.line) + ": ");
+  for (const query::PointMeasurement& measurement : measurements) {
+    const auto bits = app::bits_of(target.layer, measurement.value,
+                                   "Line " + std::to_string(measurement.line) + ": ");
     if (!bits) return tl::unexpected(bits.error());
-    values.push_back({reading.position, *bits, reading.line});
+    values.push_back({measurement.position, *bits, measurement.line});
   }
   const Unit unit = target.room->model().unit;
-  auto tiles = target.room->surface().dabs(target.layer, values, in_model_units(radius_mm, unit),
-                                           in_model_units(tolerance_mm, unit));
+  auto tiles = target.room->surface().point_splats(
+      target.layer, values, in_model_units(radius_mm, unit), in_model_units(tolerance_mm, unit));
   if (!tiles) return tl::unexpected(tiles.error());
   return Painted{std::move(*tiles),
                  {{"bytes", request.body_bytes}, {"sha256", sha256_hex(file->view())}}};
@@ -105,7 +105,7 @@ Result<Painted> paint_map(const RouteContext& context, ByteBudget& budget, MakeV
   app::MapTarget map_target{*target.room, target.layer};
   if (target.layer.table) {
     auto page = STRATA_TRY(context.store.records().page(*target.layer.table, request.role(),
-                                                        {{}, {}, {}, store::kMostRecords, 0}));
+                                                        {{}, {}, {}, store::kMaxRecords, 0}));
     for (const Record& record : page.records)
       map_target.records.insert(static_cast<double>(record.key));
   }
@@ -152,7 +152,7 @@ void add_map_routes(Router& router, const RouteContext& context) {
       return paint_map(context, *budget, make, request, target);
     };
   };
-  add(layer + "/readings", painting(context, "readings", paint_readings),
+  add(layer + "/readings", painting(context, "readings", paint_point_measurements),
       {"radius_mm", "tolerance_mm"});
   add(layer + "/polygons", painting(context, "polygons", map(app::polygon_values)),
       {"along", "value", "attribute", "names", "crs"});

@@ -31,7 +31,7 @@ using Names = app::RecordNames;
 
 // What records have besides texels: lines and points, of those that have some. Names as in
 // RecordMeasures.
-struct OfMarks {
+struct OfFeatures {
   std::vector<std::string> names;
   std::map<std::int64_t, std::vector<double>> of_key;
 
@@ -50,25 +50,25 @@ struct OfMarks {
 };
 
 // `model`: only those on it.
-Result<OfMarks> marks_of(const RouteContext& context, const Table& table, Role seen_by,
-                         const std::optional<Model>& model, std::optional<std::int64_t> at) {
+Result<OfFeatures> features_of(const RouteContext& context, const Table& table, Role seen_by,
+                               const std::optional<Model>& model, std::optional<std::int64_t> at) {
   store::RecordQuery query;
-  query.limit = store::kMostRecords;
+  query.limit = store::kMaxRecords;
   query.at = at;
   if (std::ranges::none_of(table.columns,
-                           [](const Column& column) { return holds_marks(column.kind); }))
-    return OfMarks{};
+                           [](const Column& column) { return holds_features(column.kind); }))
+    return OfFeatures{};
   const auto page = STRATA_TRY(context.store.records().page(table.id, seen_by, query));
   const auto measures =
       app::RecordMeasures::of_place(context, {page.table, model, {}}, page.table.columns);
   if (!measures) return tl::unexpected(measures.error());
-  OfMarks marks{measures->names(), {}};
+  OfFeatures features{measures->names(), {}};
   for (const Record& record : page.records) {
     auto values = measures->of(record);
     if (std::ranges::any_of(values, [](double value) { return value > 0; }))
-      marks.of_key[record.key] = std::move(values);
+      features.of_key[record.key] = std::move(values);
   }
-  return marks;
+  return features;
 }
 
 nlohmann::json sums_json(const query::Quantity& quantity) {
@@ -80,7 +80,7 @@ double share_of(const query::Quantity& quantity, const query::Quantities& all) {
 }
 
 nlohmann::json quantities_json(const query::Quantities& all, const Layer& layer, const Names& names,
-                               const OfMarks& marks) {
+                               const OfFeatures& features) {
   nlohmann::json list = nlohmann::json::array();
   const auto add_share = [&](nlohmann::json json, const query::Quantity& quantity) {
     json["share"] = share_of(quantity, all);
@@ -94,7 +94,7 @@ nlohmann::json quantities_json(const query::Quantities& all, const Layer& layer,
       const auto key = static_cast<std::int64_t>(*quantity.value);
       json["key"] = key;
       json["has_record"] = names.contains(key);
-      app::add_measures(json, marks.names, marks.of(key));
+      app::add_measures(json, features.names, features.of(key));
     } else if (quantity.value) {
       json["value"] = *quantity.value;
     }
@@ -104,7 +104,7 @@ nlohmann::json quantities_json(const query::Quantities& all, const Layer& layer,
   }
   const std::size_t count = list.size();
   nlohmann::json sum = add_share(sums_json(all.sum), all.sum);
-  app::add_measures(sum, marks.names, marks.sum());
+  app::add_measures(sum, features.names, features.sum());
   return {{"quantities", std::move(list)},
           {"total", count},
           {"sum", std::move(sum)},
@@ -112,7 +112,7 @@ nlohmann::json quantities_json(const query::Quantities& all, const Layer& layer,
 }
 
 app::Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Names& names,
-                    const OfMarks& marks, const std::string& name) {
+                    const OfFeatures& features, const std::string& name) {
   app::Sheet sheet{name, {"class"}, {}};
   const bool has_keys = layer.kind == LayerKind::database,
              has_values = query::classes_of(layer).each;
@@ -123,7 +123,7 @@ app::Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Name
   else
     sheet.heads.insert(sheet.heads.end(), {"from", "to"});
   sheet.heads.insert(sheet.heads.end(), {"pieces", "texels", "area_m2"});
-  sheet.heads.insert(sheet.heads.end(), marks.names.begin(), marks.names.end());
+  sheet.heads.insert(sheet.heads.end(), features.names.begin(), features.names.end());
   sheet.heads.emplace_back("percent_of_surface");
   const auto number = [](const std::optional<double>& value) {
     return value ? app::SheetCell(*value) : app::SheetCell();
@@ -145,17 +145,17 @@ app::Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Name
     add(quantity,
         label.empty() && quantity.value ? app::SheetCell(*quantity.value)
                                         : app::quantity_text(quantity, label),
-        has_keys ? marks.of(static_cast<std::int64_t>(*quantity.value)) : std::vector<double>());
+        has_keys ? features.of(static_cast<std::int64_t>(*quantity.value)) : std::vector<double>());
   }
-  add(all.sum, "total", marks.sum());
+  add(all.sum, "total", features.sum());
   return sheet;
 }
 
 // Records that have lines or points, and nothing painted.
-void add_classes(query::Quantities& all, const OfMarks& marks) {
+void add_classes(query::Quantities& all, const OfFeatures& features) {
   std::set<double> painted;
   for (const query::Quantity& quantity : all.classes) painted.insert(*quantity.value);
-  for (const auto& [key, values] : marks.of_key) {
+  for (const auto& [key, values] : features.of_key) {
     if (painted.contains(static_cast<double>(key))) continue;
     query::Quantity& quantity = all.classes.emplace_back();
     quantity.value = static_cast<double>(key);
@@ -178,7 +178,7 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
   auto all = asked.room->queries().quantities(asked.layer.slug, asked.at);
   if (!all) return tl::unexpected(all.error());
   Names names;
-  OfMarks marks;
+  OfFeatures features;
   if (asked.layer.table) {
     std::optional<std::int64_t> records_at;  // as they were when that edit was made
     if (asked.at) {
@@ -190,10 +190,10 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
     const auto table =
         context.store.tables().find(std::to_string(*asked.layer.table), request.role());
     if (!table) return tl::unexpected(table.error());
-    auto marked = marks_of(context, *table, request.role(), asked.room->model(), records_at);
+    auto marked = features_of(context, *table, request.role(), asked.room->model(), records_at);
     if (!marked) return tl::unexpected(marked.error());
-    marks = std::move(*marked);
-    add_classes(*all, marks);
+    features = std::move(*marked);
+    add_classes(*all, features);
     std::vector<std::int64_t> keys;
     for (const query::Quantity& quantity : all->classes)
       keys.push_back(static_cast<std::int64_t>(*quantity.value));
@@ -202,12 +202,13 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
     if (!found) return tl::unexpected(found.error());
     names = std::move(*found);
   }
-  auto response = STRATA_TRY(format == SheetFormat::json
-                                 ? json_response(quantities_json(*all, asked.layer, names, marks))
-                                 : quantity_sheet(context,
-                                                  to_sheet(*all, asked.layer, names, marks,
-                                                           asked.layer.slug + "-quantities"),
-                                                  format, separator));
+  auto response =
+      STRATA_TRY(format == SheetFormat::json
+                     ? json_response(quantities_json(*all, asked.layer, names, features))
+                     : quantity_sheet(context,
+                                      to_sheet(*all, asked.layer, names, features,
+                                               asked.layer.slug + "-quantities"),
+                                      format, separator));
   add_sequences(response, asked.sequence, asked.room->edits().durable_sequence());
   response.with("Vary", "Accept");
   return response;
@@ -270,8 +271,8 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
       of_all.add(quantity);
     }
   const query::Quantity& sum = of_all.sum();
-  const auto marks = STRATA_TRY(marks_of(context, table, request.role(), {}, {}));
-  for (const auto& [key, values] : marks.of_key) of_key.try_emplace(key);
+  const auto features = STRATA_TRY(features_of(context, table, request.role(), {}, {}));
+  for (const auto& [key, values] : features.of_key) of_key.try_emplace(key);
   std::vector<std::int64_t> keys;
   for (const auto& [key, quantity] : of_key) keys.push_back(key);
   const auto names =
@@ -293,26 +294,26 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
       json["class"] = text_of(key);
       json["key"] = key;
       json["has_record"] = names.contains(key);
-      app::add_measures(json, marks.names, marks.of(key));
+      app::add_measures(json, features.names, features.of(key));
       json["layers"] = std::move(parts);
       list.push_back(std::move(json));
     }
     const std::size_t count = list.size();
     nlohmann::json total = sums_json(sum);
-    app::add_measures(total, marks.names, marks.sum());
+    app::add_measures(total, features.names, features.sum());
     return json_response(
                {{"quantities", std::move(list)}, {"total", count}, {"sum", std::move(total)}})
         .with("Vary", "Accept");
   }
   app::Sheet sheet{table.slug + "-quantities", {"class", "key", "pieces", "texels", "area_m2"}, {}};
-  sheet.heads.insert(sheet.heads.end(), marks.names.begin(), marks.names.end());
+  sheet.heads.insert(sheet.heads.end(), features.names.begin(), features.names.end());
   for (const OfLayer& layer : layers)
     sheet.heads.push_back(layer.model.slug + "/" + layer.layer.slug + " area_m2");
   for (const auto& [key, of_one] : of_key) {
     const query::Quantity& quantity = of_one.sum();
     std::vector<app::SheetCell> row{text_of(key), double(key), double(quantity.pieces),
                                     double(quantity.texels), quantity.area_m2};
-    const auto marked = marks.of(key);
+    const auto marked = features.of(key);
     row.insert(row.end(), marked.begin(), marked.end());
     for (const OfLayer& layer : layers) {
       const auto part = layer.of_key.find(key);
@@ -323,7 +324,7 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
   }
   std::vector<app::SheetCell> last{
       std::string("total"), {}, double(sum.pieces), double(sum.texels), sum.area_m2};
-  const auto marked = marks.sum();
+  const auto marked = features.sum();
   last.insert(last.end(), marked.begin(), marked.end());
   for (const OfLayer& layer : layers) {
     QuantitySum of_layer;

@@ -1,4 +1,4 @@
-#include "app/layers/mark_transfer.h"
+#include "app/layers/feature_transfer.h"
 #include "core/digest.h"
 #include "core/mapped_file.h"
 #include "core/text/number_text.h"
@@ -27,7 +27,7 @@
 namespace strata::net {
 namespace {
 
-constexpr std::size_t kMostProperties = 10000;
+constexpr std::size_t kMaxProperties = 10000;
 constexpr std::uint64_t kMaxCsvBytes = 1ull << 30;
 
 Result<std::vector<Layer>> chosen_layers(store::Store& store, const Model& source, Role seen_by,
@@ -125,9 +125,9 @@ Result<nlohmann::json> transfer(const RouteContext& context, room::Room& room,
       STRATA_TRY(jobs::transfer_layers(context.store, target, request, deliver, progress));
   report["area_m2"] = summary.area_m2;
   report["matched_m2"] = summary.matched_m2;
-  const auto brought = STRATA_TRY(app::bring_marks(context, target, request, user));
-  report["marks"] = brought.marks;
-  report["lost_marks"] = brought.lost_marks;
+  const auto brought = STRATA_TRY(app::bring_features(context, target, request, user));
+  report["marks"] = brought.features;
+  report["lost_marks"] = brought.lost_features;
   return report;
 }
 
@@ -157,7 +157,7 @@ Result<Response> list_properties(const RouteContext& context, const Request& req
                                                    });
     if (!read) return tl::unexpected(read.error());
     for (const std::string& property : mesh::vertex_property_names(beginning))
-      if (list.size() < kMostProperties)
+      if (list.size() < kMaxProperties)
         list.push_back({{"source", source.name}, {"property", property}});
   }
   const std::size_t total = list.size();

@@ -33,7 +33,7 @@ using protocol::CommentEventEvent;
 using store::Comment;
 using store::Comments;
 
-constexpr double kFarthest = 0.05;  // from the surface, of the model's diagonal
+constexpr double kMaxDistance = 0.05;  // from the surface, of the model's diagonal
 
 nlohmann::json to_json(const glm::dvec3& point) { return {point.x, point.y, point.z}; }
 
@@ -138,7 +138,7 @@ Result<Response> list_replies(const RouteContext& context, const Request& reques
 Result<Comment::Place> place_on(room::Room& room, const glm::dvec3& world) {
   const auto nearest = STRATA_TRY(room.queries().position(world, {}));
   const Model model = room.model();
-  const double farthest = kFarthest * glm::length(model.bounds_max - model.bounds_min);
+  const double farthest = kMaxDistance * glm::length(model.bounds_max - model.bounds_min);
   if (!nearest.hit || nearest.distance > farthest)
     return fail(
         ErrorCode::invalid, "Not on the model",
@@ -184,7 +184,7 @@ Result<Response> write(const RouteContext& context, const Request& request,
         .with("ETag", etag_of(made.version));
   };
   const auto written =
-      context.store.comments().create(comment, first_answer<Comment>(request, answer));
+      context.store.comments().create(comment, idempotent_response<Comment>(request, answer));
   if (!written) return tl::unexpected(written.error());
   tell(context, CommentEventEvent::created, *written, people, request.user());
   return answer(*written);
@@ -243,7 +243,7 @@ Result<Response> change_comment(const RouteContext& context, const Request& requ
     return json_response(to_json(now, people)).with("ETag", etag_of(now.version));
   };
   const auto changed =
-      context.store.comments().update(comment, first_answer<Comment>(request, answer));
+      context.store.comments().update(comment, idempotent_response<Comment>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   tell(context, CommentEventEvent::changed, *changed, people, request.user());
   return answer(*changed);
@@ -256,8 +256,8 @@ Result<Response> delete_comment(const RouteContext& context, const Request& requ
     return fail(ErrorCode::forbidden, "Not yours",
                 "Only " + comment.user + " and curators delete this comment.");
   const auto answer = [](const Comments::Removal&) { return empty_response(204); };
-  const auto removal =
-      context.store.comments().remove(comment, first_answer<Comments::Removal>(request, answer));
+  const auto removal = context.store.comments().remove(
+      comment, idempotent_response<Comments::Removal>(request, answer));
   if (!removal) return tl::unexpected(removal.error());
   if (removal->left) {
     const auto people = people_of(context, *removal->left, request.user());
@@ -280,7 +280,7 @@ void tell_threads(const RouteContext& context, const Layer& layer, Visibility be
                   const std::string& user) {
   if (layer.visibility == before) return;
   Comments::Query all;
-  all.limit = static_cast<int>(Comments::kMostComments);
+  all.limit = static_cast<int>(Comments::kMaxComments);
   const auto found = context.store.comments().of_model(layer.model_id, Role::owner, all);
   if (!found)
     return log::warning("threads about layer " + std::to_string(layer.id) + ": " +

@@ -49,8 +49,8 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
   const auto at = STRATA_TRY(find_sequence(context, **room, asked.at));
   wanted.at = at;
   if (asked.looks) {
-    auto looks = STRATA_TRY(look_views(**room, *asked.looks));
-    wanted.shown.looks = std::move(looks);
+    auto images = STRATA_TRY(surface_image_views(**room, *asked.looks));
+    wanted.shown.images = std::move(images);
   }
   if (asked.light) wanted.shown.light = *asked.light;
   STRATA_TRY(validate(wanted.shown.light));

@@ -15,7 +15,7 @@
 #include "net/http/upload.h"
 #include "net/transport/server_options.h"
 #include "room/rooms.h"
-#include "store/content/first_answer.h"
+#include "store/content/idempotent_response.h"
 #include "store/content/projects.h"
 #include "store/store.h"
 
@@ -110,7 +110,7 @@ Result<Response> start_import(const RouteContext& context, JobIdempotency& book,
   if (asked->files.size() == 1 && !named.empty()) asked->files[0].filename = named;
   STRATA_TRY(jobs::check(*asked));
 
-  const store::FirstAnswer<Model> answer{
+  const store::IdempotentResponse<Model> answer{
       scoped_key(request),
       [print = fingerprint(request)](const Model& model) {
         return nlohmann::json{{"request", print}, {"model", model.id}};
@@ -121,7 +121,7 @@ Result<Response> start_import(const RouteContext& context, JobIdempotency& book,
       project.id,
       [&store = context.store, &memory = context.rooms.memory(), asked = *asked,
        kept = std::move(kept), answer](Progress& progress) -> Result<jobs::JobResult> {
-        store::FirstAnswer<Model> kept_answer = answer;
+        store::IdempotentResponse<Model> kept_answer = answer;
         kept_answer.job = progress.job();
         auto model = jobs::import_model(store, asked, progress, kept_answer, &memory);
         if (!model) return tl::unexpected(model.error());

@@ -99,7 +99,7 @@ Result<Response> change_model(const RouteContext& context, const Request& reques
   const auto answer = [slug = *slug](const Model& now) {
     return json_response(to_json(now, slug)).with("ETag", etag_of(now.version));
   };
-  auto changed = room->update_model(std::move(model), first_answer<Model>(request, answer));
+  auto changed = room->update_model(std::move(model), idempotent_response<Model>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   return answer(*changed);
 }
@@ -155,10 +155,10 @@ void add_model_routes(Router& router, const RouteContext& context) {
               .handler = answering([&context](const Request& request) -> Result<Response> {
                 auto model = STRATA_TRY(context.store.models().find(request.param("model")));
                 STRATA_TRY(check_if_match(request, model.version));
-                STRATA_TRY(context.store.bin().put_model(
-                    model.id, first_answer<>(request, [] { return empty_response(204); })));
+                STRATA_TRY(context.store.trash().put_model(
+                    model.id, idempotent_response<>(request, [] { return empty_response(204); })));
                 context.rooms.forget(model.id);
-                if (context.options.bin_days == 0) context.trash_purger.look();
+                if (context.options.trash_days == 0) context.trash_purger.check_now();
                 return empty_response(204);
               }),
               .role = Role::curator,

@@ -4,8 +4,8 @@
 
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
-#include "domain/scene/look.h"
 #include "domain/scene/model.h"
+#include "domain/scene/surface_image.h"
 #include "jobs/job_queue.h"
 #include "jobs/orthophoto.h"
 #include "net/api/route_help.h"
@@ -14,11 +14,11 @@
 #include "net/http/job_idempotency.h"
 #include "net/serialization/map_query.h"
 #include "net/transport/server_options.h"
-#include "room/looks.h"
 #include "room/room.h"
 #include "room/rooms.h"
 #include "room/surface.h"
-#include "store/content/first_answer.h"
+#include "room/surface_images.h"
+#include "store/content/idempotent_response.h"
 #include "store/content/models.h"
 #include "store/store.h"
 
@@ -26,7 +26,7 @@ namespace strata::net {
 namespace {
 
 struct Wish {
-  Look look;
+  SurfaceImage image;
   app::MapAxis axis;
   int resolution = 0;
 };
@@ -34,13 +34,13 @@ struct Wish {
 Result<Wish> wish_of(const Request& request) {
   const auto axis = STRATA_TRY(map_axis(request));
   Wish wish{{}, axis, 0};
-  wish.look.name = request.query_or("name", {});
-  if (wish.look.name.empty() || wish.look.name.size() > 200)
+  wish.image.name = request.query_or("name", {});
+  if (wish.image.name.empty() || wish.image.name.size() > 200)
     return fail(ErrorCode::invalid, "Name missing", "A look has a name of 1 to 200 bytes.", "name");
-  wish.look.description = request.query_or("description", {});
+  wish.image.description = request.query_or("description", {});
   if (const std::string text = request.query_or("resolution", {}); !text.empty()) {
     const auto resolution =
-        STRATA_TRY(parse_integer(text, 1, jobs::kLargestOrthophotoLook, "resolution"));
+        STRATA_TRY(parse_integer(text, 1, jobs::kMaxOrthophotoSurfaceImage, "resolution"));
     wish.resolution = static_cast<int>(resolution);
     if (!std::has_single_bit(static_cast<unsigned>(wish.resolution)))
       return fail(ErrorCode::invalid, "Resolution not usable", "`resolution` is a power of two.",
@@ -54,8 +54,9 @@ double texel_area(const Model& model, int resolution) {
   return texels > 0 ? model.area / texels : 0;
 }
 
-Result<Look> bake(room::Room& room, const Wish& wish, const app::MapPicture& map,
-                  const store::FirstAnswer<Look>& answer, Progress& progress) {
+Result<SurfaceImage> bake(room::Room& room, const Wish& wish, const app::MapPicture& map,
+                          const store::IdempotentResponse<SurfaceImage>& answer,
+                          Progress& progress) {
   progress.report(0, "Finding what is seen");
   const jobs::OrthophotoSampler sampler(map.picture, map.world,
                                         texel_area(room.model(), wish.resolution));
@@ -76,20 +77,20 @@ Result<Look> bake(room::Room& room, const Wish& wish, const app::MapPicture& map
         "world");
   progress.report(0.4, "Painting the look");
   const auto map_of_surface = STRATA_TRY(room.surface().map(wish.resolution));
-  const Picture picture = jobs::orthophoto_look(*tiles, *map_of_surface);
+  const Picture picture = jobs::orthophoto_surface_image(*tiles, *map_of_surface);
   if (progress.cancelled()) return cancelled_problem();
   progress.report(0.6, "Packing the look");
   const auto png = encode_png(picture.rgba, picture.width, picture.height);
   if (progress.cancelled()) return cancelled_problem();
   progress.report(0.9, "Saving");
-  Look look = wish.look;
-  look.visible = false;
-  look.media_type = media_type(PictureFormat::png);
-  look.width = picture.width;
-  look.height = picture.height;
-  const auto looks = room.looks().all();
-  look.order = looks.empty() ? 0 : looks.back().order + 1;
-  return room.looks().create(std::move(look), png, answer);
+  SurfaceImage image = wish.image;
+  image.visible = false;
+  image.media_type = media_type(PictureFormat::png);
+  image.width = picture.width;
+  image.height = picture.height;
+  const auto images = room.surface_images().all();
+  image.order = images.empty() ? 0 : images.back().order + 1;
+  return room.surface_images().create(std::move(image), png, answer);
 }
 
 Result<Response> start_orthophoto(const RouteContext& context, JobIdempotency& book,
@@ -112,10 +113,10 @@ Result<Response> start_orthophoto(const RouteContext& context, JobIdempotency& b
   if (!map) return tl::unexpected(map.error());
   if (wish->resolution == 0) wish->resolution = jobs::orthophoto_resolution(model, map->world);
 
-  const store::FirstAnswer<Look> answer{
+  const store::IdempotentResponse<SurfaceImage> answer{
       scoped_key(request),
-      [print = fingerprint(request), model = model.id](const Look& look) {
-        return nlohmann::json{{"request", print}, {"model", model}, {"look", look.id}};
+      [print = fingerprint(request), model = model.id](const SurfaceImage& image) {
+        return nlohmann::json{{"request", print}, {"model", model}, {"look", image.id}};
       },
       request.user()};
   auto job = context.jobs.add(
@@ -123,14 +124,14 @@ Result<Response> start_orthophoto(const RouteContext& context, JobIdempotency& b
       [room = *room, wish = std::move(*wish), answer,
        map = std::make_shared<const app::MapPicture>(std::move(*map))](
           Progress& progress) -> Result<jobs::JobResult> {
-        store::FirstAnswer<Look> kept = answer;
+        store::IdempotentResponse<SurfaceImage> kept = answer;
         kept.job = progress.job();
-        auto look = STRATA_TRY(bake(*room, wish, *map, kept, progress));
-        jobs::JobResult result(look.model_id);
-        result.look = look.id;
+        auto image = STRATA_TRY(bake(*room, wish, *map, kept, progress));
+        jobs::JobResult result(image.model_id);
+        result.image = image.id;
         return result;
       },
-      {}, jobs::JobKind::look);
+      {}, jobs::JobKind::image);
   if (!job) return tl::unexpected(job.error());
   book.started(request, *job);
   return job_response(context, *job);
@@ -141,7 +142,7 @@ Result<Response> repeat_orthophoto(const RouteContext& context, JobIdempotency& 
   auto known = STRATA_TRY(book.find(request));
   if (known) return job_response(context, *known);
   jobs::JobResult result(kept.at("model").get<std::int64_t>());
-  result.look = kept.at("look").get<std::int64_t>();
+  result.image = kept.at("look").get<std::int64_t>();
   const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
   auto job = STRATA_TRY(book.finished(request, model.project_id, std::move(result)));
   return job_response(context, job);

@@ -81,8 +81,8 @@ Result<Response> create_tour(const RouteContext& context, const Request& request
     return answer_of(told, made, 201)
         .with("Location", "/api/v1/models/" + model.slug + "/tours/" + made.slug);
   };
-  const auto made =
-      STRATA_TRY(context.store.tours().create(tour, first_answer<NamedPart>(request, answer)));
+  const auto made = STRATA_TRY(
+      context.store.tours().create(tour, idempotent_response<NamedPart>(request, answer)));
   return answer(made);
 }
 
@@ -101,8 +101,8 @@ Result<Response> change_tour(const RouteContext& context, const Request& request
   STRATA_TRY(check_languages(tour.content, asked.stops.has_value()));
   const auto told = STRATA_TRY(to_json(context, tour, request.role(), tour.user));
   const auto answer = [&](const NamedPart& now) { return answer_of(told, now, 200); };
-  const auto changed =
-      STRATA_TRY(context.store.tours().update(tour, first_answer<NamedPart>(request, answer)));
+  const auto changed = STRATA_TRY(
+      context.store.tours().update(tour, idempotent_response<NamedPart>(request, answer)));
   return answer(changed);
 }
 
@@ -110,7 +110,7 @@ Result<Response> delete_tour(const RouteContext& context, const Request& request
   const auto found = STRATA_TRY(find_to_change(context, request));
   const auto kiosks = STRATA_TRY(context.store.kiosks().of_tour(found.tour.id));
   const auto answer = [] { return empty_response(204); };
-  STRATA_TRY(context.store.tours().remove(found.tour, first_answer<>(request, answer)));
+  STRATA_TRY(context.store.tours().remove(found.tour, idempotent_response<>(request, answer)));
   end_kiosks(context, kiosks, "the tour was deleted");
   return answer();
 }

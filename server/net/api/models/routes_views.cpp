@@ -37,10 +37,10 @@ Result<nlohmann::json> content_of(const room::Room& room, const Asked& asked,
   nlohmann::json content{{"camera", protocol::write_core(camera)},
                          {"layers", kept_layers(shown, settings)},
                          {"light", protocol::write_core(settings.light)}};
-  if (settings.looks) {
+  if (settings.images) {
     content["looks"] = nlohmann::json::array();
-    for (const room::LookView& look : *settings.looks)
-      content["looks"].push_back({{"look", look.look_id}, {"opacity", look.opacity}});
+    for (const room::SurfaceImageView& image : *settings.images)
+      content["looks"].push_back({{"look", image.surface_image_id}, {"opacity", image.opacity}});
   }
   return content;
 }
@@ -143,8 +143,8 @@ Result<Response> create_view(const RouteContext& context, const Request& request
         .with("Location", "/api/v1/models/" + room->model().slug + "/views/" + made.slug)
         .with("ETag", etag_of(made.version));
   };
-  const auto made =
-      STRATA_TRY(context.store.views().create(view, first_answer<NamedPart>(request, answer)));
+  const auto made = STRATA_TRY(
+      context.store.views().create(view, idempotent_response<NamedPart>(request, answer)));
   tell(context, ViewEventEvent::created, made, request.user());
   return answer(made);
 }
@@ -164,8 +164,8 @@ Result<Response> change_view(const RouteContext& context, const Request& request
     return json_response(to_json(context, request, now, *found.room))
         .with("ETag", etag_of(now.version));
   };
-  const auto changed =
-      STRATA_TRY(context.store.views().update(view, first_answer<NamedPart>(request, answer)));
+  const auto changed = STRATA_TRY(
+      context.store.views().update(view, idempotent_response<NamedPart>(request, answer)));
   tell(context, ViewEventEvent::changed, changed, request.user());
   return answer(changed);
 }
@@ -173,7 +173,7 @@ Result<Response> change_view(const RouteContext& context, const Request& request
 Result<Response> delete_view(const RouteContext& context, const Request& request) {
   const auto found = STRATA_TRY(find_own_view(context, request));
   const auto answer = [] { return empty_response(204); };
-  STRATA_TRY(context.store.views().remove(found.view, first_answer<>(request, answer)));
+  STRATA_TRY(context.store.views().remove(found.view, idempotent_response<>(request, answer)));
   tell(context, ViewEventEvent::deleted, found.view, request.user());
   return answer();
 }

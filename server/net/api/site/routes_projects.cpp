@@ -59,8 +59,8 @@ Result<Response> create_project(const RouteContext& context, const Request& requ
         .with("Location", "/api/v1/projects/" + made.slug)
         .with("ETag", etag_of(made.version));
   };
-  auto created =
-      context.store.projects().create(std::move(project), first_answer<Project>(request, answer));
+  auto created = context.store.projects().create(std::move(project),
+                                                 idempotent_response<Project>(request, answer));
   if (!created) return tl::unexpected(created.error());
   return answer(*created);
 }
@@ -79,8 +79,8 @@ Result<Response> change_project(const RouteContext& context, const Request& requ
   const auto answer = [](const Project& now) {
     return json_response(to_json(now)).with("ETag", etag_of(now.version));
   };
-  auto changed =
-      context.store.projects().update(std::move(project), first_answer<Project>(request, answer));
+  auto changed = context.store.projects().update(std::move(project),
+                                                 idempotent_response<Project>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   return answer(*changed);
 }
@@ -117,18 +117,19 @@ void add_project_routes(Router& router, const RouteContext& context) {
               .max_body = context.options.max_json_bytes,
               .keeps_answer = true,
               .needs_version = true});
-  router.add({.method = Method::remove,
-              .pattern = "/api/v1/projects/{project}",
-              .handler = answering([&context](const Request& request) -> Result<Response> {
-                auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
-                STRATA_TRY(check_if_match(request, project.version));
-                STRATA_TRY(context.store.projects().remove(
-                    project.id, first_answer<>(request, [] { return empty_response(204); })));
-                return empty_response(204);
-              }),
-              .role = Role::administrator,
-              .keeps_answer = true,
-              .needs_version = true});
+  router.add(
+      {.method = Method::remove,
+       .pattern = "/api/v1/projects/{project}",
+       .handler = answering([&context](const Request& request) -> Result<Response> {
+         auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
+         STRATA_TRY(check_if_match(request, project.version));
+         STRATA_TRY(context.store.projects().remove(
+             project.id, idempotent_response<>(request, [] { return empty_response(204); })));
+         return empty_response(204);
+       }),
+       .role = Role::administrator,
+       .keeps_answer = true,
+       .needs_version = true});
 }
 
 }  // namespace strata::net

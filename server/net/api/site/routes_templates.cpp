@@ -21,7 +21,7 @@
 #include "room/layers.h"
 #include "room/room.h"
 #include "room/rooms.h"
-#include "store/content/first_answer.h"
+#include "store/content/idempotent_response.h"
 #include "store/content/projects.h"
 #include "store/store.h"
 #include "store/tables/table_changes.h"
@@ -128,7 +128,7 @@ Result<std::vector<Layer>> make_layers(const RouteContext& context, const Reques
     }
     return answer_with(tables, made);
   };
-  if (auto shown = layers.show(first_answer<Layer>(request, now)); !shown)
+  if (auto shown = layers.show(idempotent_response<Layer>(request, now)); !shown)
     return refuse(shown.error());
   for (Layer& layer : made)
     if (auto shown = room->layers().find(std::to_string(layer.id))) layer = std::move(*shown);
@@ -164,8 +164,8 @@ Result<Response> use_template(const RouteContext& context, const Request& reques
   };
   auto changes = STRATA_TRY(context.store.tables().create_several(
       tables, false, request.user(), "template",
-      wished.empty() ? first_answer<std::vector<store::TableChange>>(request, tables_alone)
-                     : store::FirstAnswer<std::vector<store::TableChange>>{
+      wished.empty() ? idempotent_response<std::vector<store::TableChange>>(request, tables_alone)
+                     : store::IdempotentResponse<std::vector<store::TableChange>>{
                            .key = {}, .make = {}, .user = request.user()}));
   std::vector<Table> made;
   for (const auto& change : changes) {

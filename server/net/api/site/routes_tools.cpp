@@ -16,9 +16,9 @@
 namespace strata::net {
 namespace {
 
-constexpr std::uint64_t kLargestPicture_bytes = std::uint64_t{8} << 20;
-constexpr int kLargestPictureSide_px = 2048;
-constexpr std::size_t kLongestToolName = 200;
+constexpr std::uint64_t kMaxPicture_bytes = std::uint64_t{8} << 20;
+constexpr int kMaxPictureSide_px = 2048;
+constexpr std::size_t kMaxToolNameLength = 200;
 
 using Event = protocol::ToolEventEvent;
 
@@ -45,7 +45,7 @@ Result<Response> list_tools(const RouteContext& context, const Request& request)
 
 Result<std::string> name_of(const Request& request) {
   std::string name = request.query_or("name", {});
-  if (name.empty() || name.size() > kLongestToolName)
+  if (name.empty() || name.size() > kMaxToolNameLength)
     return fail(ErrorCode::invalid, "Name missing", "A tool has a name of 1 to 200 bytes.", "name");
   return name;
 }
@@ -68,7 +68,7 @@ Result<Response> create_tool(const RouteContext& context, const Request& request
   if (!body || body->bytes().empty())
     return fail(ErrorCode::malformed, "Empty body",
                 "Send a picture as the body: PNG, JPEG, TIFF, WebP, BMP or TGA.", "body");
-  const auto picture = decode_picture(body->bytes(), kLargestPictureSide_px);
+  const auto picture = decode_picture(body->bytes(), kMaxPictureSide_px);
   if (!picture) return tl::unexpected(picture.error());
   const auto shape = STRATA_TRY(shape_of(*picture, part));
   const auto answer = [](const Tool& made) {
@@ -76,8 +76,8 @@ Result<Response> create_tool(const RouteContext& context, const Request& request
         .with("Location", "/api/v1/tools/" + made.slug)
         .with("ETag", etag_of(made.version));
   };
-  auto created =
-      STRATA_TRY(context.store.tools().create(tool, shape, first_answer<Tool>(request, answer)));
+  auto created = STRATA_TRY(
+      context.store.tools().create(tool, shape, idempotent_response<Tool>(request, answer)));
   tell_everyone(context, Event::created, created);
   return answer(created);
 }
@@ -101,7 +101,7 @@ Result<Response> rename_tool(const RouteContext& context, const Request& request
     return json_response(to_json(now)).with("ETag", etag_of(now.version));
   };
   auto changed =
-      STRATA_TRY(context.store.tools().update(tool, first_answer<Tool>(request, answer)));
+      STRATA_TRY(context.store.tools().update(tool, idempotent_response<Tool>(request, answer)));
   tell_everyone(context, Event::changed, changed);
   return answer(changed);
 }
@@ -109,7 +109,7 @@ Result<Response> rename_tool(const RouteContext& context, const Request& request
 Result<Response> delete_tool(const RouteContext& context, const Request& request) {
   auto tool = STRATA_TRY(present_tool(context, request));
   STRATA_TRY(context.store.tools().remove(
-      tool.id, first_answer<>(request, [] { return empty_response(204); })));
+      tool.id, idempotent_response<>(request, [] { return empty_response(204); })));
   tell_everyone(context, Event::deleted, tool);
   return empty_response(204);
 }
@@ -148,7 +148,7 @@ void add_tool_routes(Router& router, const RouteContext& context) {
                 return {};
               },
               .body = BodyKind::file,
-              .max_body = std::min(kLargestPicture_bytes, context.options.max_upload_bytes),
+              .max_body = std::min(kMaxPicture_bytes, context.options.max_upload_bytes),
               .keeps_answer = true});
   router.add({.method = Method::get,
               .pattern = tools + "/{tool}",

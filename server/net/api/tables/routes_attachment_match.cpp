@@ -78,7 +78,7 @@ Result<Response> match(const RouteContext& context, const Request& request) {
                 "The pattern has no `{" + word + "}`, which says which record a file is of.",
                 "pattern");
   store::RecordQuery query;
-  query.limit = store::kMostRecords;
+  query.limit = store::kMaxRecords;
   auto page = STRATA_TRY(context.store.records().page(table.id, request.role(), query));
   Values values;
   for (const Record& record : page.records) {

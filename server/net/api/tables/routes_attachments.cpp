@@ -131,7 +131,7 @@ Result<Response> attach(const RouteContext& context, const Request& request) {
   };
   auto attached = STRATA_TRY(context.store.attachments().attach(
       place.table.id, key, column_id, files, version, request.author(),
-      first_answer<Attached>(request, answer)));
+      idempotent_response<Attached>(request, answer)));
   context.changes.records_changed(attached.change, request.user());
   return answer(attached);
 }
@@ -298,7 +298,7 @@ Result<Response> change_attachment(const RouteContext& context, const Request& r
   auto asked = STRATA_TRY(body_of<protocol::AttachmentPatch>(request));
   const auto answer = [](const Attachment& now) { return json_response(to_json(now)); };
   auto now = STRATA_TRY(context.store.attachments().show(
-      id, asked.visibility, first_answer<Attachment>(request, answer)));
+      id, asked.visibility, idempotent_response<Attachment>(request, answer)));
   if (auto table = context.store.tables().find(std::to_string(now.table_id), Role::owner))
     tell_table(context.live_sockets, protocol::TableEventEvent::changed, *table, request.user());
   return answer(now);
@@ -309,7 +309,7 @@ Result<Response> detach(const RouteContext& context, const Request& request) {
   STRATA_TRY(context.store.attachments().find(id, request.author()));
   const auto answer = [](const store::TableChange&) { return empty_response(204); };
   auto change = context.store.attachments().detach(
-      id, request.user(), first_answer<store::TableChange>(request, answer));
+      id, request.user(), idempotent_response<store::TableChange>(request, answer));
   if (!change) return tl::unexpected(change.error());
   context.changes.records_changed(*change, request.user());
   return answer(*change);

@@ -30,7 +30,7 @@ using TableChange = store::TableChange;
 
 constexpr std::uint64_t kMaxRecordsBytes = 64u << 20;
 
-constexpr std::size_t kMostSortColumns = 16;
+constexpr std::size_t kMaxSortColumns = 16;
 
 // "name,-depth": descending after a minus. A column that is there already says nothing more.
 Result<std::vector<std::pair<std::string, bool>>> order_of(const std::string& text) {
@@ -44,9 +44,9 @@ Result<std::vector<std::pair<std::string, bool>>> order_of(const std::string& te
     if (!word.empty() &&
         std::ranges::find(order, word, &std::pair<std::string, bool>::first) == order.end())
       order.emplace_back(std::move(word), descending);
-    if (order.size() > kMostSortColumns)
+    if (order.size() > kMaxSortColumns)
       return fail(ErrorCode::invalid, "Too many columns to sort by",
-                  "Records are sorted by at most " + std::to_string(kMostSortColumns) + " columns.",
+                  "Records are sorted by at most " + std::to_string(kMaxSortColumns) + " columns.",
                   "sortby");
     begin = end + 1;
   }
@@ -64,7 +64,7 @@ Result<store::RecordPage> page_by_measure(const RouteContext& context,
              offset = static_cast<std::size_t>(query.offset);
   const auto after = std::exchange(query.after, std::nullopt);
   query.order.erase(query.order.begin());
-  query.limit = store::kMostRecords;
+  query.limit = store::kMaxRecords;
   query.offset = 0;
   auto page = STRATA_TRY(context.store.records().page(place.table.id, seen_by, query));
   // worked out once: a line may have thousands of places
@@ -160,7 +160,7 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
   }
   // A table to work on elsewhere is all of it, unless a part is asked for.
   const bool whole = format != SheetFormat::json && !request.query.contains("limit");
-  query.limit = whole ? store::kMostRecords : page.limit;
+  query.limit = whole ? store::kMaxRecords : page.limit;
   query.offset = page.offset;
   query.after = page.after;
   if (auto at = request.query.find("at"); at != request.query.end()) {
@@ -277,7 +277,7 @@ Result<Response> create_from_json(const RouteContext& context, const Request& re
     return json_response({{"records", std::move(list)}, {"total", total}}, 201);
   };
   auto change = STRATA_TRY(context.store.records().write(
-      place.table.id, write, request.user(), first_answer<TableChange>(request, answer)));
+      place.table.id, write, request.user(), idempotent_response<TableChange>(request, answer)));
   if (!change.problems.empty()) return tl::unexpected(first_problem(change, is_list));
   context.changes.records_changed(change, request.user());
   return answer(change);
@@ -286,7 +286,7 @@ Result<Response> create_from_json(const RouteContext& context, const Request& re
 nlohmann::json report_of(const app::RecordRows& rows, const TableChange& change, bool dry_run) {
   nlohmann::json problems = nlohmann::json::array();
   const auto add = [&](int line, const std::string& column, const Error& problem) {
-    if (problems.size() == store::kMostRowProblems) return;
+    if (problems.size() == store::kMaxRowProblems) return;
     problems.push_back({{"line", line}, {"title", problem.title}, {"detail", problem.detail}});
     if (!column.empty()) problems.back()["column"] = column;
   };
@@ -332,7 +332,7 @@ Result<Response> import_csv(const RouteContext& context, const Request& request,
     return json_response(report_of(rows, change, false));
   };
   auto change = STRATA_TRY(context.store.records().write(
-      place.table.id, write, request.user(), first_answer<TableChange>(request, answer)));
+      place.table.id, write, request.user(), idempotent_response<TableChange>(request, answer)));
   const bool refused = !rows.mistakes.empty() || !change.problems.empty();
   if (tried == "true") return json_response(report_of(rows, change, true));
   if (refused) {
@@ -385,8 +385,8 @@ Result<Response> change_record(const RouteContext& context, const Request& reque
     return json_response(to_json(*same, seen_by(change.table, request.role()).columns))
         .with("ETag", etag_of(same->version));
   };
-  auto change = STRATA_TRY(context.store.records().write(place.table.id, write, request.user(),
-                                                         first_answer<TableChange>(request, keep)));
+  auto change = STRATA_TRY(context.store.records().write(
+      place.table.id, write, request.user(), idempotent_response<TableChange>(request, keep)));
   if (!change.problems.empty()) return tl::unexpected(first_problem(change, false));
   context.changes.records_changed(change, request.user());
   return keep(change);
@@ -406,8 +406,9 @@ Result<Response> delete_retired(const RouteContext& context, const Request& requ
                 "texels");
   STRATA_TRY(app::repaint_key(context, painted, key, to, request.author()));
   const auto answer = [](const TableChange&) { return empty_response(204); };
-  auto change = STRATA_TRY(context.store.records().remove(
-      table.id, key, version, request.user(), false, first_answer<TableChange>(request, answer)));
+  auto change =
+      STRATA_TRY(context.store.records().remove(table.id, key, version, request.user(), false,
+                                                idempotent_response<TableChange>(request, answer)));
   context.changes.records_changed(change, request.user());
   return answer(change);
 }
@@ -425,7 +426,7 @@ Result<Response> delete_record(const RouteContext& context, const Request& reque
   auto place = STRATA_TRY(record_place(context, request));
   const Table& table = place.table;
   if (texels == "reassign") {
-    auto number = STRATA_TRY(parse_integer(request.query.at("to"), 0, kHighestKey, "to"));
+    auto number = STRATA_TRY(parse_integer(request.query.at("to"), 0, kMaxRecordKey, "to"));
     auto missing = STRATA_TRY(context.store.records().missing(table.id, std::vector{number}));
     if (!missing.empty() || number == key)
       return fail(ErrorCode::invalid, "No such record",

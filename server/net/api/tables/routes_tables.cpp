@@ -68,7 +68,7 @@ Result<Response> create_table(const RouteContext& context, const Request& reques
         .with("ETag", etag_of(made.version));
   };
   auto created =
-      STRATA_TRY(context.store.tables().create(table, first_answer<Table>(request, answer)));
+      STRATA_TRY(context.store.tables().create(table, idempotent_response<Table>(request, answer)));
   tell_table(context.live_sockets, protocol::TableEventEvent::created, created, request.user());
   return answer(created);
 }
@@ -92,7 +92,7 @@ Result<Response> change_table(const RouteContext& context, const Request& reques
     return json_response(to_json(now)).with("ETag", etag_of(now.version));
   };
   auto changed =
-      STRATA_TRY(context.store.tables().update(table, first_answer<Table>(request, answer)));
+      STRATA_TRY(context.store.tables().update(table, idempotent_response<Table>(request, answer)));
   tell_table(context.live_sockets, protocol::TableEventEvent::changed, changed, request.user());
   return answer(changed);
 }
@@ -101,7 +101,7 @@ Result<Response> delete_table(const RouteContext& context, const Request& reques
   auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   STRATA_TRY(check_if_match(request, table.version));
   STRATA_TRY(context.store.tables().remove(
-      table.id, first_answer<>(request, [] { return empty_response(204); })));
+      table.id, idempotent_response<>(request, [] { return empty_response(204); })));
   tell_table(context.live_sockets, protocol::TableEventEvent::deleted, table, request.user());
   return empty_response(204);
 }
@@ -156,7 +156,7 @@ Result<Response> create_column(const RouteContext& context, const Request& reque
         .with("ETag", etag_of(change.table.version));
   };
   auto change = STRATA_TRY(context.store.tables().create_column(
-      table.id, column, request.user(), first_answer<TableChange>(request, answer)));
+      table.id, column, request.user(), idempotent_response<TableChange>(request, answer)));
   context.changes.records_changed(change, request.user());
   return answer(change);
 }
@@ -208,7 +208,7 @@ Result<Response> show_column(const RouteContext& context, const Request& request
     return json_response(column_json(shown, id)).with("ETag", etag_of(now.version));
   };
   auto now = STRATA_TRY(context.store.tables().show_column(
-      table.id, column.id, visibility, table.version, first_answer<Table>(request, answer)));
+      table.id, column.id, visibility, table.version, idempotent_response<Table>(request, answer)));
   // Colours, lines and points that are drawn from it are others for who does not see it any more.
   context.rooms.records_changed(now.id);
   tell_table(context.live_sockets, protocol::TableEventEvent::changed, now, request.user());
@@ -234,9 +234,9 @@ Result<Response> change_column(const RouteContext& context, const Request& reque
     const auto now = done.record.is_object() ? done.record.value("column", id) : id;
     return json_response(column_json(done, now)).with("ETag", etag_of(done.table.version));
   };
-  auto done = context.store.tables().update_column(table.id, column, wished_version(request, table),
-                                                   request.user(),
-                                                   first_answer<TableChange>(request, answer));
+  auto done = context.store.tables().update_column(
+      table.id, column, wished_version(request, table), request.user(),
+      idempotent_response<TableChange>(request, answer));
   if (!done) return tl::unexpected(done.error());
   context.changes.records_changed(*done, request.user());
   return answer(*done);
@@ -249,7 +249,7 @@ Result<Response> drop_column(const RouteContext& context, const Request& request
   const auto answer = [](const TableChange&) { return empty_response(204); };
   auto done = context.store.tables().drop_column(table.id, column->id,
                                                  wished_version(request, table), request.user(),
-                                                 first_answer<TableChange>(request, answer));
+                                                 idempotent_response<TableChange>(request, answer));
   if (!done) return tl::unexpected(done.error());
   context.changes.records_changed(*done, request.user());
   return answer(*done);
@@ -265,7 +265,7 @@ Result<Response> cycles(const RouteContext& context, const Request& request) {
                 "Cycles are those of a relation or term that names records of its own table.",
                 "column");
   store::RecordQuery query;
-  query.limit = store::kMostRecords;
+  query.limit = store::kMaxRecords;
   auto page = STRATA_TRY(context.store.records().page(table.id, request.role(), query));
   Relation relation;
   for (const Record& record : page.records)
@@ -338,7 +338,7 @@ Result<Response> history(const RouteContext& context, const Request& request) {
   auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   std::optional<std::int64_t> key;
   if (const std::string text = request.query_or("key", {}); !text.empty()) {
-    auto number = STRATA_TRY(parse_integer(text, 0, kHighestKey, "key"));
+    auto number = STRATA_TRY(parse_integer(text, 0, kMaxRecordKey, "key"));
     key = number;
   }
   const auto before = STRATA_TRY(number_after(page, INT64_MAX));
@@ -373,7 +373,7 @@ Result<Response> undo(const RouteContext& context, const Request& request, bool 
   };
   auto done =
       STRATA_TRY(context.store.tables().undo(table.id, request.user(), redo, plan.table_sequence,
-                                             first_answer<TableChange>(request, answer)));
+                                             idempotent_response<TableChange>(request, answer)));
   context.changes.records_changed(done, request.user());
   return answer(done);
 }

@@ -25,7 +25,7 @@ namespace {
 using TableChange = store::TableChange;
 
 constexpr std::uint64_t kMaxTermsBytes = 32u << 20;
-constexpr std::size_t kLongestListName = 200;
+constexpr std::size_t kMaxListNameLength = 200;
 
 // By its Content-Type.
 Result<TermList> read_terms(const Request& request) {
@@ -48,7 +48,7 @@ nlohmann::json report_of(const TermList& list, const TableChange& change, bool d
   nlohmann::json problems = nlohmann::json::array();
   const auto add = [&](int line, const std::string& code, const std::string& column,
                        const Error& problem) {
-    if (problems.size() == store::kMostRowProblems) return;
+    if (problems.size() == store::kMaxRowProblems) return;
     problems.push_back({{"line", line}, {"title", problem.title}, {"detail", problem.detail}});
     if (!code.empty()) problems.back()["code"] = code;
     if (!column.empty()) problems.back()["column"] = column;
@@ -98,7 +98,7 @@ Result<Response> create_terms(const RouteContext& context, const Request& reques
   auto dry_run = STRATA_TRY(is_dry_run(request));
   store::NewTable wished;
   wished.table.name = request.query_or("name", {});
-  if (wished.table.name.empty() || wished.table.name.size() > kLongestListName)
+  if (wished.table.name.empty() || wished.table.name.size() > kMaxListNameLength)
     return fail(ErrorCode::invalid, "Name missing",
                 "`name` tells what the list is called, in 1 to 200 bytes.", "name");
   auto slug = STRATA_TRY(slug_of({}, wished.table.name));
@@ -121,7 +121,7 @@ Result<Response> create_terms(const RouteContext& context, const Request& reques
   };
   auto changes = context.store.tables().create_several(
       {wished}, dry_run, request.user(), "import",
-      first_answer<std::vector<TableChange>>(request, answer));
+      idempotent_response<std::vector<TableChange>>(request, answer));
   if (!changes) return tl::unexpected(changes.error());
   if (dry_run) return json_response(report_of(list, changes->front(), true));
   if (!changes->front().problems.empty()) return refusal(list, changes->front());
@@ -142,7 +142,7 @@ Result<Response> import_terms(const RouteContext& context, const Request& reques
     return json_response(report_of(list, change, false));
   };
   auto change = STRATA_TRY(context.store.tables().import_terms(
-      table.id, list, dry_run, request.user(), first_answer<TableChange>(request, answer)));
+      table.id, list, dry_run, request.user(), idempotent_response<TableChange>(request, answer)));
   if (dry_run) return json_response(report_of(list, change, true));
   if (!change.problems.empty()) return refusal(list, change);
   context.changes.records_changed(change, request.user());
@@ -211,7 +211,7 @@ Result<Response> list_terms_of(const RouteContext& context, const Request& reque
     return fail(ErrorCode::conflict, "No list of terms",
                 table.name + " is a table of records. Read `/records` of it.");
   store::RecordQuery all;
-  all.limit = store::kMostRecords;
+  all.limit = store::kMaxRecords;
   auto page = STRATA_TRY(context.store.records().page(table.id, request.role(), all));
   const auto columns = term_columns(page.table);
   if (!columns)

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace strata {
+
+// A picture of the model's surface on its texture coordinates (uv origin bottom left: the picture's
+// top row is v = 1).
+struct SurfaceImage {
+  std::int64_t id = 0;
+  std::int64_t model_id = 0;
+  std::string name;
+  std::string slug;  // unique in the model, never all digits
+  std::string description;
+  std::string media_type;  // "image/jpeg" or "image/png"
+  int width = 0, height = 0;
+  std::uint64_t bytes = 0;  // of the encoded picture
+  std::string sha256;       // of it, lower-case hex
+  double opacity = 1;
+  bool visible = true;
+  int order = 0;  // blended ascending: higher is on top
+  std::int64_t version = 1;
+};
+
+nlohmann::json to_json(const SurfaceImage& image);
+
+}  // namespace strata

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "domain/tables/table.h"
+
+namespace strata {
+
+// What a record has on a model besides texels: a line (a crack, which is paid by the metre) or a
+// point (a sample). Columns of kind `line` and `point` hold lists of them: `[{"model": 3,
+// "coordinates": [[x, y, z], …]}]`. Places are world coordinates in the model's unit, those of a
+// line as near to each other as the surface between them is straight.
+struct SurfaceFeature {
+  std::int64_t model = 0;
+  std::vector<glm::dvec3> places;  // of a point one, of a line two or more
+  bool operator==(const SurfaceFeature&) const = default;
+};
+
+struct KeyFeature {  // of a record
+  std::int64_t key = 0;
+  SurfaceFeature feature;
+  bool operator==(const KeyFeature&) const = default;
+};
+
+inline constexpr std::size_t kMaxFeatures = 1000;         // of a cell
+inline constexpr std::size_t kMaxFeaturePlaces = 10'000;  // of a cell
+inline constexpr double kMaxFeatureCoordinate = 1e12;
+
+// The marks of a cell's value; nothing where it is not one of this kind, within these bounds.
+std::optional<std::vector<SurfaceFeature>> read_features(const nlohmann::json& value, bool lines);
+nlohmann::json to_json(std::span<const SurfaceFeature> features);
+// Of a record in a column of lines or points; none where it has no value.
+std::vector<SurfaceFeature> features_of(const Record& record, const Column& column);
+
+// As cells of CSV have them: `3 LINESTRING Z (0 0 1, 2.5 0 1); 3 POINT Z (1 2 3)`, the model's id
+// before well-known text (ISO 13249-3).
+std::string print_features(std::span<const SurfaceFeature> features, bool lines);
+std::optional<std::vector<SurfaceFeature>> parse_features(std::string_view text, bool lines);
+
+double length_of(const SurfaceFeature& feature);  // in the model's unit; of a point 0
+
+}  // namespace strata

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+
+namespace strata::query {
+
+constexpr std::size_t kMaxPointMeasurements = 100'000;
+
+// A value measured at a place.
+struct PointMeasurement {
+  glm::dvec3 position;  // world
+  double value = 0;
+  int line = 0;  // of the text, from 1
+};
+
+// Reads a table of measurements. The first line names the columns: x, y, z and value, in any order
+// and case, others are passed over. Columns are parted by commas, semicolons or tabs, numbers have
+// a decimal point; quotes around a field are taken off; empty lines are passed over. Refused
+// (invalid with the line): a missing column, a field that is no finite number, lines of another
+// count of fields, no reading at all, more than kMaxPointMeasurements.
+Result<std::vector<PointMeasurement>> parse_point_measurements(std::string_view csv);
+
+}  // namespace strata::query

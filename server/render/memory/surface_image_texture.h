@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+
+#include "gl/texture.h"
+#include "render/memory/gpu_memory.h"
+#include "render/memory/mipmapped_picture.h"
+
+namespace strata::render {
+
+// A picture of a model's surface on the GPU, filled in slices. Filtered between texels and between
+// mipmaps.
+class SurfaceImageTexture {
+ public:
+  static Result<std::unique_ptr<SurfaceImageTexture>> create(
+      std::shared_ptr<const MipmappedPicture> image, bool software, GpuMemory& memory);
+
+  // Uploads the next few megabytes; true when everything is there, after which the image is let go.
+  bool upload_slice();
+  const gl::Texture& texture() const { return texture_; }
+
+ private:
+  std::shared_ptr<const MipmappedPicture> image_;
+  gl::Texture texture_;
+  GpuMemory::Share share_;
+  std::size_t level_ = 0;
+  int row_ = 0;
+};
+
+}  // namespace strata::render

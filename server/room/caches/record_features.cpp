@@ -1,0 +1,141 @@
+#include "room/caches/record_features.h"
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <cmath>
+
+#include "core/log.h"
+#include "store/tables/records.h"
+#include "store/tables/tables.h"
+
+namespace strata::room {
+
+struct RecordFeatures::Shown {
+  std::vector<LayerFeatures> layers;
+  std::weak_ptr<const std::vector<render::DrawnFeature>> features;
+};
+
+RecordFeatures::~RecordFeatures() = default;
+
+RecordFeatures::RecordFeatures(store::Store& store, boost::asio::thread_pool& workers,
+                               std::int64_t model_id, std::function<void()> ready)
+    : store_(store), workers_(workers), model_id_(model_id), ready_(std::move(ready)) {}
+
+Result<RecordFeatures::SurfaceFeatures> RecordFeatures::read(const Wanted& wanted,
+                                                             std::optional<std::int64_t> at) const {
+  auto features =
+      STRATA_TRY(store_.records().features(wanted.first, least_role(wanted.second), model_id_, at));
+  return features.empty() ? nullptr
+                          : std::make_shared<const std::vector<KeyFeature>>(std::move(features));
+}
+
+Result<RecordFeatures::SurfaceFeatures> RecordFeatures::when(std::int64_t table_id,
+                                                             Visibility sight,
+                                                             std::int64_t sequence) const {
+  const auto at = STRATA_TRY(store_.tables().sequence_when(table_id, model_id_, sequence));
+  return read({table_id, sight}, at);
+}
+
+RecordFeatures::SurfaceFeatures RecordFeatures::find(std::int64_t table_id, Visibility sight) {
+  const Wanted wanted{table_id, sight};
+  std::lock_guard lock(mutex_);
+  Entry& entry = entries_[wanted];
+  start(wanted, entry);
+  return entry.features;
+}
+
+Result<RecordFeatures::SurfaceFeatures> RecordFeatures::newest(std::int64_t table_id,
+                                                               Visibility sight) {
+  const Wanted wanted{table_id, sight};
+  {
+    std::lock_guard lock(mutex_);
+    Entry& entry = entries_[wanted];
+    if (entry.known && !entry.outdated && !entry.reading) return entry.features;
+    if (!entry.known) entry.outdated = false;  // records that change from now on make it so again
+  }
+  auto features = read(wanted);
+  std::lock_guard lock(mutex_);
+  Entry& entry = entries_[wanted];
+  if (!features) {
+    entry.outdated = true;
+    return entry.known ? Result<SurfaceFeatures>(entry.features) : features;
+  }
+  // A worker that was faster has read them at least as late.
+  if (!entry.known) {
+    entry.features = *features;
+    entry.known = true;
+  }
+  return features;
+}
+
+void RecordFeatures::start(const Wanted& wanted, Entry& entry) {
+  if (stopped_ || entry.reading || !entry.outdated) return;
+  entry.reading = true;
+  entry.outdated = false;
+  boost::asio::post(workers_, [self = shared_from_this(), wanted] { self->run(wanted); });
+}
+
+void RecordFeatures::run(const Wanted& wanted) {
+  auto features = read(wanted);
+  if (!features)
+    log::warning("lines and points of table " + std::to_string(wanted.first) + ": " +
+                 features.error().detail);
+  bool differ = false;
+  {
+    std::lock_guard lock(mutex_);
+    if (stopped_) return;
+    Entry& entry = entries_[wanted];
+    entry.reading = false;
+    // What cannot be read stays as it was, until records change again.
+    entry.known |= features.has_value();
+    if (features && !(!entry.features && !*features) &&
+        !(entry.features && *features && *entry.features == **features)) {
+      entry.features = std::move(*features);
+      differ = true;
+    }
+    start(wanted, entry);
+  }
+  if (differ && ready_) ready_();
+}
+
+void RecordFeatures::records_changed(std::int64_t table_id) {
+  std::lock_guard lock(mutex_);
+  for (auto& [wanted, entry] : entries_) {
+    if (wanted.first != table_id) continue;
+    entry.outdated = true;
+    start(wanted, entry);
+  }
+}
+
+void RecordFeatures::stop() {
+  std::lock_guard lock(mutex_);
+  stopped_ = true;
+}
+
+render::FeaturesShown RecordFeatures::shown(const std::vector<LayerFeatures>& layers) {
+  std::lock_guard lock(mutex_);
+  std::erase_if(shown_, [](const Shown& one) { return one.features.expired(); });
+  for (const Shown& one : shown_)
+    if (one.layers == layers)
+      if (auto features = one.features.lock()) return features;
+  auto features = show_features(layers);
+  if (features) shown_.push_back({layers, features});
+  return features;
+}
+
+render::FeaturesShown show_features(const std::vector<LayerFeatures>& layers) {
+  auto shown = std::make_shared<std::vector<render::DrawnFeature>>();
+  for (const LayerFeatures& layer : layers) {
+    if (!layer.features) continue;
+    for (const KeyFeature& each : *layer.features) {
+      Rgba color = color_of(*layer.palette, static_cast<double>(each.key));
+      color[3] =
+          static_cast<std::uint8_t>(std::lround(color[3] * std::clamp(layer.opacity, 0.0f, 1.0f)));
+      if (color[3] > 0) shown->push_back({each.feature.places, color});
+    }
+  }
+  if (shown->empty()) return nullptr;
+  return shown;
+}
+
+}  // namespace strata::room

@@ -1,0 +1,55 @@
+#include "room/open/open_surface_images.h"
+
+#include "core/no_such.h"
+#include "room/caches/surface_image_cache.h"
+#include "room/open/open_participants.h"
+#include "room/pipeline/strand.h"
+#include "store/content/surface_images.h"
+#include "store/store.h"
+
+namespace strata::room {
+
+std::vector<SurfaceImage> OpenRoom::SurfaceImagesPart::all() const {
+  return room_.surface_image_cache_->all();
+}
+
+Result<SurfaceImage> OpenRoom::SurfaceImagesPart::find(const std::string& ref) const {
+  if (auto image = room_.surface_image_cache_->find(ref)) return *image;
+  return no_such("look", ref, "look");
+}
+
+Result<SurfaceImage> OpenRoom::SurfaceImagesPart::create(
+    SurfaceImage image, std::span<const std::uint8_t> picture,
+    const store::IdempotentResponse<SurfaceImage>& answer) {
+  image.model_id = room_.model_id_;
+  auto created = STRATA_TRY(room_.services_.store.surface_images().create(image, picture, answer));
+  room_.surface_image_cache_->put(created);
+  tell(Listener::LayerChange::created, created);
+  return created;
+}
+
+Result<SurfaceImage> OpenRoom::SurfaceImagesPart::update(
+    const SurfaceImage& image, const store::IdempotentResponse<SurfaceImage>& answer) {
+  auto updated = STRATA_TRY(room_.services_.store.surface_images().update(image, answer));
+  room_.surface_image_cache_->put(updated);
+  tell(Listener::LayerChange::changed, updated);
+  return updated;
+}
+
+Result<void> OpenRoom::SurfaceImagesPart::erase(std::int64_t id,
+                                                const store::IdempotentResponse<>& answer) {
+  const auto known = room_.surface_image_cache_->find(std::to_string(id));
+  STRATA_TRY(room_.services_.store.surface_images().remove(id, answer));
+  room_.surface_image_cache_->drop(id);
+  if (known) tell(Listener::LayerChange::deleted, *known);
+  return {};
+}
+
+void OpenRoom::SurfaceImagesPart::tell(Listener::LayerChange change, const SurfaceImage& image) {
+  run_on(room_.strand_, [&] {
+    room_.participants_part_->tell([&](Listener& l) { l.surface_image_changed(change, image); });
+  });
+  room_.participants_part_->styles_changed();
+}
+
+}  // namespace strata::room

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "room/listener.h"
+#include "room/open/open_room.h"
+#include "room/surface_images.h"
+
+namespace strata::room {
+
+class OpenRoom::SurfaceImagesPart final : public SurfaceImages {
+ public:
+  explicit SurfaceImagesPart(OpenRoom& room) : room_(room) {}
+  std::vector<SurfaceImage> all() const override;
+  Result<SurfaceImage> find(const std::string& ref) const override;
+  Result<SurfaceImage> create(SurfaceImage image, std::span<const std::uint8_t> picture,
+                              const store::IdempotentResponse<SurfaceImage>& answer) override;
+  Result<SurfaceImage> update(const SurfaceImage& image,
+                              const store::IdempotentResponse<SurfaceImage>& answer) override;
+  Result<void> erase(std::int64_t id, const store::IdempotentResponse<>& answer) override;
+
+ private:
+  void tell(Listener::LayerChange change, const SurfaceImage& image);
+
+  OpenRoom& room_;
+};
+
+}  // namespace strata::room

@@ -1,0 +1,173 @@
+#include "store/content/surface_images.h"
+
+#include "store/content/surface_image_rows.h"
+#include "store/pg/blobs.h"
+#include "store/store_impl.h"
+
+namespace strata::store {
+namespace {
+
+#define STRATA_SURFACE_IMAGE_COLUMNS                                                                                \
+  "id, model_id, name, slug::text, description, media_type, width, height, opacity, visible, draw_order, version, " \
+  "encode(picture, 'hex'), (SELECT b.bytes FROM blobs b WHERE b.sha256 = picture)"
+
+SurfaceImage read_surface_image(const PgResult& rows, int i) {
+  SurfaceImage image;
+  int c = 0;
+  image.id = rows.integer(i, c++);
+  image.model_id = rows.integer(i, c++);
+  image.name = rows.text(i, c++);
+  image.slug = rows.text(i, c++);
+  image.description = rows.text(i, c++);
+  image.media_type = rows.text(i, c++);
+  image.width = static_cast<int>(rows.integer(i, c++));
+  image.height = static_cast<int>(rows.integer(i, c++));
+  image.opacity = rows.real(i, c++);
+  image.visible = rows.boolean(i, c++);
+  image.order = static_cast<int>(rows.integer(i, c++));
+  image.version = rows.integer(i, c++);
+  image.sha256 = rows.text(i, c++);
+  image.bytes = static_cast<std::uint64_t>(rows.integer(i, c++));
+  return image;
+}
+
+}  // namespace
+
+Result<void> check_surface_image(const SurfaceImage& image) {
+  STRATA_TRY(check_name(image.name));
+  if (!(image.opacity >= 0 && image.opacity <= 1))
+    return fail(ErrorCode::malformed, "Bad opacity", "`opacity` must be between 0 and 1.",
+                "opacity");
+  if (image.media_type != "image/jpeg" && image.media_type != "image/png")
+    return fail(ErrorCode::unsupported, "Bad picture", "A look is a JPEG or a PNG picture.",
+                "media_type");
+  if (image.width < 1 || image.height < 1)
+    return fail(ErrorCode::invalid, "Bad picture", "A look has at least one pixel a side.",
+                "width");
+  return check_texts({{&image.slug, "slug"}, {&image.description, "description"}});
+}
+
+Result<SurfaceImage> insert_surface_image(PgConnection& connection, const SurfaceImage& image,
+                                          const Sha256& picture) {
+  auto row = STRATA_TRY(insert_with_slug(
+      connection, "SELECT slug::text FROM looks WHERE slug LIKE $1 AND model_id = $2",
+      image.model_id, image.slug.empty() ? image.name : image.slug, [&](const std::string& slug) {
+        return connection.query(
+            "INSERT INTO looks (model_id, name, slug, description, media_type, width, height, opacity, visible, draw_order, "
+            "picture) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11) "
+            "ON CONFLICT (model_id, slug) DO NOTHING RETURNING " STRATA_SURFACE_IMAGE_COLUMNS,
+            Params()
+                .integer(image.model_id)
+                .text(image.name)
+                .text(slug)
+                .text(image.description)
+                .text(image.media_type)
+                .integer(image.width)
+                .integer(image.height)
+                .real(image.opacity)
+                .boolean(image.visible)
+                .integer(image.order)
+                .bytes(picture));
+      }));
+  return read_surface_image(row, 0);
+}
+
+Result<std::vector<SurfaceImage>> SurfaceImages::of_model(std::int64_t model_id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<SurfaceImage>> {
+    auto known = STRATA_TRY(
+        connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(model_id)));
+    if (known.rows() == 0) return no_such("model", std::to_string(model_id));
+    auto rows =
+        STRATA_TRY(connection.query("SELECT " STRATA_SURFACE_IMAGE_COLUMNS
+                                    " FROM looks WHERE model_id = $1 ORDER BY draw_order, id",
+                                    Params().integer(model_id)));
+    std::vector<SurfaceImage> images;
+    for (int i = 0; i < rows.rows(); ++i) images.push_back(read_surface_image(rows, i));
+    return images;
+  });
+}
+
+Result<SurfaceImage> SurfaceImages::find(std::int64_t model_id, const std::string& ref) {
+  if (!check_text(ref, "look")) return no_such("look", ref);
+  return pool_.read([&](PgConnection& connection) -> Result<SurfaceImage> {
+    const auto id = id_of(ref);
+    auto rows = STRATA_TRY(id ? connection.query("SELECT " STRATA_SURFACE_IMAGE_COLUMNS
+                                                 " FROM looks WHERE model_id = $1 AND id = $2",
+                                                 Params().integer(model_id).integer(*id))
+                              : connection.query("SELECT " STRATA_SURFACE_IMAGE_COLUMNS
+                                                 " FROM looks WHERE model_id = $1 AND slug = $2",
+                                                 Params().integer(model_id).text(ref)));
+    if (rows.rows() == 0) return no_such("look", ref);
+    return read_surface_image(rows, 0);
+  });
+}
+
+Result<SurfaceImage> SurfaceImages::create(const SurfaceImage& image,
+                                           std::span<const std::uint8_t> picture,
+                                           const IdempotentResponse<SurfaceImage>& answer) {
+  STRATA_TRY(check_surface_image(image));
+  const Content content = content_of(picture);
+  const auto work = [&](PgConnection& connection) -> Result<SurfaceImage> {
+    // Locked, so that of two at once the later one counts the earlier.
+    auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
+                                             Params().integer(image.model_id)));
+    if (model.rows() == 0) return no_such("model", std::to_string(image.model_id));
+    auto count = STRATA_TRY(connection.query("SELECT count(*) FROM looks WHERE model_id = $1",
+                                             Params().integer(image.model_id)));
+    if (count.integer(0, 0) >= kMaxSurfaceImages)
+      return fail(ErrorCode::conflict, "Too many looks",
+                  "A model holds at most " + std::to_string(kMaxSurfaceImages) +
+                      " looks. Delete one first.");
+    STRATA_TRY(keep_blob(connection, content, {}));
+    return insert_surface_image(connection, image, content.hash);
+  };
+  return change(pool_, answer, work, kBulkLimits);
+}
+
+Result<SurfaceImage> SurfaceImages::update(const SurfaceImage& image,
+                                           const IdempotentResponse<SurfaceImage>& answer) {
+  STRATA_TRY(check_surface_image(image));
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<SurfaceImage> {
+    auto row = STRATA_TRY(connection.query(
+        "UPDATE looks SET name = $3, slug = $4, description = $5, opacity = $6, visible = $7, draw_order = $8, "
+        "version = version + 1 WHERE id = $1 AND version = $2 RETURNING " STRATA_SURFACE_IMAGE_COLUMNS,
+        Params()
+            .integer(image.id)
+            .integer(image.version)
+            .text(image.name)
+            .text(image.slug)
+            .text(image.description)
+            .real(image.opacity)
+            .boolean(image.visible)
+            .integer(image.order)));
+    if (row.rows() > 0) return read_surface_image(row, 0);
+    auto known = STRATA_TRY(
+        connection.query("SELECT 1 FROM looks WHERE id = $1", Params().integer(image.id)));
+    if (known.rows() == 0) return no_such("look", std::to_string(image.id));
+    return stale("look");
+  });
+}
+
+Result<void> SurfaceImages::remove(std::int64_t id, const IdempotentResponse<>& answer) {
+  const auto work = [&](PgConnection& connection) -> Result<void> {
+    auto done =
+        connection.query("DELETE FROM looks WHERE id = $1 RETURNING picture", Params().integer(id));
+    if (!done) return tl::unexpected(done.error());
+    if (done->rows() == 0) return no_such("look", std::to_string(id));
+    const Bytes hash = done->bytes(0, 0);
+    return drop_unused(connection, {{hash.begin(), hash.end()}});
+  };
+  return change(pool_, answer, work, kBulkLimits);
+}
+
+Result<std::vector<std::uint8_t>> SurfaceImages::picture(std::int64_t id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<std::uint8_t>> {
+    auto row = STRATA_TRY(connection.query(
+        "SELECT b.sha256, b.bytes FROM looks l JOIN blobs b ON b.sha256 = l.picture WHERE l.id = $1",
+        Params().integer(id)));
+    if (row.rows() == 0) return no_such("look", std::to_string(id));
+    return read_blob(connection, row.bytes(0, 0), row.integer(0, 1));
+  });
+}
+
+}  // namespace strata::store

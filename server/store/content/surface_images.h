@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "domain/scene/surface_image.h"
+#include "store/content/idempotent_response.h"
+
+namespace strata::store {
+
+class Pool;
+
+// Pictures of a model's surface, kept as they came. Part of Store: its rules for threads and
+// errors hold.
+class SurfaceImages {
+ public:
+  explicit SurfaceImages(Pool& pool) : pool_(pool) {}
+
+  static constexpr int kMaxSurfaceImages = 32;  // of a model
+
+  Result<std::vector<SurfaceImage>> of_model(std::int64_t model_id);  // by order
+  Result<SurfaceImage> find(std::int64_t model_id, const std::string& ref);
+  Result<SurfaceImage> create(const SurfaceImage& image, std::span<const std::uint8_t> picture,
+                              const IdempotentResponse<SurfaceImage>& answer = {});
+  // all but its picture
+  Result<SurfaceImage> update(const SurfaceImage& image,
+                              const IdempotentResponse<SurfaceImage>& answer = {});
+  Result<void> remove(std::int64_t id, const IdempotentResponse<>& answer = {});
+  Result<std::vector<std::uint8_t>> picture(std::int64_t id);
+
+ private:
+  Pool& pool_;
+};
+
+}  // namespace strata::store

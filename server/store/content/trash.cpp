@@ -1,0 +1,283 @@
+#include "store/content/trash.h"
+
+#include "store/pg/blobs.h"
+#include "store/store_impl.h"
+#include "store/tables/table_writer.h"
+
+namespace strata::store {
+namespace {
+
+using Kind = TrashEntry::Kind;
+
+constexpr int kRowsAtOnce = 2000;
+
+// What is in the Trash of project $1 and of a model that is there: layers and models that have one
+// of the visibilities $2 where $3 (curators), and records that were deleted in the last $4 days and
+// not made again since.
+#define STRATA_TRASH                                                                                                    \
+  "(SELECT 'layer' AS kind, l.id, l.name, l.model_id, m.name AS model_name, 0::bigint AS table_id, '' AS table_name, "  \
+  "l.binned_by, l.binned, l.binned_bytes FROM all_layers l JOIN models m ON m.id = l.model_id WHERE m.project_id = $1 " \
+  "AND l.binned IS NOT NULL AND NOT l.erasing AND l.visibility = any($2) AND $3 UNION ALL "                             \
+  "SELECT 'model', id, name, id, '', 0, '', binned_by, binned, binned_bytes FROM all_models "                           \
+  "WHERE project_id = $1 AND binned IS NOT NULL AND NOT erasing AND $3 UNION ALL "                                      \
+  "SELECT 'record', c.subject_id, coalesce(nullif((SELECT c.before ->> r.id::text FROM record_columns r "               \
+  "WHERE r.table_id = c.table_id AND r.kind = 'text' AND NOT r.hidden AND r.visibility = any($2) "                      \
+  "ORDER BY (r.properties ->> 'order')::integer, r.id LIMIT 1), ''), c.subject_id::text), 0, '', t.id, t.name, "        \
+  "e.user_name, e.time, 0 FROM record_tables t JOIN table_edits e ON e.table_id = t.id "                                \
+  "JOIN table_changes c ON c.table_id = t.id AND c.sequence = e.sequence WHERE t.project_id = $1 "                      \
+  "AND e.time > clock_timestamp() - $4 * interval '1 day' AND e.op IN ('delete', 'redo') AND c.subject = 'record' "     \
+  "AND c.after -> 'exists' = 'false' AND NOT EXISTS (SELECT 1 FROM table_changes n WHERE n.table_id = c.table_id "      \
+  "AND n.subject = 'record' AND n.subject_id = c.subject_id AND n.sequence > c.sequence AND n.after ? 'exists')) bin "
+
+Params seen_in(std::int64_t project_id, const Trash::Sight& sight) {
+  Params params;
+  params.integer(project_id)
+      .array(visibilities_seen_by(sight.role))
+      .boolean(sight.role >= Role::curator)
+      .integer(sight.role >= Role::annotator ? sight.records.count() : 0);
+  return params;
+}
+
+TrashEntry read_entry(const PgResult& rows, int i) {
+  TrashEntry entry;
+  const std::string kind = rows.text(i, 0);
+  entry.kind = kind == "layer" ? Kind::layer : kind == "model" ? Kind::model : Kind::record;
+  entry.id = rows.integer(i, 1);
+  entry.name = rows.text(i, 2);
+  entry.model_id = rows.integer(i, 3);
+  entry.model_name = rows.text(i, 4);
+  entry.table_id = rows.integer(i, 5);
+  entry.table_name = rows.text(i, 6);
+  entry.user = rows.text(i, 7);
+  entry.deleted = rows.time(i, 8);
+  entry.bytes = static_cast<std::uint64_t>(rows.integer(i, 9));
+  return entry;
+}
+
+const char* name_of(Kind kind) {
+  return kind == Kind::layer ? "layer" : kind == Kind::model ? "model" : "record";
+}
+
+tl::unexpected<Error> not_in_trash(const TrashEntry& entry) {
+  return fail(ErrorCode::not_found, "Not in the Bin",
+              "The " + std::string(name_of(entry.kind)) + " " + entry.name +
+                  " is not in the Bin any more: it was restored or erased.");
+}
+
+// Done where one row was changed; `id` is of something that may not be there.
+Result<void> changed_one(const Result<PgResult>& done, Kind kind, std::int64_t id) {
+  if (!done) return tl::unexpected(done.error());
+  return done->affected() > 0 ? Result<void>{} : no_such(name_of(kind), std::to_string(id));
+}
+
+}  // namespace
+
+Result<void> erase_layer(PgConnection& connection, std::int64_t id) {
+  // What was written about it is seen by no more people than before.
+  STRATA_TRY(connection.query(
+      "UPDATE comments c SET visibility = l.visibility FROM all_layers l WHERE l.id = $1 AND c.layer_id = l.id",
+      Params().integer(id)));
+  auto done = connection.query("DELETE FROM all_layers WHERE id = $1", Params().integer(id));
+  return done ? Result<void>{} : tl::unexpected(done.error());
+}
+
+// The blobs of model $1.
+#define STRATA_BLOBS_OF_MODEL                                                                                       \
+  "SELECT geometry FROM all_models WHERE id = $1 UNION "                                                            \
+  "SELECT sha256 FROM model_sources WHERE model_id = $1 UNION SELECT picture FROM looks WHERE model_id = $1 UNION " \
+  "SELECT geometry FROM detail_levels WHERE model_id = $1"
+
+Result<void> erase_model(PgConnection& connection, std::int64_t id) {
+  auto used = STRATA_TRY(connection.query(STRATA_BLOBS_OF_MODEL, Params().integer(id)));
+  std::vector<std::vector<std::uint8_t>> hashes;
+  for (int i = 0; i < used.rows(); ++i) {
+    const Bytes hash = used.bytes(i, 0);
+    hashes.emplace_back(hash.begin(), hash.end());
+  }
+  STRATA_TRY(connection.query("DELETE FROM all_models WHERE id = $1", Params().integer(id)));
+  return drop_unused(connection, hashes);
+}
+
+Result<Trash::Page> Trash::of_project(std::int64_t project_id, const Sight& sight, int limit,
+                                      int offset, const std::optional<Place>& after) {
+  return pool_.read([&](PgConnection& connection) -> Result<Page> {
+    auto total = STRATA_TRY(
+        connection.query("SELECT count(*) FROM " STRATA_TRASH, seen_in(project_id, sight)));
+    const Place place = after.value_or(Place{});
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT * FROM " STRATA_TRASH
+        "CROSS JOIN (SELECT timestamptz 'epoch' + $7::bigint * interval '1 microsecond' AS time) place "
+        "WHERE NOT $8 OR binned < place.time OR (binned = place.time AND (kind, table_id, id) > ($9, $10::bigint, $11::bigint)) "
+        "ORDER BY binned DESC, kind, table_id, id LIMIT $5 OFFSET $6",
+        seen_in(project_id, sight)
+            .integer(limit)
+            .integer(offset)
+            .integer(place.deleted_us)
+            .boolean(after.has_value())
+            .text(name_of(place.kind))
+            .integer(place.table_id)
+            .integer(place.id)));
+    Page page;
+    page.total = total.integer(0, 0);
+    for (int i = 0; i < rows.rows(); ++i) page.entries.push_back(read_entry(rows, i));
+    return page;
+  });
+}
+
+Result<TrashEntry> Trash::entry(std::int64_t project_id, Kind kind, std::int64_t id,
+                                std::int64_t table_id, const Sight& sight) {
+  return pool_.read([&](PgConnection& connection) -> Result<TrashEntry> {
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT * FROM " STRATA_TRASH "WHERE kind = $5 AND id = $6 AND table_id = $7",
+        seen_in(project_id, sight).text(name_of(kind)).integer(id).integer(table_id)));
+    if (rows.rows() == 0)
+      return fail(ErrorCode::not_found, "Not in the Bin",
+                  "The project's Bin has no such " + std::string(name_of(kind)) + ": " +
+                      std::to_string(id) + ".");
+    return read_entry(rows, 0);
+  });
+}
+
+Result<void> Trash::put_layer(std::int64_t id, const IdempotentResponse<>& answer) {
+  const auto work = [&](PgConnection& connection) {
+    return changed_one(
+        connection.query(
+            "UPDATE all_layers SET binned = clock_timestamp(), binned_by = activity_author(), binned_bytes = "
+            "(SELECT coalesce(sum(octet_length(difference) + coalesce(octet_length(key_tile), 0)), 0) FROM tile_revisions "
+            "WHERE layer_id = $1) WHERE id = (SELECT id FROM layers WHERE id = $1) AND binned IS NULL",
+            Params().integer(id)),
+        Kind::layer, id);
+  };
+  return change(pool_, answer, work, kBulkLimits);
+}
+
+Result<void> Trash::put_model(std::int64_t id, const IdempotentResponse<>& answer) {
+  const auto work = [&](PgConnection& connection) {
+    return changed_one(
+        connection.query(
+            "UPDATE all_models SET binned = clock_timestamp(), binned_by = activity_author(), binned_bytes = "
+            "(SELECT coalesce(sum(octet_length(r.difference) + coalesce(octet_length(r.key_tile), 0)), 0) "
+            "FROM tile_revisions r JOIN all_layers l ON l.id = r.layer_id WHERE l.model_id = $1) + "
+            "(SELECT coalesce(sum(b.bytes), 0) FROM blobs b WHERE b.sha256 IN "
+            "(" STRATA_BLOBS_OF_MODEL ")) WHERE id = $1 AND binned IS NULL",
+            Params().integer(id)),
+        Kind::model, id);
+  };
+  return change(pool_, answer, work, kBulkLimits);
+}
+
+Result<TrashRestored> Trash::restore(const TrashEntry& entry,
+                                     const IdempotentResponse<TrashRestored>& answer) {
+  const bool is_layer = entry.kind == Kind::layer;
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<TrashRestored> {
+    // Of a layer the model first, which must not go into the Trash meanwhile, and gets no layer of
+    // that short name.
+    if (is_layer) {
+      auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR UPDATE",
+                                               Params().integer(entry.model_id)));
+      if (model.rows() == 0) return not_in_trash(entry);
+    }
+    auto known = STRATA_TRY(connection.query(
+        is_layer
+            ? "SELECT slug::text FROM all_layers WHERE id = $1 AND binned IS NOT NULL AND NOT erasing FOR UPDATE"
+            : "SELECT slug::text FROM all_models WHERE id = $1 AND binned IS NOT NULL AND NOT erasing FOR UPDATE",
+        Params().integer(entry.id)));
+    if (known.rows() == 0) return not_in_trash(entry);
+    const std::string former = known.text(0, 0);
+    auto taken =
+        is_layer
+            ? connection.query("SELECT slug::text FROM layers WHERE slug LIKE $1 AND model_id = $2",
+                               Params().text(former + "%").integer(entry.model_id))
+            : connection.query("SELECT slug::text FROM models WHERE slug LIKE $1",
+                               Params().text(former + "%"));
+    if (!taken) return tl::unexpected(taken.error());
+    TrashRestored restored{entry, free_slug(former, *taken), {}};
+    if (restored.slug != former) {
+      restored.former_slug = former;
+      STRATA_TRY(connection.query(is_layer ? "UPDATE all_layers SET slug = $2 WHERE id = $1"
+                                           : "UPDATE all_models SET slug = $2 WHERE id = $1",
+                                  Params().integer(entry.id).text(restored.slug)));
+    }
+    STRATA_TRY(connection.query(
+        is_layer
+            ? "UPDATE all_layers SET binned = NULL, binned_by = NULL, binned_bytes = NULL, version = version + 1 WHERE id = $1"
+            : "UPDATE all_models SET binned = NULL, binned_by = NULL, binned_bytes = NULL, version = version + 1 WHERE id = $1",
+        Params().integer(entry.id)));
+    return restored;
+  });
+}
+
+Result<TableChange> Trash::restore_record(const TrashEntry& entry, const std::string& user,
+                                          const IdempotentResponse<TableChange>& answer) {
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<TableChange> {
+    auto open = STRATA_TRY(lock_table(connection, entry.table_id));
+    auto last = STRATA_TRY(connection.query(
+        "SELECT before FROM table_changes WHERE table_id = $1 AND subject = 'record' AND subject_id = $2 "
+        "AND after ? 'exists' ORDER BY sequence DESC LIMIT 1",
+        Params().integer(entry.table_id).integer(entry.id)));
+    if (last.rows() == 0 || !last.json(0, 0).value("exists", false)) return not_in_trash(entry);
+    const nlohmann::json before = last.json(0, 0);
+    TableEdit edit{user, "restore", {{"records", 1}, {"keys", nlohmann::json::array({entry.id})}},
+                   {},   {},        true};
+    Cells& cells = edit.records[entry.id];
+    cells["exists"] = true;
+    for (const Column& column : open.all)
+      if (const auto cell = before.find(std::to_string(column.id)); cell != before.end())
+        cells[cell.key()] = *cell;
+    auto done = apply_edit(connection, open, std::move(edit));
+    if (done && !done->problems.empty())
+      return fail(ErrorCode::conflict, "Cannot be restored", done->problems.front().problem.detail);
+    return done;
+  });
+}
+
+Result<void> Trash::erase(const TrashEntry& entry, const IdempotentResponse<>& answer) {
+  if (entry.kind == Kind::record)
+    return fail(ErrorCode::conflict, "Records are kept",
+                "What the record said stays in the history of its table, where nothing is erased.");
+  return change(pool_, answer, [&](PgConnection& connection) -> Result<void> {
+    auto done = STRATA_TRY(connection.query(
+        entry.kind == Kind::layer
+            ? "UPDATE all_layers SET erasing = true WHERE id = $1 AND binned IS NOT NULL AND NOT erasing"
+            : "UPDATE all_models SET erasing = true WHERE id = $1 AND binned IS NOT NULL AND NOT erasing",
+        Params().integer(entry.id)));
+    return done.affected() > 0 ? Result<void>{} : not_in_trash(entry);
+  });
+}
+
+Result<void> Trash::expire(std::chrono::days after) {
+  return pool_.write([&](PgConnection& connection) -> Result<void> {
+    for (
+        const char* sql :
+        {"UPDATE all_layers SET erasing = true WHERE NOT erasing AND binned <= clock_timestamp() - $1 * interval '1 day'",
+         "UPDATE all_models SET erasing = true WHERE NOT erasing AND binned <= clock_timestamp() - $1 * interval '1 day'"})
+      STRATA_TRY(connection.query(sql, Params().integer(after.count())));
+    return {};
+  });
+}
+
+Result<bool> Trash::erase_some() {
+  return pool_.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<bool> {
+    auto layer = STRATA_TRY(connection.query(
+        "SELECT l.id FROM all_layers l JOIN all_models m ON m.id = l.model_id WHERE l.erasing OR m.erasing ORDER BY l.id LIMIT 1"));
+    if (layer.rows() > 0) {
+      const std::int64_t id = layer.integer(0, 0);
+      for (
+          const char* sql :
+          {"DELETE FROM tile_revisions WHERE ctid = any(ARRAY(SELECT ctid FROM tile_revisions WHERE layer_id = $1 LIMIT $2))",
+           "DELETE FROM edits WHERE ctid = any(ARRAY(SELECT ctid FROM edits WHERE layer_id = $1 LIMIT $2))"}) {
+        auto some = STRATA_TRY(connection.query(sql, Params().integer(id).integer(kRowsAtOnce)));
+        if (some.affected() > 0) return true;
+      }
+      STRATA_TRY(erase_layer(connection, id));
+      return true;
+    }
+    auto model =
+        STRATA_TRY(connection.query("SELECT id FROM all_models WHERE erasing ORDER BY id LIMIT 1"));
+    if (model.rows() == 0) return false;
+    STRATA_TRY(erase_model(connection, model.integer(0, 0)));
+    return true;
+  });
+}
+
+}  // namespace strata::store
