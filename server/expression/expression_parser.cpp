@@ -11,11 +11,13 @@
 #include "core/text/edtf.h"
 #include "core/text/timestamp.h"
 #include "core/text/utf8.h"
+#include "expression/operators.h"
 
 namespace strata::query {
 namespace {
 
 using Op = Expression::Op;
+using Form = Operator::Form;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
@@ -31,45 +33,6 @@ struct Token {
 
 constexpr std::array kKeywords{"and",  "or",  "not", "true",    "false", "case", "when", "then",
                                "else", "end", "is",  "between", "in",    "null", "like", "div"};
-
-// Of numbers; `least` and `greatest` take two or more. A word is the name of a function where a
-// bracket follows it.
-struct Function {
-  std::string_view name;
-  Op op;
-};
-constexpr std::array kFunctions{
-    Function{"min", Op::least},         Function{"max", Op::greatest},
-    Function{"abs", Op::absolute},      Function{"sqrt", Op::square_root},
-    Function{"exp", Op::exponential},   Function{"ln", Op::natural_log},
-    Function{"log10", Op::decimal_log}, Function{"floor", Op::floor},
-    Function{"ceil", Op::ceiling},      Function{"round", Op::round},
-    Function{"sin", Op::sine},          Function{"cos", Op::cosine},
-    Function{"tan", Op::tangent},       Function{"asin", Op::arc_sine},
-    Function{"acos", Op::arc_cosine},   Function{"atan", Op::arc_tangent},
-    Function{"radians", Op::radians},   Function{"degrees", Op::degrees}};
-
-// Of a text; of two times; of a relation and keys.
-constexpr std::array kTextFunctions{Function{"casei", Op::fold_case},
-                                    Function{"accenti", Op::fold_accents}};
-constexpr std::array kTimeFunctions{
-    Function{"t_before", Op::before},         Function{"t_after", Op::after},
-    Function{"t_during", Op::during},         Function{"t_contains", Op::contains},
-    Function{"t_intersects", Op::intersects}, Function{"t_disjoint", Op::disjoint},
-    Function{"t_equals", Op::coincides}};
-constexpr std::array kKeyFunctions{
-    Function{"a_contains", Op::has_all}, Function{"a_overlaps", Op::has_any},
-    Function{"a_containedby", Op::has_only}, Function{"a_equals", Op::has_exactly}};
-
-struct Comparison {
-  std::string_view symbol;
-  Op op;
-};
-constexpr std::array kComparisons{
-    Comparison{"=", Op::equal},      Comparison{"==", Op::equal},
-    Comparison{"<>", Op::not_equal}, Comparison{"!=", Op::not_equal},
-    Comparison{"<", Op::less},       Comparison{"<=", Op::less_equal},
-    Comparison{">", Op::greater},    Comparison{">=", Op::greater_equal}};
 
 // Recursive descent. The first refusal is kept and ends the text, so that every level returns,
 // whatever it holds by then.
@@ -192,14 +155,16 @@ class Parser {
 
   void take_symbol() {
     token_.kind = Token::Kind::symbol;
-    std::size_t length = 1;
-    for (const Comparison& comparison : kComparisons)
-      if (comparison.symbol.size() == 2 && text_.substr(at_, 2) == comparison.symbol) length = 2;
+    const auto is_symbol = [](std::string_view text) {
+      return text == "(" || text == ")" || text == "," || text == "." ||
+             std::ranges::any_of(operators(),
+                                 [&](const Operator& row) { return row.is_called(text); });
+    };
+    const std::size_t length =
+        is_symbol(text_.substr(at_, 2)) ? std::min<std::size_t>(2, text_.size() - at_) : 1;
     token_.text = std::string(text_.substr(at_, length));
     at_ += length;
-    if (length == 1 &&
-        std::string_view("()+-*/%^,<>=.").find(token_.text) == std::string_view::npos)
-      refuse("This character has no meaning in an expression");
+    if (!is_symbol(token_.text)) refuse("This character has no meaning in an expression");
   }
 
   bool is(std::string_view text) const {
@@ -216,6 +181,13 @@ class Parser {
     std::size_t next = at_;
     while (next < text_.size() && is_space(text_[next])) ++next;
     return next < text_.size() && text_[next] == '(';
+  }
+  // The operator of this form that stands here.
+  const Operator* operator_here(Form form) const {
+    const auto row = std::ranges::find_if(operators(), [&](const Operator& each) {
+      return each.form == form && (is(each.name) || (!each.alias.empty() && is(each.alias)));
+    });
+    return row == operators().end() ? nullptr : &*row;
   }
   void expect(std::string_view text) {
     if (!take(text))
@@ -249,15 +221,13 @@ class Parser {
   Expression comparison() {
     const auto at = token_.at;
     Expression left = sum();
-    for (const Comparison& each : kComparisons) {
-      if (!is(each.symbol)) continue;
+    if (const Operator* row = operator_here(Form::comparison)) {
       advance();
       const auto right_at = token_.at;
       Expression right = sum();
-      for (const Comparison& next : kComparisons)
-        if (is(next.symbol))
-          refuse("Only two values are compared at a time; join comparisons with 'and'");
-      return compare(each.op, std::move(left), at, std::move(right), right_at);
+      if (operator_here(Form::comparison))
+        refuse("Only two values are compared at a time; join comparisons with 'and'");
+      return compare(row->op, std::move(left), at, std::move(right), right_at);
     }
     if (is("is")) return null_test(value(std::move(left), at), at);
     const bool negated = is("not");
@@ -337,33 +307,24 @@ class Parser {
     return any;
   }
 
-  Expression sum() {
-    const auto at = token_.at;
-    Expression left = product();
-    while (is("+") || is("-"))
-      left = arithmetic(is("+") ? Op::add : Op::subtract, std::move(left), at, &Parser::product);
-    return left;
-  }
+  Expression sum() { return chain(Form::sum, &Parser::product); }
+  Expression product() { return chain(Form::product, &Parser::power); }
 
-  Expression product() {
+  Expression chain(Form form, Expression (Parser::*next)()) {
     const auto at = token_.at;
-    Expression left = power();
-    for (;;) {
-      const Op op = is("*")   ? Op::multiply
-                    : is("/") ? Op::divide
-                    : is("%") ? Op::remainder
-                              : Op::whole_division;
-      if (op == Op::whole_division && !is("div")) return left;
-      left = arithmetic(op, std::move(left), at, &Parser::power);
-    }
+    Expression left = (this->*next)();
+    while (const Operator* row = operator_here(form))
+      left = arithmetic(row->op, std::move(left), at, next);
+    return left;
   }
 
   Expression power() {
     const auto at = token_.at;
     Expression left = sign();
-    if (!is("^")) return left;
-    left = arithmetic(Op::power, std::move(left), at, &Parser::sign);
-    if (is("^")) refuse("Powers of powers need parentheses");
+    const Operator* row = operator_here(Form::power);
+    if (!row) return left;
+    left = arithmetic(row->op, std::move(left), at, &Parser::sign);
+    if (operator_here(Form::power)) refuse("Powers of powers need parentheses");
     return left;
   }
 
@@ -378,9 +339,11 @@ class Parser {
   Expression sign() {
     const Nesting nesting(*this);
     const auto at = token_.at;
-    if (!take("-")) return primary();
+    const Operator* row = operator_here(Form::sign);
+    if (!row) return primary();
+    advance();
     Expression part = sign();
-    return make(Op::negate, at, numeric(std::move(part), at));
+    return make(row->op, at, numeric(std::move(part), at));
   }
 
   Expression primary() {
@@ -428,21 +391,20 @@ class Parser {
     if (is("reclass")) return reclass();
     if (is("date") || is("timestamp")) return time();
     if (is("interval")) return interval();
-    for (const Function& each : kFunctions)
-      if (is(each.name)) return function(each);
-    for (const Function& each : kTextFunctions)
-      if (is(each.name)) return text_function(each);
-    for (const Function& each : kTimeFunctions)
-      if (is(each.name)) return time_function(each);
-    for (const Function& each : kKeyFunctions)
-      if (is(each.name)) return key_function(each);
-    std::string known = "valid, if, reclass";
-    for (const Function& each : kFunctions) known += ", " + std::string(each.name);
-    for (const Function& each : kTextFunctions) known += ", " + std::string(each.name);
-    known += ", date, timestamp, interval";
-    for (const Function& each : kTimeFunctions) known += ", " + std::string(each.name);
-    for (const Function& each : kKeyFunctions) known += ", " + std::string(each.name);
-    return refuse("There is no function '" + token_.text + "'; there are " + known);
+    for (const Operator& each : operators()) {
+      if (!is(each.name)) continue;
+      switch (each.form) {
+        case Form::number_function: return number_function(each);
+        case Form::text_function: return text_function(each);
+        case Form::time_function: return time_function(each);
+        case Form::key_function: return key_function(each);
+        default: break;
+      }
+    }
+    return refuse("There is no function '" + token_.text + "'; there are valid, if, reclass, " +
+                  names_of(Form::number_function) + ", " + names_of(Form::text_function) +
+                  ", date, timestamp, interval, " + names_of(Form::time_function) + ", " +
+                  names_of(Form::key_function));
   }
 
   std::string_view what_names_are() const {
@@ -537,7 +499,7 @@ class Parser {
     return expression;
   }
 
-  Expression text_function(const Function& called) {
+  Expression text_function(const Operator& called) {
     const auto at = token_.at;
     advance();
     expect("(");
@@ -547,7 +509,7 @@ class Parser {
     return make(called.op, at, std::move(part));
   }
 
-  Expression time_function(const Function& called) {
+  Expression time_function(const Operator& called) {
     const auto at = token_.at;
     advance();
     expect("(");
@@ -560,7 +522,7 @@ class Parser {
     return make(called.op, at, std::move(first), std::move(second));
   }
 
-  Expression key_function(const Function& called) {
+  Expression key_function(const Operator& called) {
     const auto at = token_.at;
     advance();
     expect("(");
@@ -636,15 +598,14 @@ class Parser {
     return chain;
   }
 
-  Expression function(const Function& called) {
+  Expression number_function(const Operator& called) {
     const auto at = token_.at;
     advance();
     expect("(");
     Expression expression = make(called.op, at, argument());
-    if (called.op == Op::least || called.op == Op::greatest) {
-      if (!is(",")) refuse("At least two numbers are compared");
-      while (take(",")) expression.parts.push_back(argument());
-    }
+    while (expression.parts.size() < called.max_operands && take(","))
+      expression.parts.push_back(argument());
+    if (expression.parts.size() < called.min_operands) refuse("At least two numbers are compared");
     expect(")");
     return expression;
   }

@@ -8,9 +8,9 @@
 #include <cstring>
 #include <limits>
 #include <mutex>
-#include <numbers>
 
 #include "domain/people/question.h"
+#include "expression/operators.h"
 #include "mesh/parallel.h"
 #include "mesh/texels/slot_bits.h"
 #include "query/conditions/evaluation_plan.h"
@@ -156,37 +156,11 @@ class Block {
       case Op::layer: return layer(e.source);
       case Op::record_number: return of_records(e);
       case Op::choose: return choice(e);
-      case Op::negate: return mapped(e, [](double x) { return -x; });
-      case Op::absolute: return mapped(e, [](double x) { return std::abs(x); });
-      case Op::add: return folded(e, [](double x, double y) { return x + y; });
-      case Op::subtract: return folded(e, [](double x, double y) { return x - y; });
-      case Op::multiply: return folded(e, [](double x, double y) { return x * y; });
-      case Op::divide: return folded(e, [](double x, double y) { return x / y; });
-      case Op::power: return folded(e, [](double x, double y) { return std::pow(x, y); });
-      case Op::remainder: return folded(e, [](double x, double y) { return std::fmod(x, y); });
-      case Op::whole_division:
-        return folded(e, [](double x, double y) { return std::trunc(x / y); });
-      case Op::square_root: return mapped(e, [](double x) { return std::sqrt(x); });
-      case Op::exponential: return mapped(e, [](double x) { return std::exp(x); });
-      case Op::natural_log: return mapped(e, [](double x) { return std::log(x); });
-      case Op::decimal_log: return mapped(e, [](double x) { return std::log10(x); });
-      case Op::floor: return mapped(e, [](double x) { return std::floor(x); });
-      case Op::ceiling: return mapped(e, [](double x) { return std::ceil(x); });
-      case Op::round: return mapped(e, [](double x) { return std::round(x); });
-      case Op::sine: return mapped(e, [](double x) { return std::sin(x); });
-      case Op::cosine: return mapped(e, [](double x) { return std::cos(x); });
-      case Op::tangent: return mapped(e, [](double x) { return std::tan(x); });
-      case Op::arc_sine: return mapped(e, [](double x) { return std::asin(x); });
-      case Op::arc_cosine: return mapped(e, [](double x) { return std::acos(x); });
-      case Op::arc_tangent: return mapped(e, [](double x) { return std::atan(x); });
-      case Op::radians: return mapped(e, [](double x) { return x * (std::numbers::pi / 180); });
-      case Op::degrees: return mapped(e, [](double x) { return x * (180 / std::numbers::pi); });
       case Op::x:
       case Op::y:
       case Op::z: return coordinate(static_cast<int>(e.op) - static_cast<int>(Op::x));
       case Op::area: return texel_area();
-      case Op::least: return folded(e, [](double x, double y) { return std::min(x, y); });
-      default: return folded(e, [](double x, double y) { return std::max(x, y); });
+      default: return computed(e);
     }
   }
 
@@ -195,28 +169,12 @@ class Block {
     if (e.set) return among(e);
     const Numbers a = numbers(e.parts[0]);
     const PlanNode& right = e.parts[1];
+    const Operator& row = *find_operator(e.op);
     if (right.op == Op::number && std::isfinite(right.number))
-      return {
-          compare(e.op, a, [constant = right.number](std::size_t) { return constant; }) & a.known,
-          a.known};
+      return {row.compare_with(a.value, right.number) & a.known, a.known};
     const Numbers b = numbers(right);
     const Bits known = a.known & b.known;
-    return {compare(e.op, a, [&b](std::size_t i) { return b.value[i]; }) & known, known};
-  }
-
-  template <class Right>
-  static Bits compare(Op op, const Numbers& a, Right right) {
-    const auto where = [&](auto test) {
-      return bits_where([&](std::size_t i) { return test(a.value[i], right(i)); });
-    };
-    switch (op) {
-      case Op::less: return where([](double x, double y) { return x < y; });
-      case Op::less_equal: return where([](double x, double y) { return x <= y; });
-      case Op::greater: return where([](double x, double y) { return x > y; });
-      case Op::greater_equal: return where([](double x, double y) { return x >= y; });
-      case Op::equal: return where([](double x, double y) { return x == y; });
-      default: return where([](double x, double y) { return x != y; });
-    }
+    return {row.compare(a.value, b.value) & known, known};
   }
 
   Truths among(const PlanNode& e) const {
@@ -295,19 +253,13 @@ class Block {
     return result;
   }
 
-  template <class Function>
-  Numbers mapped(const PlanNode& e, Function function) const {
+  Numbers computed(const PlanNode& e) const {
+    const Operator& row = *find_operator(e.op);
     Numbers result = numbers(e.parts[0]);
-    for (double& value : result.value) value = function(value);
-    return only_finite(std::move(result));
-  }
-
-  template <class Function>
-  Numbers folded(const PlanNode& e, Function function) const {
-    Numbers result = numbers(e.parts[0]);
+    if (e.parts.size() == 1) row.apply(result.value, {});
     for (std::size_t part = 1; part < e.parts.size(); ++part) {
       const Numbers next = numbers(e.parts[part]);
-      for (int i = 0; i < kTexels; ++i) result.value[i] = function(result.value[i], next.value[i]);
+      row.apply(result.value, next.value);
       result.known &= next.known;
     }
     return only_finite(std::move(result));

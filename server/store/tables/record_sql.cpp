@@ -8,6 +8,7 @@
 
 #include "core/text/edtf.h"
 #include "core/text/timestamp.h"
+#include "expression/operators.h"
 #include "store/tables/table_writer.h"
 
 namespace strata::store {
@@ -57,13 +58,27 @@ struct Sql {
   const Column* column = nullptr;  // where it is nothing but that
 };
 
-// A value of a function of one or two numbers where it has one; these are computed once, whatever
-// the function says of them.
-std::string of_one(const std::string& a, const std::string& value) {
-  return "(SELECT " + value + " FROM (SELECT " + a + " AS a) q)";
+std::string replaced(std::string text, std::string_view what, const std::string& by) {
+  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+    text.replace(at, what.size(), by);
+  return text;
 }
-std::string of_two(const std::string& a, const std::string& b, const std::string& value) {
-  return "(SELECT " + value + " FROM (SELECT " + a + " AS a, " + b + " AS b) q)";
+
+// The SQL of an operator over its operands, which hold no braces: texts and numbers are parameters,
+// columns are called by their numbers. Each operand is computed once, however often it is named.
+std::string of_operands(std::string_view sql, const std::string& a, const std::string& b = {}) {
+  const auto is_once = [&](std::string_view name) { return sql.find(name) == sql.rfind(name); };
+  if (is_once("{a}") && is_once("{b}"))
+    return replaced(replaced(std::string(sql), "{a}", a), "{b}", b);
+  return "(SELECT " + replaced(replaced(std::string(sql), "{a}", "a"), "{b}", "b") +
+         " FROM (SELECT " + a + " AS a" + (b.empty() ? "" : ", " + b + " AS b") + ") q)";
+}
+
+std::string of_times(const char* sql, const Sql& a, const Sql& b) {
+  std::string done = replaced(sql, "{a_end}", a.end);
+  done = replaced(std::move(done), "{b_end}", b.end);
+  done = replaced(std::move(done), "{a}", a.text);
+  return replaced(std::move(done), "{b}", b.text);
 }
 
 class Writer {
@@ -186,9 +201,7 @@ class Writer {
   // --- texts and times
 
   std::string fold(const Expression& e) {
-    const std::string inside = text(e.parts[0]);
-    if (e.op == Op::fold_case) return "lower(" + inside + ")";
-    return "regexp_replace(normalize(" + inside + ", NFD), '[\\u0300-\\u036f]', '', 'g')";
+    return of_operands(find_operator(e.op)->sql, text(e.parts[0]));
   }
 
   std::string text(const Expression& e) {
@@ -246,58 +259,24 @@ class Writer {
       case Op::choose: {
         const std::string when = condition(e.parts[0]), then = number(e.parts[1]),
                           otherwise = number(e.parts[2]);
-        return of_one(when, "CASE WHEN a THEN " + then + " WHEN NOT a THEN " + otherwise + " END");
+        return "(SELECT CASE WHEN a THEN " + then + " WHEN NOT a THEN " + otherwise +
+               " END FROM (SELECT " + when + " AS a) q)";
       }
-      case Op::negate: return "(- " + number(e.parts[0]) + ")";
-      case Op::absolute: return "abs(" + number(e.parts[0]) + ")";
-      case Op::add: return infix(e, "+");
-      case Op::subtract: return infix(e, "-");
-      case Op::multiply: return infix(e, "*");
-      case Op::divide:
-        return "(" + number(e.parts[0]) + " / nullif(" + number(e.parts[1]) + ", 0))";
-      case Op::remainder: return binary(e, "CASE WHEN b <> 0 THEN a - b * trunc(a / b) END");
-      case Op::whole_division:
-        return "trunc(" + number(e.parts[0]) + " / nullif(" + number(e.parts[1]) + ", 0))";
-      case Op::power:
-        return binary(
-            e,
-            "CASE WHEN a > 0 OR (a = 0 AND b >= 0) OR (a < 0 AND b = trunc(b)) THEN power(a, b) END");
-      case Op::least: return folded(e, "CASE WHEN a <= b THEN a WHEN b < a THEN b END");
-      case Op::greatest: return folded(e, "CASE WHEN a >= b THEN a WHEN b > a THEN b END");
-      case Op::square_root: return unary(e, "CASE WHEN a >= 0 THEN sqrt(a) END");
-      case Op::exponential: return unary(e, "exp(a)");
-      case Op::natural_log: return unary(e, "CASE WHEN a > 0 THEN ln(a) END");
-      case Op::decimal_log: return unary(e, "CASE WHEN a > 0 THEN log(a) END");
-      case Op::floor: return unary(e, "floor(a)");
-      case Op::ceiling: return unary(e, "ceil(a)");
-      case Op::round: return unary(e, "sign(a) * floor(abs(a) + 0.5)");
-      case Op::sine: return unary(e, "sin(a)");
-      case Op::cosine: return unary(e, "cos(a)");
-      case Op::tangent: return unary(e, "tan(a)");
-      case Op::arc_sine: return unary(e, "CASE WHEN abs(a) <= 1 THEN asin(a) END");
-      case Op::arc_cosine: return unary(e, "CASE WHEN abs(a) <= 1 THEN acos(a) END");
-      case Op::arc_tangent: return unary(e, "atan(a)");
-      case Op::radians: return unary(e, "radians(a)");
-      case Op::degrees: return unary(e, "degrees(a)");
       case Op::layer: refuse("'" + e.name.substr(0, 100) + "' is no column", e); return {};
-      default: refuse("A number is wanted here", e); return {};
+      default: return computed(e);
     }
   }
 
-  std::string infix(const Expression& e, const char* sign) {
-    return "(" + number(e.parts[0]) + " " + sign + " " + number(e.parts[1]) + ")";
-  }
-  std::string unary(const Expression& e, const char* value) {
-    return of_one(number(e.parts[0]), value);
-  }
-  std::string binary(const Expression& e, const char* value) {
-    const std::string a = number(e.parts[0]);
-    return of_two(a, number(e.parts[1]), value);
-  }
-  std::string folded(const Expression& e, const char* value) {
+  std::string computed(const Expression& e) {
+    const Operator* row = find_operator(e.op);
+    if (!row || !row->apply) {
+      refuse("A number is wanted here", e);
+      return {};
+    }
     std::string all = number(e.parts[0]);
+    if (e.parts.size() == 1) return of_operands(row->sql, all);
     for (std::size_t part = 1; part < e.parts.size(); ++part)
-      all = of_two(all, number(e.parts[part]), value);
+      all = of_operands(row->sql, all, number(e.parts[part]));
     return all;
   }
 
@@ -328,19 +307,15 @@ class Writer {
         const std::string like = text(e.parts[0]);
         return "(" + like + " LIKE " + text(e.parts[1]) + ")";
       }
-      case Op::before:
-      case Op::after:
-      case Op::during:
-      case Op::contains:
-      case Op::intersects:
-      case Op::disjoint:
-      case Op::coincides: return of_times(e);
-      case Op::has_all: return of_keys(e, "@>");
-      case Op::has_any: return of_keys(e, "&&");
-      case Op::has_only: return of_keys(e, "<@");
-      case Op::has_exactly: return of_keys(e, "=");
       case Op::valid: refuse("'" + e.name.substr(0, 100) + "' is no column", e); return {};
-      default: return comparison(e);
+      default: break;
+    }
+    const Operator& row = *find_operator(e.op);
+    switch (row.form) {
+      case Operator::Form::time_function:
+        return of_times(row.times_sql, time(e.parts[0]), time(e.parts[1]));
+      case Operator::Form::key_function: return of_keys(e, row);
+      default: return comparison(e, row);
     }
   }
 
@@ -350,25 +325,14 @@ class Writer {
     return sql + ")";
   }
 
-  static const char* sign_of(Op op) {
-    switch (op) {
-      case Op::less: return " < ";
-      case Op::less_equal: return " <= ";
-      case Op::greater: return " > ";
-      case Op::greater_equal: return " >= ";
-      case Op::equal: return " = ";
-      default: return " <> ";
-    }
-  }
-
-  std::string comparison(const Expression& e) {
+  std::string comparison(const Expression& e, const Operator& row) {
     // A text means what the other side holds.
     const bool turned = e.parts[0].op == Op::text;
     const Expression &first = e.parts[turned ? 1 : 0], &second = e.parts[turned ? 0 : 1];
     const Sql a = operand(first);
     if (a.kind == Kind::time) {
       const Sql b = time(second);
-      return turned ? comparison_of_times(e.op, b, a) : comparison_of_times(e.op, a, b);
+      return turned ? of_times(row.times_sql, b, a) : of_times(row.times_sql, a, b);
     }
     if (a.kind == Kind::keys || a.kind == Kind::truth || a.kind == Kind::features)
       refuse(
@@ -379,7 +343,7 @@ class Writer {
     if (a.kind == Kind::text) check_choice(a, second);
     if (a.kind == Kind::number && second.is_text()) refuse(wrong(first, a, Kind::text), first);
     const std::string b = a.kind == Kind::text ? text(second) : number(second);
-    return "(" + (turned ? b : a.text) + sign_of(e.op) + (turned ? a.text : b) + ")";
+    return turned ? of_operands(row.sql, b, a.text) : of_operands(row.sql, a.text, b);
   }
 
   void check_choice(const Sql& column, const Expression& text) {
@@ -395,38 +359,7 @@ class Writer {
            text);
   }
 
-  // What lies before has ended, what lies after has not begun; up to and from it include it.
-  static std::string comparison_of_times(Op op, const Sql& a, const Sql& b) {
-    switch (op) {
-      case Op::less: return "(" + a.end + " < " + b.text + ")";
-      case Op::less_equal: return "(" + a.end + " <= " + b.end + ")";
-      case Op::greater: return "(" + a.text + " > " + b.end + ")";
-      case Op::greater_equal: return "(" + a.text + " >= " + b.text + ")";
-      case Op::equal: return "(" + a.text + " = " + b.text + " AND " + a.end + " = " + b.end + ")";
-      default: return "(" + a.text + " <> " + b.text + " OR " + a.end + " <> " + b.end + ")";
-    }
-  }
-
-  std::string of_times(const Expression& e) {
-    const Sql a = time(e.parts[0]), b = time(e.parts[1]);
-    const auto within = [](const Sql& inner, const Sql& outer) {
-      return "(" + inner.text + " >= " + outer.text + " AND " + inner.end + " <= " + outer.end +
-             ")";
-    };
-    const std::string meet =
-        "(" + a.text + " <= " + b.end + " AND " + b.text + " <= " + a.end + ")";
-    switch (e.op) {
-      case Op::before: return "(" + a.end + " < " + b.text + ")";
-      case Op::after: return "(" + a.text + " > " + b.end + ")";
-      case Op::during: return within(a, b);
-      case Op::contains: return within(b, a);
-      case Op::intersects: return meet;
-      case Op::disjoint: return "(NOT " + meet + ")";
-      default: return "(" + a.text + " = " + b.text + " AND " + a.end + " = " + b.end + ")";
-    }
-  }
-
-  std::string of_keys(const Expression& e, const char* sign) {
+  std::string of_keys(const Expression& e, const Operator& row) {
     const Sql relation = operand(e.parts[0]);
     if (relation.kind != Kind::keys) refuse(wrong(e.parts[0], relation, Kind::keys), e.parts[0]);
     std::vector<std::int64_t> keys;
@@ -443,7 +376,7 @@ class Writer {
     PgArray array(oid::kInt8);
     for (const auto key : keys) array.add(key);
     params_.array(array);
-    return "(" + relation.text + " " + sign + " " + parameter() + ")";
+    return of_operands(row.sql, relation.text, parameter());
   }
 
   const Table& table_;

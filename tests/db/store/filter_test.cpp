@@ -10,6 +10,7 @@
 #include "core/text/edtf.h"
 #include "core/text/timestamp.h"
 #include "expression/expression_parser.h"
+#include "expression/operators.h"
 #include "query/conditions/expression_evaluator.h"
 #include "store/tables/records.h"
 #include "store/tables/tables.h"
@@ -407,10 +408,8 @@ TEST_F(Filter, the_database_and_the_texels_reckon_alike) {
   map.block_of_slot = {0};
   map.surface_mask = {~std::uint64_t{0}};
 
-  RandomFormula formula(random);
   int held = 0;
-  for (int round = 0; round < 400; ++round) {
-    const std::string text = formula.condition(1 + round % 4);
+  const auto expect_alike = [&](const std::string& text) {
     SCOPED_TRACE(text);
     auto condition = query::parse_condition(text, "");
     ASSERT_TRUE(condition) << condition.error().detail;
@@ -422,7 +421,27 @@ TEST_F(Filter, the_database_and_the_texels_reckon_alike) {
     for (const auto key : *found) records |= std::uint64_t{1} << key;
     EXPECT_EQ(records, texels->front());
     held += std::popcount(records);
+  };
+  // Each row of the table of operators, so that none is added for one of the two alone.
+  for (const Operator& row : operators()) {
+    const std::string name(row.name);
+    std::string value;
+    if (row.form == Operator::Form::number_function)
+      value = name + (row.max_operands == 1 ? "(a)" : "(a, c, b)");
+    else if (row.apply)
+      value = row.max_operands == 1 ? name + "a" : "a " + name + " c";
+    else if (row.compare)
+      value = "if(a " + name + " c, 1, 2)";
+    else
+      continue;
+    for (const char* test : {" is not null", " > 0.3", " <= -0.6"})
+      expect_alike("(" + value + ")" + test);
   }
+  EXPECT_GT(held, 500);
+
+  RandomFormula formula(random);
+  held = 0;
+  for (int round = 0; round < 400; ++round) expect_alike(formula.condition(1 + round % 4));
   EXPECT_GT(held, 4000);
 }
 
