@@ -114,6 +114,7 @@ export const active = (page) =>
 
 /**
  * Goes through all stops of the Tab key; what they do not reach, and those whose focus is not seen.
+ * What goes by itself meanwhile, as notices do, need not be reached.
  */
 export async function walk(page) {
   await evaluate(
@@ -137,7 +138,7 @@ export async function walk(page) {
       page,
       `const at = deep_active();
        if (at && at !== document.body) {
-         if (window.reached.has(at) && window.wanted.every((each) => window.reached.has(each))) return true;
+         if (window.reached.has(at) && window.wanted.every((each) => window.reached.has(each) || !each.isConnected)) return true;
          window.reached.add(at);
          // On itself, on the field around it, or on its cell that has the keyboard.
          const shown = [at, at.parentElement, at.parentElement?.parentElement, at.querySelector(".cell.active")].filter(Boolean).map((each) => getComputedStyle(each));
@@ -152,6 +153,6 @@ export async function walk(page) {
     page,
     `// Of radio buttons one is a stop.
      const radios = new Set([...window.reached].filter((each) => each.type === "radio").map((each) => each.name));
-     return { unreached: window.wanted.filter((each) => !window.reached.has(each) && !(each.type === "radio" && radios.has(each.name))).map(told), unseen: window.unseen, stops: window.reached.size };`,
+     return { unreached: window.wanted.filter((each) => each.isConnected && !window.reached.has(each) && !(each.type === "radio" && radios.has(each.name))).map(told), unseen: window.unseen, stops: window.reached.size };`,
   );
 }
