@@ -132,8 +132,22 @@ export class Browser {
     return decode_png(await this.page.screenshot(clip ? { clip } : {}));
   }
 
+  /** No request of the page is under way, what came of the last is drawn, and the stage is still. */
+  async idle() {
+    await this.page.waitForFunction(async () => {
+      await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+      return (document.documentElement.dataset.requests ?? "0") === "0";
+    });
+    const stages = this.page.locator("strata-stage canvas:not([data-still=true])[data-frames]");
+    await wait_for(
+      async () => (await stages.count()) === 0,
+      "a picture of the stage that is still",
+    );
+  }
+
   /** A screenshot of what no longer changes: two in a row are the same. */
   async settled(take = () => this.page.screenshot()) {
+    await this.idle();
     let last = null;
     return wait_for(
       async () => {

@@ -3,6 +3,7 @@
 import { newId } from "../core/ids";
 import { ApiError, cancelled, problemOfText, unreachable } from "./api-error";
 import type { Answer, Call, Entry, Given, ListName, Options } from "./calls";
+import { countedFetch } from "./counted-fetch";
 import { uploadFiles, type Progress, type Upload, type UploadFile } from "./upload";
 
 export interface Versioned<T> {
@@ -28,7 +29,7 @@ const kBase = "/api/v1";
 
 export class Api {
   constructor(
-    private readonly _fetch: Fetch = (input, init) => fetch(input, init),
+    private readonly _fetch: Fetch = countedFetch,
     private readonly _makeRequest: () => XMLHttpRequest = () => new XMLHttpRequest(),
   ) {}
 
