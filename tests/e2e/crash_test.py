@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """The server is killed in mid-load again and again, then its PostgreSQL is: whatever was reported saved is there, once and whole.
 
 The oracle is the server itself without faults: at the end all edits are painted anew, in their order, on fresh layers,
@@ -6,17 +5,16 @@ and every texel must be equal. Meanwhile states at old sequences are read before
 import os
 import random
 import signal
-import sys
 import threading
-import time
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.meshes import folded_grid
 from support.npy import Raster
 from support.painters import Book, HttpPainter, LivePainter
-from support.strata_server import StrataServer, wait_for
+from support.strata_server import wait_for
 
+SEED = int(os.environ.get("STRATA_SEED", "1"))
 KILLS = int(os.environ.get("STRATA_CRASH_KILLS", "20"))  # of each kind
 LAYERS = [
     ("marks", "u8", 2048, [1, 2, 3, 255]),
@@ -41,7 +39,7 @@ class Crashes:
         self.path = f"/models/{self.model['id']}"
         self.make_layers("")
         self.book = Book()
-        self.random = random.Random(1)
+        self.random = random.Random(SEED)
         self.known = {}  # (layer, sequence) -> digest of its texels
 
     def make_layers(self, suffix):
@@ -72,7 +70,7 @@ class Crashes:
         kinds = [HttpPainter] * 4 + [LivePainter] * 2
         return [
             kind(self.server, self.model["id"], layers, cameras, self.book, seed)
-            for seed, kind in enumerate(kinds)
+            for seed, kind in enumerate(kinds, 100 * SEED)
         ]
 
     def history(self):
@@ -157,41 +155,15 @@ class Crashes:
             lambda: self.server.postmaster() not in (None, pid), "PostgreSQL to be started again"
         )
 
-    def run(self):
-        painters = self.painters()
-        for painter in painters:
-            painter.start()
-        for name, kill in (("server", self.kill_server), ("database", self.kill_database)):
-            begun = time.monotonic()
-            for _ in range(KILLS):
-                self.book.wait_for_more(self.random.randint(8, 40))
-                self.remember()
-                kill()
-                self.book.wait_for_more(1)
-                self.check_known()
-                self.check_repeats()
-            print(
-                f"{KILLS} kills of the {name}: {time.monotonic() - begun:.1f} s, {len(self.book.edits)} edits saved",
-                flush=True,
-            )
-        self.book.stopping.set()
-        for painter in painters:
-            painter.join(180)
-            assert not painter.is_alive(), f"{painter.name} still waits for an answer"
-        assert not self.book.faults, self.book.faults[:5]
-
-        found = self.check_history()
-        assert sorted(found) == sorted(
-            self.book.edits
-        ), "an edit is in the history that nobody sent"
-        for sequence in self.random.sample(sorted(self.book.edits), 12):
-            self.check_whole(sequence)
-        newest = {name: self.texels(name) for name, *_ in LAYERS}
-        for name, raster in newest.items():
-            assert (
-                raster.digest == self.texels(name, max(found)).digest
-            ), f"{name}: now is not the newest sequence"
-        self.compare_with_replay(newest)
+    def survive(self, kill):
+        """Whatever is known before each of many kills is so after it, while people paint."""
+        for _ in range(KILLS):
+            self.book.wait_for_more(self.random.randint(8, 40))
+            self.remember()
+            kill()
+            self.book.wait_for_more(1)
+            self.check_known()
+            self.check_repeats()
 
     def compare_with_replay(self, newest):
         """All edits anew and in order, on fresh layers and without faults: the same texels."""
@@ -230,15 +202,60 @@ class Crashes:
             raise failures[0]
 
 
-def main():
-    with StrataServer() as server:
-        crashes = Crashes(server)
-        crashes.run()
-        assert server.stop() == 0, "SIGTERM did not end the server well"
-        server.assert_clean_log(FAULT_WORDS)
-    print(
-        f"{len(crashes.book.edits)} edits survived {2 * KILLS} kills; {len(crashes.known)} old states were compared"
-    )
+@pytest.fixture(scope="module")
+def crashes(server):
+    print(f"STRATA_SEED={SEED}")
+    return Crashes(server)
 
 
-main()
+@pytest.fixture(scope="module", autouse=True)
+def painters(crashes):
+    """They paint until their case asks them to stop."""
+    painters = crashes.painters()
+    for painter in painters:
+        painter.start()
+    yield painters
+    crashes.book.stopping.set()
+
+
+def test_what_was_saved_survives_kills_of_the_server(crashes):
+    crashes.survive(crashes.kill_server)
+
+
+def test_what_was_saved_survives_kills_of_the_database(crashes):
+    crashes.survive(crashes.kill_database)
+
+
+def test_every_painter_has_an_answer(crashes, painters):
+    crashes.book.stopping.set()
+    for painter in painters:
+        painter.join(180)
+        assert not painter.is_alive(), f"{painter.name} still waits for an answer"
+    assert not crashes.book.faults, crashes.book.faults[:5]
+
+
+def test_every_edit_is_in_the_history_once_and_no_other(crashes, story):
+    story.found = crashes.check_history()
+    assert sorted(story.found) == sorted(
+        crashes.book.edits
+    ), "an edit is in the history that nobody sent"
+    print(f"{len(story.found)} edits survived; {len(crashes.known)} old states were compared")
+
+
+def test_edits_are_in_their_layers_wholly(crashes):
+    for sequence in crashes.random.sample(sorted(crashes.book.edits), 12):
+        crashes.check_whole(sequence)
+
+
+def test_the_texels_are_those_of_a_replay_without_faults(crashes, story):
+    newest = {name: crashes.texels(name) for name, *_ in LAYERS}
+    for name, raster in newest.items():
+        assert (
+            raster.digest == crashes.texels(name, max(story.found)).digest
+        ), f"{name}: now is not the newest sequence"
+    crashes.compare_with_replay(newest)
+
+
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0, "SIGTERM did not end the server well"
+    server.assert_clean_log(FAULT_WORDS)

@@ -1,22 +1,20 @@
-#!/usr/bin/env python3
 """Measured figures: what is so long in the world is so long on paper, in every direction, kind of file and resolution; parts join without seams;
 one state of the layers; jobs; who sees what; and what is refused."""
 import math
 import os
 import re
 import subprocess
-import sys
 import tempfile
 import threading
 import xml.etree.ElementTree as xml
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import numpy
+import pytest
 from support import tiff
 from support.cameras import camera_from
 from support.meshes import bumpy_ball, folded_grid
 from support.pictures import pixels
-from support.strata_server import StrataServer, wait_for
+from support.strata_server import wait_for
 
 M = "/models/sheet"  # x and y from 0 to 100 mm, in folds of 24 mm at most
 F = M + "/figures"
@@ -72,7 +70,32 @@ def dab(server, x, y, value=1, layer="marks", radius=2, model="sheet"):
     )
 
 
-def lengths(server):
+@pytest.fixture(scope="module")
+def server(server):
+    server.import_model(folded_grid(cells=40), "sheet.ply", name="Sheet", unit="mm")
+    server.ok(
+        "POST",
+        M + "/layers",
+        {
+            "name": "Marks",
+            "type": "u8",
+            "resolution": 2048,
+            "palette": {
+                "mode": "categorical",
+                "points": [{"at": 1, "color": "#ff0000", "label": "One mark"}],
+            },
+        },
+    )
+    return server
+
+
+@pytest.fixture
+def folder():
+    with tempfile.TemporaryDirectory() as folder:
+        yield folder
+
+
+def test_lengths_are_those_of_the_world(server):
     """On each side of a ball a small disc 15 mm before its middle and a larger one 15 mm behind, as seen from there: how far they are from each other on paper tells the scale,
     and which is on the right the direction."""
     server.import_model(bumpy_ball(), "ball.ply", name="Ball", unit="mm")
@@ -143,7 +166,7 @@ def group_of(svg, name):
     return paths, [each.text for each in group.iter(SVG + "text")]
 
 
-def bars(server):
+def test_bars(server):
     """The scale bar is so long on paper, in vectors and in pixels, as what it says is at that scale; from a find of a few centimetres at 5 : 1 to a site at 1 : 500."""
     site = {
         "model": "site",
@@ -206,7 +229,7 @@ def bars(server):
         )
 
 
-def north(server):
+def test_north(server):
     """The arrow points along what lies north of something, whichever axis is up, from above and from below."""
     palette = {
         "mode": "categorical",
@@ -249,7 +272,7 @@ def north(server):
         assert abs(off) < 1.5, (up, direction, degrees, off)
 
 
-def seams(server):
+def test_parts_join_without_seams(server):
     """A3 at 600 dpi, the largest: the drawing is made of parts of three inches, and together they are the picture of few."""
     asked = {
         "direction": "top",
@@ -289,7 +312,7 @@ def seams(server):
         )
 
 
-def kinds(server, folder):
+def test_kinds(server, folder):
     wish = {
         "direction": "top",
         "dpi": 150,
@@ -374,7 +397,7 @@ def kinds(server, folder):
         assert ("north" in groups) == shown, (direction, groups)
 
 
-def names(server):
+def test_names(server, story):
     """What records are called, at their places; of terms too; what is private is not there."""
     server.ok(
         "POST",
@@ -426,10 +449,121 @@ def names(server):
     ), at
     assert set(told(labels={"layer": "units", "column": "depth"})) == {"1.5 cm", "3 cm", "4.5 cm"}
     assert set(told(scale=50)) < set(at), "at 2 mm there is room for one"
-    return wish
+    story.labels = wish
 
 
-def legends(server):
+def test_views(server):
+    """A figure of a named view shows what the view does, from where it looks."""
+    camera = {**camera_from(server.get(M).json(), (0, -1, 0.0)), "section": [[0, 1, 0, -50]]}
+    server.ok(
+        "POST",
+        M + "/views",
+        {
+            "name": "Cut",
+            "camera": camera,
+            "light": UNLIT,
+            "layers": [{"layer": "marks", "visible": False}],
+            "looks": [],
+        },
+    )
+    cut = drawn(server, view="cut", dpi=60, legend=False)
+    assert not len(spots(cut))
+    name = figure(server, view="cut", dpi=60, format="svg").headers["Content-Disposition"]
+    assert name.startswith("attachment; filename*=UTF-8''sheet-cut-1-"), name
+    hidden = {"layers": [{"layer": "marks", "visible": False}], "dpi": 60}
+    assert (
+        cut == drawn(server, camera=camera, light=UNLIT, looks=[], legend=False, **hidden)
+    ).all()
+    assert (
+        drawn(server, normal=[0, -2, 0], **hidden, **BARE)
+        == drawn(server, direction="front", **hidden, **BARE)
+    ).all()
+
+
+def test_reviews(server):
+    """What waits for review is hatched, and told in the legend, until it is accepted."""
+    rita, vito = server.add_person("rita", "annotator"), server.add_person("vito", "viewer")
+    server.ok(
+        "POST",
+        M + "/layers",
+        {
+            "name": "Finds",
+            "type": "u8",
+            "resolution": 2048,
+            "review": True,
+            "palette": {"mode": "categorical", "points": [{"at": 1, "color": "#ff0000"}]},
+        },
+    )
+    edits = M + "/layers/finds/edits"
+    wish = {
+        "direction": "top",
+        "scale": 1,
+        "dpi": 100,
+        "layers": [{"layer": "marks", "visible": False}],
+        **BARE,
+    }
+    fill(server, "x > 10 and x < 90 and y > 10 and y < 40", layer="finds")
+    plain = drawn(server, **wish)
+    painted = server.request(
+        "POST",
+        edits,
+        {
+            "op": "fill",
+            "mode": "where",
+            "where": "x > 10 and x < 90 and y > 60 and y < 90",
+            "value": 1,
+        },
+        token=rita,
+    )
+    assert painted.status == 200 and painted.json()["provisional"], painted
+    (left, top), (right, bottom) = (
+        spots(plain).min(axis=0).astype(int) + 4,
+        spots(plain).max(axis=0).astype(int) - 4,
+    )
+    up = round(50 / 25.4 * 100)  # from what is accepted to what waits
+
+    def inks(rows, above):
+        part = rows[top - above : bottom - above, left:right].astype(int)
+        return [(abs(part - color).max(axis=2) < 60).mean() for color in (RED, (24, 24, 24))]
+
+    rows = drawn(server, token=vito, **wish)
+    assert inks(rows, 0) == [1, 0], inks(rows, 0)
+    red, dark = inks(rows, up)
+    # lines without a tint: the colour below is what it was
+    assert 0.3 < red < 0.8 and 0.1 < dark < 0.5, (red, dark)
+    words = lambda **more: group_of(
+        figure(server, format="svg", **{**wish, "legend": True, **more}).body, "legend"
+    )[1]
+    assert (
+        words().count("Provisional") == 1 and words(provisional="Vorläufig").count("Vorläufig") == 1
+    ), words()
+    assert "Provisional" not in words(layers=[{"layer": "finds", "visible": False}])
+    sequence = painted.json()["sequence"]  # as a moment of the past it is what was in force
+    assert "Provisional" not in words(at=sequence) and inks(
+        drawn(server, at=sequence, **wish), up
+    ) == [1, 0]
+    server.ok("PATCH", M + "/layers/finds", {"visibility": "private"})
+    assert (
+        b"Provisional"
+        not in figure(server, token=vito, format="svg", **{**wish, "legend": True}).body
+    )
+    server.ok("POST", M + "/layers/finds/review", {"decision": "accept", "all": True})
+    assert (
+        "Provisional" not in words()
+        and (drawn(server, **wish) == drawn(server, at=sequence, **wish)).all()
+    )
+    # Where all of a layer was erased, no class of it is left, but that waits.
+    server.ok("PATCH", M + "/layers/finds", {"visibility": "public"})
+    erased = server.request(
+        "POST", edits, {"op": "fill", "mode": "where", "where": "true", "erase": True}, token=rita
+    )
+    assert erased.status == 200 and words()[:2] == ["Finds", "Provisional"], (erased, words())
+    for wrong in ("", "x" * 101, 3):
+        assert figure(server, expect=422, provisional=wrong).json()["field"] == "provisional"
+    server.ok("DELETE", M + "/layers/finds")
+
+
+def test_legends(server):
     """The legend has what the drawing shows: not what an opaque layer covers wholly, nor what is out of it; with classes that are lines and points alone."""
     for name in ("Low", "High"):
         points = [
@@ -545,8 +679,9 @@ def legends(server):
         server.ok("DELETE", f"{M}/layers/{name}")
 
 
-def states_and_jobs(server, labels):
+def test_states_and_jobs(server, story):
     """A figure of then; one that others cannot change while it is drawn; jobs, their files, who gets them and who ends them."""
+    labels = story.labels
     viewer, other = server.add_person("vera", "viewer"), server.add_person("ada", "annotator")
     before = server.get(M).json()["sequence"]
     wish = {"direction": "top", "dpi": 100, "format": "png", "layers": MARKS, **BARE}
@@ -637,118 +772,7 @@ def states_and_jobs(server, labels):
     assert figure(server, expect=422, token=viewer, **labels).json()["field"] == "labels.column"
 
 
-def reviews(server):
-    """What waits for review is hatched, and told in the legend, until it is accepted."""
-    rita, vito = server.add_person("rita", "annotator"), server.add_person("vito", "viewer")
-    server.ok(
-        "POST",
-        M + "/layers",
-        {
-            "name": "Finds",
-            "type": "u8",
-            "resolution": 2048,
-            "review": True,
-            "palette": {"mode": "categorical", "points": [{"at": 1, "color": "#ff0000"}]},
-        },
-    )
-    edits = M + "/layers/finds/edits"
-    wish = {
-        "direction": "top",
-        "scale": 1,
-        "dpi": 100,
-        "layers": [{"layer": "marks", "visible": False}],
-        **BARE,
-    }
-    fill(server, "x > 10 and x < 90 and y > 10 and y < 40", layer="finds")
-    plain = drawn(server, **wish)
-    painted = server.request(
-        "POST",
-        edits,
-        {
-            "op": "fill",
-            "mode": "where",
-            "where": "x > 10 and x < 90 and y > 60 and y < 90",
-            "value": 1,
-        },
-        token=rita,
-    )
-    assert painted.status == 200 and painted.json()["provisional"], painted
-    (left, top), (right, bottom) = (
-        spots(plain).min(axis=0).astype(int) + 4,
-        spots(plain).max(axis=0).astype(int) - 4,
-    )
-    up = round(50 / 25.4 * 100)  # from what is accepted to what waits
-
-    def inks(rows, above):
-        part = rows[top - above : bottom - above, left:right].astype(int)
-        return [(abs(part - color).max(axis=2) < 60).mean() for color in (RED, (24, 24, 24))]
-
-    rows = drawn(server, token=vito, **wish)
-    assert inks(rows, 0) == [1, 0], inks(rows, 0)
-    red, dark = inks(rows, up)
-    # lines without a tint: the colour below is what it was
-    assert 0.3 < red < 0.8 and 0.1 < dark < 0.5, (red, dark)
-    words = lambda **more: group_of(
-        figure(server, format="svg", **{**wish, "legend": True, **more}).body, "legend"
-    )[1]
-    assert (
-        words().count("Provisional") == 1 and words(provisional="Vorläufig").count("Vorläufig") == 1
-    ), words()
-    assert "Provisional" not in words(layers=[{"layer": "finds", "visible": False}])
-    sequence = painted.json()["sequence"]  # as a moment of the past it is what was in force
-    assert "Provisional" not in words(at=sequence) and inks(
-        drawn(server, at=sequence, **wish), up
-    ) == [1, 0]
-    server.ok("PATCH", M + "/layers/finds", {"visibility": "private"})
-    assert (
-        b"Provisional"
-        not in figure(server, token=vito, format="svg", **{**wish, "legend": True}).body
-    )
-    server.ok("POST", M + "/layers/finds/review", {"decision": "accept", "all": True})
-    assert (
-        "Provisional" not in words()
-        and (drawn(server, **wish) == drawn(server, at=sequence, **wish)).all()
-    )
-    # Where all of a layer was erased, no class of it is left, but that waits.
-    server.ok("PATCH", M + "/layers/finds", {"visibility": "public"})
-    erased = server.request(
-        "POST", edits, {"op": "fill", "mode": "where", "where": "true", "erase": True}, token=rita
-    )
-    assert erased.status == 200 and words()[:2] == ["Finds", "Provisional"], (erased, words())
-    for wrong in ("", "x" * 101, 3):
-        assert figure(server, expect=422, provisional=wrong).json()["field"] == "provisional"
-    server.ok("DELETE", M + "/layers/finds")
-
-
-def views(server):
-    """A figure of a named view shows what the view does, from where it looks."""
-    camera = {**camera_from(server.get(M).json(), (0, -1, 0.0)), "section": [[0, 1, 0, -50]]}
-    server.ok(
-        "POST",
-        M + "/views",
-        {
-            "name": "Cut",
-            "camera": camera,
-            "light": UNLIT,
-            "layers": [{"layer": "marks", "visible": False}],
-            "looks": [],
-        },
-    )
-    cut = drawn(server, view="cut", dpi=60, legend=False)
-    assert not len(spots(cut))
-    name = figure(server, view="cut", dpi=60, format="svg").headers["Content-Disposition"]
-    assert name.startswith("attachment; filename*=UTF-8''sheet-cut-1-"), name
-    hidden = {"layers": [{"layer": "marks", "visible": False}], "dpi": 60}
-    assert (
-        cut == drawn(server, camera=camera, light=UNLIT, looks=[], legend=False, **hidden)
-    ).all()
-    assert (
-        drawn(server, normal=[0, -2, 0], **hidden, **BARE)
-        == drawn(server, direction="front", **hidden, **BARE)
-    ).all()
-
-
-def refusals(server):
+def test_refusals(server):
     for wish, field in (
         ({"view": "nothing"}, "view"),
         ({"view": "cut", "light": UNLIT}, "view"),
@@ -786,36 +810,5 @@ def refusals(server):
     assert server.get("/jobs/1/file").status == 404
 
 
-def main():
-    with StrataServer() as server, tempfile.TemporaryDirectory() as folder:
-        server.import_model(folded_grid(cells=40), "sheet.ply", name="Sheet", unit="mm")
-        server.ok(
-            "POST",
-            M + "/layers",
-            {
-                "name": "Marks",
-                "type": "u8",
-                "resolution": 2048,
-                "palette": {
-                    "mode": "categorical",
-                    "points": [{"at": 1, "color": "#ff0000", "label": "One mark"}],
-                },
-            },
-        )
-        lengths(server)
-        bars(server)
-        north(server)
-        seams(server)
-        kinds(server, folder)
-        labels = names(server)
-        views(server)
-        reviews(server)
-        legends(server)
-        states_and_jobs(server, labels)
-        refusals(server)
-        server.assert_clean_log()
-    print("measured figures")
-
-
-if __name__ == "__main__":
-    main()
+def test_the_log_is_clean(server):
+    server.assert_clean_log()

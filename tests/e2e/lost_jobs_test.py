@@ -1,16 +1,14 @@
-#!/usr/bin/env python3
 """Jobs that a restart of the server ends: whoever could see them reads what happened, nobody reads of success that was not, and nothing is left over.
 
 The server is killed, or asked to stop, while an import runs and another one waits; and again and again at any moment of an import, where the oracle is
 the list of models."""
 import os
-import sys
 import urllib.parse
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.meshes import folded_grid
 from support.project_sites import Someone
-from support.strata_server import StrataServer, wait_for
+from support.strata_server import wait_for
 
 KILLS = int(os.environ.get("STRATA_LOST_JOBS", "5"))  # at any moment of an import
 
@@ -47,87 +45,87 @@ def models(server):
     return {model["name"] for model in server.ok("GET", "/models?limit=1000").json()["models"]}
 
 
-def main():
-    with StrataServer() as server:
-        outsider = Someone(server, "otto", "guest")  # a role in no project
+@pytest.fixture(scope="module")
+def outsider(server):
+    return Someone(server, "otto", "guest")  # a role in no project
 
-        print("a job that ended is known after a restart, with what it made")
-        done = server.wait_for_job(begin(server, "Kept"))
-        assert done["state"] == "done", done
-        failed = server.wait_for_job(
-            server.ok("POST", "/models?filename=bad.ply", b"not a mesh").json()["id"]
+
+def test_a_job_that_ended_is_known_after_a_restart_with_what_it_made(server, story):
+    story.done = done = server.wait_for_job(begin(server, "Kept"))
+    assert done["state"] == "done", done
+    failed = server.wait_for_job(
+        server.ok("POST", "/models?filename=bad.ply", b"not a mesh").json()["id"]
+    )
+    assert failed["state"] == "failed", failed
+    assert server.stop() == 0
+    server.start()
+    for before in (done, failed):
+        now = server.ok("GET", f"/jobs/{before['id']}").json()
+        assert {**now, "progress": 0} == {**before, "progress": 0}, (now, before)
+
+
+@pytest.mark.parametrize("how", ("kill", "stop"))
+def test_what_runs_and_what_waits_is_lost(server, outsider, how):
+    started = {
+        name: begin(server, name)
+        for name in (f"Runs at {how}", f"Waits at {how}", f"Waits longer at {how}")
+    }
+    first = started[f"Runs at {how}"]
+    wait_for(
+        lambda: server.ok("GET", f"/jobs/{first}").json()["state"] != "queued",
+        "the job to run",
+    )
+    getattr(server, how)()
+    server.start()
+    there = models(server)
+    lost = {
+        name: job
+        for name, job in started.items()
+        if server.ok("GET", f"/jobs/{job}").json()["state"] != "done"
+    }
+    assert (
+        f"Waits longer at {how}" in lost
+    ), "all were done before the server ended: give them more to do"
+    assert not there & lost.keys() and started.keys() - lost.keys() <= there, (there, lost)
+    check_lost(server, list(lost.values()), outsider)
+
+
+def test_a_job_is_done_exactly_where_its_model_is_there(server):
+    """Killed at any moment of an import."""
+    for n in range(KILLS):
+        job = begin(server, f"Model {n}")
+        # A share of the work, not of the time: each round kills later than the one before.
+        wait_for(
+            lambda: (lambda now: now["progress"] >= n / KILLS or now["state"] == "done")(
+                server.ok("GET", f"/jobs/{job}").json()
+            ),
+            "progress",
         )
-        assert failed["state"] == "failed", failed
-        assert server.stop() == 0
-        server.start()
-        for before in (done, failed):
-            now = server.ok("GET", f"/jobs/{before['id']}").json()
-            assert {**now, "progress": 0} == {**before, "progress": 0}, (now, before)
-
-        for how in ("kill", "stop"):
-            print(f"{how}: one job runs, another one waits")
-            started = {
-                name: begin(server, name)
-                for name in (f"Runs at {how}", f"Waits at {how}", f"Waits longer at {how}")
-            }
-            first = started[f"Runs at {how}"]
-            wait_for(
-                lambda: server.ok("GET", f"/jobs/{first}").json()["state"] != "queued",
-                "the job to run",
-            )
-            getattr(server, how)()
-            server.start()
-            there = models(server)
-            lost = {
-                name: job
-                for name, job in started.items()
-                if server.ok("GET", f"/jobs/{job}").json()["state"] != "done"
-            }
-            assert (
-                f"Waits longer at {how}" in lost
-            ), "all were done before the server ended: give them more to do"
-            assert not there & lost.keys() and started.keys() - lost.keys() <= there, (there, lost)
-            check_lost(server, list(lost.values()), outsider)
-
-        print(
-            f"killed {KILLS} times at any moment of an import: a job is done exactly where its model is there"
-        )
-        for n in range(KILLS):
-            job = begin(server, f"Model {n}")
-            # A share of the work, not of the time: each round kills later than the one before.
-            wait_for(
-                lambda: (lambda now: now["progress"] >= n / KILLS or now["state"] == "done")(
-                    server.ok("GET", f"/jobs/{job}").json()
-                ),
-                "progress",
-            )
-            server.kill()
-            server.start()
-            answer = server.ok("GET", f"/jobs/{job}").json()
-            assert (answer["state"] == "done") == (f"Model {n}" in models(server)), answer
-            assert answer["state"] in ("done", "failed"), answer
-
-        print("what was lost is started again under the same key, and new jobs get new ids")
-        key = {"Idempotency-Key": "again-and-again"}
-        job = server.ok("POST", "/models?filename=grid.ply&name=Again", SCAN, headers=key).json()[
-            "id"
-        ]
         server.kill()
         server.start()
-        if server.ok("GET", f"/jobs/{job}").json()["state"] != "done":
-            repeated = server.ok(
-                "POST", "/models?filename=grid.ply&name=Again", SCAN, headers=key
-            ).json()["id"]
-            assert repeated > job
-            assert server.wait_for_job(repeated)["state"] == "done"
-        assert "Again" in models(server)
-
-        print("after seven days it is forgotten")
-        server.sql("UPDATE jobs SET ended = ended - interval '8 days'")
-        assert server.stop() == 0
-        server.start()
-        assert server.get(f"/jobs/{done['id']}").status == 404
-        server.assert_clean_log(warnings=["PostgreSQL", "not properly shut down", "interrupted"])
+        answer = server.ok("GET", f"/jobs/{job}").json()
+        assert (answer["state"] == "done") == (f"Model {n}" in models(server)), answer
+        assert answer["state"] in ("done", "failed"), answer
 
 
-main()
+def test_what_was_lost_is_started_again_under_the_same_key(server):
+    """And new jobs get new ids."""
+    key = {"Idempotency-Key": "again-and-again"}
+    job = server.ok("POST", "/models?filename=grid.ply&name=Again", SCAN, headers=key).json()["id"]
+    server.kill()
+    server.start()
+    if server.ok("GET", f"/jobs/{job}").json()["state"] != "done":
+        repeated = server.ok(
+            "POST", "/models?filename=grid.ply&name=Again", SCAN, headers=key
+        ).json()["id"]
+        assert repeated > job
+        assert server.wait_for_job(repeated)["state"] == "done"
+    assert "Again" in models(server)
+
+
+def test_after_seven_days_it_is_forgotten(server, story):
+    server.sql("UPDATE jobs SET ended = ended - interval '8 days'")
+    assert server.stop() == 0
+    server.start()
+    assert server.get(f"/jobs/{story.done['id']}").status == 404
+    server.assert_clean_log(warnings=["PostgreSQL", "not properly shut down", "interrupted"])

@@ -1,15 +1,13 @@
-#!/usr/bin/env python3
 """Flat maps painted over a layer: shapefiles, GeoTIFF, scanned maps by their colours. With the refusals, undo and restart."""
 import json
 import os
-import sys
 import urllib.parse
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.maps import dbf, form, packed, shp, square, tiff
 from support.meshes import folded_grid
 from support.pictures import pixels, png
-from support.strata_server import StrataServer, wait_for
+from support.strata_server import wait_for
 
 M = "/models/sheet"  # x and y from 0 to 100, seen whole from above
 POLYGONS = [[square(10, 10, 20)], [square(50, 10, 20), square(55, 15, 5)], [square(10, 60, 30)]]
@@ -47,7 +45,13 @@ def contents(server, body, headers=None, **parameters):
     return server.ok("POST", query(M + "/map-contents", **parameters), body, headers=headers).json()
 
 
-def check_shapefile(server):
+@pytest.fixture(scope="module")
+def server(server):
+    server.import_model(folded_grid(fold=0.01), "sheet.ply", name="Sheet", unit="mm")
+    return server
+
+
+def test_shapefile(server, story):
     files = {"units_shp": shp(POLYGONS), "units_dbf": dbf(TABLE)}
     body, headers = form(**files)
     told = contents(server, body, headers)
@@ -148,7 +152,7 @@ def check_shapefile(server):
         each["at"]: each.get("label") for each in server.get(states).json()["palette"]["points"]
     } == {1: "salt", 4: "crack", 9: "moss"}
     print("shapefile: ok", flush=True)
-    return states, places
+    story.states, story.places = states, places
 
 
 def check_crs_question(server, path, good):
@@ -196,7 +200,7 @@ def check_crs_question(server, path, good):
     assert server.get(M).json()["crs"] == ""  # the answer is for this map alone
 
 
-def check_shapefile_refusals(server):
+def test_shapefile_refusals(server):
     path = layer(server, "Refused")
     good, table = shp(POLYGONS), dbf(TABLE)
     for what, files, parameters, status, says in [
@@ -276,7 +280,7 @@ def check_shapefile_refusals(server):
     print("refused shapefiles: ok", flush=True)
 
 
-def check_raster(server):
+def test_raster(server):
     kind = {"Content-Type": "image/tiff"}
     # 10 × 10 pixels of 10 units over the sheet; the first row is the highest y.
     height = lambda x, y: -9999 if (x, y) == (0, 0) else 0.5 * x + y
@@ -356,7 +360,7 @@ def check_raster(server):
     print("rasters: ok", flush=True)
 
 
-def check_colors(server):
+def test_colors(server):
     def scanned(x, y):
         shake = (x * 7 + y * 13) % 9 - 4
         color = (238, 232, 218)
@@ -430,7 +434,7 @@ ABOVE = {
 }
 
 
-def check_orthophoto(server):
+def test_orthophoto(server, story):
     def colored(x, y):
         return (220, 30, 30) if x < 25 else (30, 30, 220) if y < 15 else (30, 200, 30)
 
@@ -560,10 +564,10 @@ def check_orthophoto(server):
     assert far["state"] == "failed" and far["problem"]["field"] == "world", far
     assert server.get(M + "/looks").json()["total"] == count
     print("orthophotos: ok", flush=True)
-    return job["look"], wanted[0]
+    story.look, story.color = job["look"], wanted[0]
 
 
-def check_cancelled_orthophoto(server):
+def test_cancelled_orthophoto(server):
     """Cancelled while it runs: neither a look nor a file is left, and the same name can be made after it."""
     things = lambda: (
         [look["slug"] for look in server.get(M + "/looks").json()["looks"]],
@@ -592,27 +596,13 @@ def check_cancelled_orthophoto(server):
     print("cancelled orthophoto: ok", flush=True)
 
 
-def main():
-    with StrataServer() as server:
-        server.import_model(folded_grid(fold=0.01), "sheet.ply", name="Sheet", unit="mm")
-        states, places = check_shapefile(server)
-        check_shapefile_refusals(server)
-        check_raster(server)
-        check_colors(server)
-        look, color = check_orthophoto(server)
-        check_cancelled_orthophoto(server)
-        server.kill()
-        server.start()
-        assert values(server, states, *places) == [
-            1,
-            4,
-            None,
-            1,
-            9,
-        ], "it survives the end of the server"
-        assert look_colors(server, look, (30, 90)) == [color]
-        assert server.stop() == 0
-        server.assert_clean_log()
+def test_what_was_painted_survives_the_end_of_the_server(server, story):
+    server.kill()
+    server.start()
+    assert values(server, story.states, *story.places) == [1, 4, None, 1, 9]
+    assert look_colors(server, story.look, (30, 90)) == [story.color]
 
 
-main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

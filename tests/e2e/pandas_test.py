@@ -1,25 +1,17 @@
-#!/usr/bin/env python3
-"""Every CSV and XLSX that the API gives is a table for pandas as it comes: rows, columns and types, with nothing to be mended.
-
-Runs with the system's Python, whose packages python3-pandas and python3-openpyxl are Debian's."""
+"""Every CSV and XLSX that the API gives is a table for pandas as it comes: rows, columns and types, with nothing to be mended."""
 import io
-import os
-import sys
 import urllib.parse
+
+import pytest
+
+from support.meshes import folded_grid
+from support.missing import missing
 
 try:
     import openpyxl  # noqa: F401  (what pandas reads XLSX with)
     import pandas
 except ImportError as error:
-    in_ci = os.environ.get("CI") == "true"
-    print(
-        f"{'FAILED' if in_ci else 'SKIPPED'}: {error}; ./test installs python3-pandas and python3-openpyxl"
-    )
-    sys.exit(1 if in_ci else 77)
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from support.meshes import folded_grid
-from support.strata_server import StrataServer
+    missing(f"{error}; ./test installs python3-pandas and python3-openpyxl")
 
 WALL = "/models/wall"
 UNITS = """code,depth,count,period,state,found,wet,note
@@ -132,7 +124,13 @@ def set_up(server):
         )
 
 
-def check_records(server, reader):
+@pytest.fixture(scope="module")
+def reader(server):
+    set_up(server)
+    return Reader(server)
+
+
+def test_records(server, reader):
     frame = reader.csv("list_records", "/tables/units/records", f="csv")
     assert list(frame.columns) == [
         "key",
@@ -208,7 +206,7 @@ def check_records(server, reader):
     )
 
 
-def check_quantities(server, reader):
+def test_quantities(server, reader):
     for operation, path in (
         ("layer_quantities", WALL + "/layers/units/quantities"),
         ("table_quantities", "/tables/units/quantities"),
@@ -238,7 +236,7 @@ def check_quantities(server, reader):
     assert len(ranges) == server.ok("GET", WALL + "/layers/moisture/quantities").json()["total"] + 1
 
 
-def check_texels(server, reader):
+def test_texels(server, reader):
     statistics = server.ok("GET", WALL + "/layers/moisture/statistics").json()
     frame = reader.csv("get_texel_lines", WALL + "/layers/moisture/texels.csv")
     assert list(frame.columns) == ["x", "y", "z", "area_m2", "value"] and set(
@@ -282,7 +280,7 @@ def check_texels(server, reader):
     assert set(units["code"]) == {"SU 2"} and set(units["depth"]) == {1.25}
 
 
-def check_points(server, reader):
+def test_points(server, reader):
     point = reader.csv("position", WALL + "/position", coords="POINT Z(2 2 0)", f="csv")
     assert (
         len(point) == 1
@@ -318,7 +316,7 @@ def check_points(server, reader):
     ), table
 
 
-def check_terms(server, reader):
+def test_terms(server, reader):
     frame = reader.csv("list_terms", "/tables/damage/terms", f="csv")
     assert (
         len(frame) == 2
@@ -327,25 +325,19 @@ def check_terms(server, reader):
     ), frame
 
 
-def main():
-    with StrataServer() as server:
-        set_up(server)
-        reader = Reader(server)
-        for check in (check_records, check_quantities, check_texels, check_points, check_terms):
-            check(server, reader)
-        csv = {
-            operation["operationId"]
-            for methods in server.contract.document["paths"].values()
-            for method, operation in methods.items()
-            if method in ("get", "post")
-            and "text/csv" in operation["responses"].get("200", {}).get("content", {})
-        }
-        assert (
-            reader.read == csv
-        ), f"not read: {csv - reader.read}; not in the contract: {reader.read - csv}"
-        assert server.stop() == 0
-        server.assert_clean_log()
-    print(f"pandas {pandas.__version__} reads {', '.join(sorted(csv))}")
+def test_every_csv_of_the_contract_was_read(server, reader):
+    csv = {
+        operation["operationId"]
+        for methods in server.contract.document["paths"].values()
+        for method, operation in methods.items()
+        if method in ("get", "post")
+        and "text/csv" in operation["responses"].get("200", {}).get("content", {})
+    }
+    assert (
+        reader.read == csv
+    ), f"not read: {csv - reader.read}; not in the contract: {reader.read - csv}"
 
 
-main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

@@ -2,10 +2,9 @@
 """What somebody who means harm would try, really tried against real servers, with the answers as a table. Fails where an answer is another one, and where docs/security.md tells something
 else than the answers; `--update-docs` writes it anew."""
 import concurrent.futures
-import os
 import sys
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from attempts import (
     bodies,
     coming_in,
@@ -63,21 +62,43 @@ GROUPS = {
 }
 
 
-def main():
-    chosen = [word for word in sys.argv[1:] if not word.startswith("--")] or list(GROUPS)
-    tables = {name: AttemptTable() for name in chosen}
-    with concurrent.futures.ThreadPoolExecutor(len(chosen)) as hands:
-        running = [hands.submit(GROUPS[name], tables[name]) for name in chosen]
-        for each in running:
-            each.result()
+def begun():
+    """The table that each group will have made. All run at once: most of the time of some is waiting."""
+    hands = concurrent.futures.ThreadPoolExecutor(len(GROUPS))
+
+    def made(attempts):
+        table = AttemptTable()
+        attempts(table)
+        return table
+
+    return {name: hands.submit(made, attempts) for name, attempts in GROUPS.items()}
+
+
+def joined(tables):
     table = AttemptTable()
-    table.sections = [section for name in chosen for section in tables[name].sections]
-    print(table.markdown())
-    print(f"{sum(len(section.rows) for section in table.sections)} attempts")
-    if "--update-docs" in sys.argv:
-        table.write()
-    elif len(chosen) == len(GROUPS):
-        table.check_page()
+    table.sections = [section for each in tables.values() for section in each.result().sections]
+    return table
+
+
+@pytest.fixture(scope="module")
+def tables():
+    return begun()
+
+
+@pytest.mark.parametrize("name", GROUPS)
+def test_each_answer_is_the_one_expected(tables, name):
+    print(tables[name].result().markdown())
+
+
+def test_the_page_tells_what_was_answered(tables):
+    joined(tables).check_page()
+
+
+def main():
+    """Writes the page anew."""
+    if sys.argv[1:] != ["--update-docs"]:
+        sys.exit("security_attempts_test.py --update-docs; as a test it is run by pytest")
+    joined(begun()).write()
 
 
 if __name__ == "__main__":

@@ -1,14 +1,11 @@
-#!/usr/bin/env python3
 """Layers that are computed from the shape, and layers brought over to another version of a scan."""
 import math
-import os
 import random
 import struct
-import sys
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.meshes import bumpy_ball, folded_grid
-from support.strata_server import StrataServer, wait_for
+from support.strata_server import wait_for
 
 BALL, SHEET = "/models/ball", "/models/sheet"
 
@@ -47,7 +44,76 @@ def compute(server, at, kind, **more):
     return meta, server.get(f"{at}/layers/{layer}/statistics").json()
 
 
-def check_kinds(server):
+@pytest.fixture(scope="module")
+def server(server):
+    server.import_model(bumpy_ball(), "ball.ply", name="Ball", unit="mm")
+    server.import_model(
+        bumpy_ball(120, 240, radius=5.1), "larger.ply", name="Larger ball", unit="cm"
+    )
+    server.import_model(folded_grid(), "sheet.ply", name="Sheet", unit="mm")
+    return server
+
+
+def test_refusals(server):
+    def layer(**members):
+        return {"name": "wrong", "compute": members}
+
+    cases = [
+        (layer(kind="beauty"), 422, "compute.kind"),
+        (layer(), 422, "compute.kind"),
+        (layer(kind="slope", radius_mm=3), 422, "compute.radius_mm"),
+        (layer(kind="roughness", distance_mm=3), 422, "compute.distance_mm"),
+        (layer(kind="roughness", radius_mm=0), 422, "compute.radius_mm"),
+        (layer(kind="roughness", radius_mm=1e8), 422, "compute.radius_mm"),
+        (layer(kind="mean_curvature", radius_mm=1e-6), 422, "compute.radius_mm"),
+        (layer(kind="ambient_occlusion", rays=3), 422, "compute.rays"),
+        (layer(kind="ambient_occlusion", rays=1e9), 422, "compute.rays"),
+        (layer(kind="height", rays=64), 422, "compute.rays"),
+        (layer(kind="slope", absolute=True), 422, "compute.absolute"),
+        (layer(kind="model_distance"), 422, "compute.model"),
+        (layer(kind="model_distance", model="nothing"), 422, "compute.model"),
+        (layer(kind="height", sql="x"), 422, "compute.sql"),
+        (layer(kind="vertex_property"), 422, "compute.property"),
+        (
+            {"name": "wrong", "kind": "database", "type": "u8", "compute": {"kind": "height"}},
+            422,
+            "kind",
+        ),
+        ({"name": "wrong", "resolution": 1000, "compute": {"kind": "height"}}, 422, "resolution"),
+    ]
+    for body, status, field in cases:
+        answer = server.post(BALL + "/layers", body)
+        assert answer.status == status and answer.json().get("field") == field, (body, answer)
+    # What only the work itself finds out.
+    for body, field in [
+        (layer(kind="boundary_distance"), "compute.kind"),
+        (layer(kind="model_distance", model="ball"), "compute.model"),
+        (layer(kind="vertex_property", property="quality"), "compute.property"),
+        ({"name": "wrong", "type": "u8", "compute": {"kind": "height", "absolute": True}}, "type"),
+    ]:
+        job = run(server, BALL + "/layers", body, state="failed")
+        assert job["problem"]["status"] == 422 and job["problem"]["field"] == field, job
+    for body, field in [
+        ({"from": "nothing", "tolerance_mm": 1}, "from"),
+        ({"from": "ball", "tolerance_mm": 1}, "from"),
+        ({"from": "sheet"}, None),
+        ({"from": "sheet", "tolerance_mm": 0}, "tolerance_mm"),
+        ({"from": "larger-ball", "tolerance_mm": 1}, "from"),
+        ({"from": "sheet", "tolerance_mm": 1, "layers": ["nothing"]}, "layers"),
+        ({"from": "sheet", "tolerance_mm": 1, "max_angle": 0}, "max_angle"),
+    ]:
+        answer = server.post(BALL + "/transfer", body)
+        assert answer.status == 422 and (field is None or answer.json()["field"] == field), (
+            body,
+            answer,
+        )
+    assert not [
+        known for known in server.get(BALL + "/layers").json()["layers"] if known["name"] == "wrong"
+    ], "nothing is left of what failed"
+    print("refusals: ok", flush=True)
+
+
+def test_kinds(server):
     ball = server.get(BALL).json()
     height, statistics = compute(server, BALL, "height")
     assert (height["type"], height["unit"]) == ("f32", "mm"), height
@@ -117,7 +183,7 @@ def check_kinds(server):
     print("kinds: ok", flush=True)
 
 
-def check_distance(server):
+def test_distance(server):
     apart, statistics = compute(server, BALL, "model_distance", model="larger-ball")
     # The same waves at 51 mm, measured in centimetres there.
     assert (
@@ -136,7 +202,7 @@ def check_distance(server):
     print("distance: ok", flush=True)
 
 
-def check_undo(server):
+def test_undo(server):
     layer, before = compute(server, BALL, "slope", name="to undo")
     path = f"{BALL}/layers/{layer['id']}"
     answer = server.post(path + "/undo")
@@ -152,66 +218,7 @@ def check_undo(server):
     print("undo: ok", flush=True)
 
 
-def check_refusals(server):
-    def layer(**members):
-        return {"name": "wrong", "compute": members}
-
-    cases = [
-        (layer(kind="beauty"), 422, "compute.kind"),
-        (layer(), 422, "compute.kind"),
-        (layer(kind="slope", radius_mm=3), 422, "compute.radius_mm"),
-        (layer(kind="roughness", distance_mm=3), 422, "compute.distance_mm"),
-        (layer(kind="roughness", radius_mm=0), 422, "compute.radius_mm"),
-        (layer(kind="roughness", radius_mm=1e8), 422, "compute.radius_mm"),
-        (layer(kind="mean_curvature", radius_mm=1e-6), 422, "compute.radius_mm"),
-        (layer(kind="ambient_occlusion", rays=3), 422, "compute.rays"),
-        (layer(kind="ambient_occlusion", rays=1e9), 422, "compute.rays"),
-        (layer(kind="height", rays=64), 422, "compute.rays"),
-        (layer(kind="slope", absolute=True), 422, "compute.absolute"),
-        (layer(kind="model_distance"), 422, "compute.model"),
-        (layer(kind="model_distance", model="nothing"), 422, "compute.model"),
-        (layer(kind="height", sql="x"), 422, "compute.sql"),
-        (layer(kind="vertex_property"), 422, "compute.property"),
-        (
-            {"name": "wrong", "kind": "database", "type": "u8", "compute": {"kind": "height"}},
-            422,
-            "kind",
-        ),
-        ({"name": "wrong", "resolution": 1000, "compute": {"kind": "height"}}, 422, "resolution"),
-    ]
-    for body, status, field in cases:
-        answer = server.post(BALL + "/layers", body)
-        assert answer.status == status and answer.json().get("field") == field, (body, answer)
-    # What only the work itself finds out.
-    for body, field in [
-        (layer(kind="boundary_distance"), "compute.kind"),
-        (layer(kind="model_distance", model="ball"), "compute.model"),
-        (layer(kind="vertex_property", property="quality"), "compute.property"),
-        ({"name": "wrong", "type": "u8", "compute": {"kind": "height", "absolute": True}}, "type"),
-    ]:
-        job = run(server, BALL + "/layers", body, state="failed")
-        assert job["problem"]["status"] == 422 and job["problem"]["field"] == field, job
-    for body, field in [
-        ({"from": "nothing", "tolerance_mm": 1}, "from"),
-        ({"from": "ball", "tolerance_mm": 1}, "from"),
-        ({"from": "sheet"}, None),
-        ({"from": "sheet", "tolerance_mm": 0}, "tolerance_mm"),
-        ({"from": "larger-ball", "tolerance_mm": 1}, "from"),
-        ({"from": "sheet", "tolerance_mm": 1, "layers": ["nothing"]}, "layers"),
-        ({"from": "sheet", "tolerance_mm": 1, "max_angle": 0}, "max_angle"),
-    ]:
-        answer = server.post(BALL + "/transfer", body)
-        assert answer.status == 422 and (field is None or answer.json()["field"] == field), (
-            body,
-            answer,
-        )
-    assert not [
-        known for known in server.get(BALL + "/layers").json()["layers"] if known["name"] == "wrong"
-    ], "nothing is left of what failed"
-    print("refusals: ok", flush=True)
-
-
-def check_cancel(server):
+def test_cancel(server):
     before = server.get(BALL + "/layers").json()["total"]
     answer = server.ok(
         "POST",
@@ -228,7 +235,7 @@ def check_cancel(server):
     print("cancel: ok", flush=True)
 
 
-def check_repeats(server):
+def test_repeats(server):
     key = {"Idempotency-Key": "one layer only"}
     body = {"name": "once", "compute": {"kind": "height"}}
     first = run(server, BALL + "/layers", body, headers=key)
@@ -260,7 +267,7 @@ def with_quality(scan):
     )
 
 
-def check_vertex_property(server):
+def test_vertex_property(server):
     server.import_model(with_quality(bumpy_ball()), "ball.ply", name="With quality", unit="mm")
     model = "/models/with-quality"
     assert server.get(model + "/vertex-properties").json() == {
@@ -334,7 +341,7 @@ def check_vertex_property(server):
     print("vertex property: ok", flush=True)
 
 
-def check_transfer(server):
+def test_transfer(server):
     """Classes of height, brought over to a scan of another tessellation, atlas and unit, with the noise of scanning."""
     source = server.import_model(bumpy_ball(60, 120), "then.ply", name="Then", unit="mm")
     palette = {
@@ -420,6 +427,11 @@ def check_transfer(server):
     print("transfer: ok", flush=True)
 
 
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()
+
+
 def noisy(scan, amplitude):
     """Every vertex moved by up to `amplitude` along each axis, the same way in every run."""
     head, body = scan.split(b"end_header\n", 1)
@@ -451,25 +463,3 @@ def cut_below(scan):
         + body[: 12 * count]
         + b"".join(kept)
     )
-
-
-def main():
-    with StrataServer() as server:
-        server.import_model(bumpy_ball(), "ball.ply", name="Ball", unit="mm")
-        server.import_model(
-            bumpy_ball(120, 240, radius=5.1), "larger.ply", name="Larger ball", unit="cm"
-        )
-        server.import_model(folded_grid(), "sheet.ply", name="Sheet", unit="mm")
-        check_refusals(server)
-        check_kinds(server)
-        check_distance(server)
-        check_undo(server)
-        check_cancel(server)
-        check_repeats(server)
-        check_vertex_property(server)
-        check_transfer(server)
-        assert server.stop() == 0
-        server.assert_clean_log()
-
-
-main()

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """What analysts read with SQL: areas as the statistics have them, after every edit; tables under people's names; and nothing else."""
 import csv
 import io
@@ -6,9 +5,8 @@ import os
 import socket
 import stat
 import subprocess
-import sys
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.meshes import folded_grid
 from support.sql_reader import Reader, free_port
@@ -54,7 +52,50 @@ def check_areas(server, reader, model=M):
                     assert abs(float(row[head]) - value) < 1e-6, (head, row, key)
 
 
-def check_edits(server, reader):
+@pytest.fixture(scope="module")
+def port():
+    return free_port()
+
+
+@pytest.fixture(scope="module")
+def server(port):
+    with StrataServer(demo=True, options=["--sql-listen", f"127.0.0.1:{port}"]) as server:
+        yield server
+
+
+@pytest.fixture(scope="module")
+def reader(server, port):
+    assert stat.S_IMODE(os.stat(os.path.join(server.data, "sql-password")).st_mode) == 0o600
+    return Reader(server, port)
+
+
+def test_areas_of_a_project_from_before_sums_were_kept(server, reader):
+    """The demo project's layers were journalled without sums: they are counted once the server runs."""
+    wait_for(
+        lambda: reader.rows("SELECT count(*) FROM layers WHERE NOT areas_current")[0]["count"]
+        == "0",
+        "all layers to be counted",
+    )
+    check_areas(server, reader, "/models/demo-pot")
+
+
+@pytest.fixture(scope="module")
+def sheet(server):
+    server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
+    server.ok(
+        "POST",
+        "/projects/default/tables",
+        {"name": "Units", "columns": [{"name": "Code", "required": True, "unique": True}]},
+    )
+    server.ok(
+        "POST",
+        "/tables/units/records",
+        {"records": [{"values": {"code": f"SU {n}"}} for n in (1, 2, 3)]},
+    )
+
+
+@pytest.mark.usefixtures("sheet")
+def test_edits(server, reader):
     """Strokes, fills, erasing, undo: after each the areas are those of the statistics, at once."""
     layers = {}
     for body in (
@@ -116,7 +157,7 @@ def check_edits(server, reader):
     check_areas(server, reader)
 
 
-def check_places(server, reader):
+def test_places(server, reader):
     """Analysts get places as text, and may call what makes it."""
     rows = reader.rows("SELECT * FROM areas WHERE model = 'Sheet'")
     assert rows and all(
@@ -169,7 +210,7 @@ def columns(reader, view):
     )[0]
 
 
-def check_tables(server, reader):
+def test_tables(server, reader):
     long = "Überlänge " * 15 + "ist möglich"
     server.ok(
         "POST",
@@ -259,7 +300,7 @@ def check_tables(server, reader):
     server.ok("DELETE", "/tables/clash")
 
 
-def check_rights(reader):
+def test_rights(reader):
     anyway = "SET default_transaction_read_only = off"
     for statement in (
         "DELETE FROM edits",
@@ -316,7 +357,25 @@ def check_rights(reader):
         reader.refused("SELECT 1", **other, why="no pg_hba.conf entry")
 
 
-def check_command_line(binary):
+def test_the_password_and_the_areas_are_kept_over_a_restart(server, reader, port):
+    password = reader.password
+    server.kill()
+    server.start()
+    assert Reader(server, port).password == password
+    check_areas(server, reader)
+
+
+def test_without_the_option_nobody_listens(server, port):
+    assert server.stop() == 0
+    server.options = []
+    server.start()
+    assert socket.socket().connect_ex(("127.0.0.1", port)) != 0
+    assert server.stop() == 0
+    server.assert_clean_log()
+
+
+def test_command_line(server):
+    binary = server.binary
     for listen, code, words in (
         ("0.0.0.0:5433", 1, "loopback only"),
         ("127.0.0.1:0", 106, "port"),
@@ -347,48 +406,3 @@ def check_command_line(binary):
         check=False,
     )
     assert done.returncode == 1 and "docs/sql.md" in done.stderr, done.stderr
-
-
-def main():
-    port = free_port()
-    with StrataServer(demo=True, options=["--sql-listen", f"127.0.0.1:{port}"]) as server:
-        assert stat.S_IMODE(os.stat(os.path.join(server.data, "sql-password")).st_mode) == 0o600
-        reader = Reader(server, port)
-        # The demo project's layers were journalled without sums: they are counted once the server
-        # runs.
-        wait_for(
-            lambda: reader.rows("SELECT count(*) FROM layers WHERE NOT areas_current")[0]["count"]
-            == "0",
-            "all layers to be counted",
-        )
-        check_areas(server, reader, "/models/demo-pot")
-        server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
-        server.ok(
-            "POST",
-            "/projects/default/tables",
-            {"name": "Units", "columns": [{"name": "Code", "required": True, "unique": True}]},
-        )
-        server.ok(
-            "POST",
-            "/tables/units/records",
-            {"records": [{"values": {"code": f"SU {n}"}} for n in (1, 2, 3)]},
-        )
-        check_edits(server, reader)
-        check_places(server, reader)
-        check_tables(server, reader)
-        check_rights(reader)
-        password = reader.password
-        server.kill()
-        server.start()
-        assert Reader(server, port).password == password
-        check_areas(server, reader)
-        assert server.stop() == 0
-        server.options = []
-        server.start()
-        assert socket.socket().connect_ex(("127.0.0.1", port)) != 0
-        assert server.stop() == 0
-        server.assert_clean_log()
-    check_command_line(server.binary)
-
-
-main()

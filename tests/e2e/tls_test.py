@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """https: by the server itself from files, with renewal, and behind nginx with the configuration that ships."""
 import os
 import re
@@ -6,10 +5,9 @@ import shutil
 import socket
 import ssl
 import subprocess
-import sys
 import tempfile
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.certificates import make_certificate, trusting
 from support.live_client import LiveClient
 from support.meshes import folded_grid
@@ -100,7 +98,72 @@ def check_everything(server):
     assert refused.status == 403, refused
 
 
-def check_files(folder):
+@pytest.fixture
+def folder():
+    with tempfile.TemporaryDirectory(prefix="strata-tls-", dir="/tmp") as folder:
+        os.chmod(folder, 0o755)
+        yield folder
+
+
+CAMERA = {
+    "view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -300, 1],
+    "projection": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.02, -1, 0, 0, -20.2, 0],
+    "width": 64,
+    "height": 64,
+}
+
+
+def test_bad_files(folder):
+    chain, key = make_certificate(folder, "good")
+    other = make_certificate(folder, "other")[1]
+    locked = os.path.join(folder, "locked.key")
+    subprocess.run(
+        ["openssl", "pkey", "-aes128", "-passout", "pass:secret", "-in", key, "-out", locked],
+        check=True,
+        capture_output=True,
+    )
+    cases = [
+        ([chain, folder + "/none"], "none`: there is no such file"),
+        ([folder, key], "there is no such file"),
+        ([key, key], "holds no certificate"),
+        ([chain, chain], "not the key of the certificate"),
+        ([chain, other], "not the key of the certificate"),
+        ([chain, make_certificate(folder, "rsa", "rsa")[1]], "not the key of the certificate"),
+        ([chain, locked], "without a passphrase"),
+    ]
+    data = tempfile.mkdtemp(dir=folder)
+    os.chmod(data, 0o755)
+    binary = os.environ["STRATA_BINARY"]
+    for (cert, its_key), told in cases:
+        done = subprocess.run(
+            [
+                binary,
+                "serve",
+                "--data",
+                data,
+                "--listen",
+                "127.0.0.1:0",
+                "--tls-cert",
+                cert,
+                "--tls-key",
+                its_key,
+            ],
+            capture_output=True,
+            text=True,
+            stdin=subprocess.DEVNULL,
+            check=False,
+        )
+        assert done.returncode == 1 and told in done.stderr, (cert, its_key, done)
+    half = subprocess.run(
+        [binary, "serve", "--data", data, "--tls-cert", chain],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert half.returncode == 2 and "--tls-key" in half.stderr, half
+
+
+def test_https_from_files(folder):
     chain, key = make_certificate(folder, "first")
     with StrataServer(options=["--tls-cert", chain, "--tls-key", key]) as server:
         server.tls = trusting(chain)
@@ -173,64 +236,6 @@ def check_files(folder):
         server.assert_clean_log(warnings=("the certificate stays as it was",))
 
 
-CAMERA = {
-    "view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -300, 1],
-    "projection": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.02, -1, 0, 0, -20.2, 0],
-    "width": 64,
-    "height": 64,
-}
-
-
-def check_bad_files(folder):
-    chain, key = make_certificate(folder, "good")
-    other = make_certificate(folder, "other")[1]
-    locked = os.path.join(folder, "locked.key")
-    subprocess.run(
-        ["openssl", "pkey", "-aes128", "-passout", "pass:secret", "-in", key, "-out", locked],
-        check=True,
-        capture_output=True,
-    )
-    cases = [
-        ([chain, folder + "/none"], "none`: there is no such file"),
-        ([folder, key], "there is no such file"),
-        ([key, key], "holds no certificate"),
-        ([chain, chain], "not the key of the certificate"),
-        ([chain, other], "not the key of the certificate"),
-        ([chain, make_certificate(folder, "rsa", "rsa")[1]], "not the key of the certificate"),
-        ([chain, locked], "without a passphrase"),
-    ]
-    data = tempfile.mkdtemp(dir=folder)
-    os.chmod(data, 0o755)
-    binary = os.environ["STRATA_BINARY"]
-    for (cert, its_key), told in cases:
-        done = subprocess.run(
-            [
-                binary,
-                "serve",
-                "--data",
-                data,
-                "--listen",
-                "127.0.0.1:0",
-                "--tls-cert",
-                cert,
-                "--tls-key",
-                its_key,
-            ],
-            capture_output=True,
-            text=True,
-            stdin=subprocess.DEVNULL,
-            check=False,
-        )
-        assert done.returncode == 1 and told in done.stderr, (cert, its_key, done)
-    half = subprocess.run(
-        [binary, "serve", "--data", data, "--tls-cert", chain],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert half.returncode == 2 and "--tls-key" in half.stderr, half
-
-
 def nginx_binary():
     unpacked = os.path.join(ROOT, "build", "deps", "usr", "sbin", "nginx")
     return (
@@ -246,7 +251,7 @@ def free_port():
         return taken.getsockname()[1]
 
 
-def check_nginx(folder):
+def test_https_behind_nginx(folder):
     chain, key = make_certificate(folder, "proxy")
     with open(os.path.join(ROOT, "docker", "nginx", "strata.conf"), encoding="utf-8") as file:
         shipped = file.read()
@@ -302,19 +307,3 @@ def check_nginx(folder):
             nginx.terminate()
             nginx.wait()
         server.assert_clean_log()
-
-
-def main():
-    folder = tempfile.mkdtemp(prefix="strata-tls-", dir="/tmp")
-    os.chmod(folder, 0o755)
-    try:
-        check_bad_files(folder)
-        check_files(folder)
-        check_nginx(folder)
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
-    print("https from files and behind nginx")
-
-
-if __name__ == "__main__":
-    main()

@@ -1,14 +1,10 @@
-#!/usr/bin/env python3
 """ETags of all reads that the contract says have one: 304 while the answer is the same, and never when it is not."""
-import os
-import sys
 import urllib.parse
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.cameras import camera_from
 from support.meshes import folded_grid
 from support.pictures import png
-from support.strata_server import StrataServer
 
 M, T = "/models/sheet", "/tables/finds"
 OF_PATH = {
@@ -185,7 +181,22 @@ def check_change(server, known, what, must_change):
     return anew
 
 
-def check_changes(server, known, camera):
+@pytest.fixture(scope="module")
+def camera(server):
+    return make_site(server)
+
+
+@pytest.fixture(scope="module")
+def known(server, camera):
+    """The tag of each read of the contract, each of which a second read answers with 304."""
+    return check_all(server, reads_with_tags(server))
+
+
+def test_each_read_has_a_tag_that_is_good_once_more(known):
+    assert known
+
+
+def test_changes(server, known, camera):
     layer = M + "/layers/finds"
     texels = {
         layer + "/" + part
@@ -242,7 +253,7 @@ def check_changes(server, known, camera):
     check_change(server, known, "undo", texels)
 
 
-def check_past(server):
+def test_past(server):
     """The past stays as it is while others paint."""
     layer = M + "/layers/finds"
     now = int(server.get(layer + "/statistics").headers["Strata-Sequence"])
@@ -256,7 +267,7 @@ def check_past(server):
     ), "another question has another tag"
 
 
-def check_who_asks(server):
+def test_who_asks(server):
     """What one person read says nothing to another, and what somebody may see is part of it."""
     ada = server.add_person("eve", "viewer")
     asked = M + "/layers/finds/quantities"
@@ -269,7 +280,7 @@ def check_who_asks(server):
     server.ok("PATCH", M + "/layers/finds", {"visibility": "public"})
 
 
-def check_formats_and_codings(server):
+def test_formats_and_codings(server):
     """A sheet is no JSON, and each coding is a representation of its own, which 304 names, too."""
     asked = T + "/records"
     tags = {
@@ -297,7 +308,7 @@ def check_formats_and_codings(server):
     ), first.headers.items()
 
 
-def check_left_alone(server):
+def test_left_alone(server):
     """Health and secrets are nobody's to keep."""
     for path in ("//livez", "//readyz", "//metrics"):
         answer = server.get(path, token=False)
@@ -314,25 +325,15 @@ def check_left_alone(server):
     assert refused.status == 404 and refused.headers["ETag"] is None, refused
 
 
-def main():
-    with StrataServer() as server:
-        camera = make_site(server)
-        known = check_all(server, reads_with_tags(server))
-        print(f"{len(known)} reads", flush=True)
-        check_changes(server, known, camera)
-        check_past(server)
-        check_who_asks(server)
-        check_formats_and_codings(server)
-        check_left_alone(server)
-        asked = M + "/layers/finds/statistics"
-        tag = server.get(asked).headers["ETag"]
-        assert server.stop() == 0
-        server.start()
-        assert (
-            once_more(server, asked, tag).status == 200
-        ), "a database may be another one after a restart"
-        assert server.stop() == 0
-        server.assert_clean_log()
+def test_a_tag_is_good_until_a_restart(server):
+    """A database may be another one after it."""
+    asked = M + "/layers/finds/statistics"
+    tag = server.get(asked).headers["ETag"]
+    assert server.stop() == 0
+    server.start()
+    assert once_more(server, asked, tag).status == 200
 
 
-main()
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()

@@ -1,10 +1,8 @@
-#!/usr/bin/env python3
 """Who sees what: private layers, columns and attachments are not there for viewers and annotators, through every door of the contract."""
 import hashlib
-import os
-import sys
+import types
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pytest
 from support.addresses import query
 from support.live_client import LAST_RECTANGLE, LiveClient
 from support.sql_reader import Reader, free_port
@@ -26,152 +24,6 @@ from support.visibility_site import (
 )
 
 
-def shows_through(server):
-    """What more people see is not made of what fewer see, however it is tried."""
-
-    def refused(status, method, path, body, field):
-        answer = server.request(method, path, body)
-        assert (
-            answer.status == status
-            and answer.json()["field"] == field
-            and "show through" in answer.json()["title"]
-        ), answer
-
-    refused(
-        422, "POST", M + "/layers", {"name": "Sum", "expression": f'"{LAYER}" + 1'}, "expression"
-    )
-    refused(
-        422,
-        "POST",
-        M + "/layers",
-        {"name": "Sum", "expression": f"if(finds.\"{COLUMN}\" = 'x', 1, 0)"},
-        "expression",
-    )
-    refused(
-        422,
-        "POST",
-        f"{M}/layers/cracks/edits",
-        {"op": "fill", "mode": "where", "where": f'"{LAYER}" > 0', "value": 1},
-        "where",
-    )
-    by_column = {"mode": "categorical", "points": [], "column": COLUMN}
-    refused(422, "PATCH", M + "/layers/finds", {"palette": by_column}, "palette.column")
-    server.ok("PATCH", f"{M}/layers/{KEYS}", {"palette": by_column})
-    refused(422, "PATCH", f"{M}/layers/{KEYS}", {"visibility": "team"}, "palette.column")
-    server.ok(
-        "POST",
-        M + "/layers",
-        {"name": "Sum", "expression": f'"{LAYER}" + finds.depth', "visibility": "private"},
-    )
-    refused(422, "PATCH", M + "/layers/sum", {"visibility": "team"}, "expression")
-    server.ok("PATCH", M + "/layers/sum", {"expression": "cracks + finds.depth"})
-    server.ok("POST", M + "/layers/sum/compute")
-    server.ok("PATCH", M + "/layers/sum", {"visibility": "public"})
-    refused(409, "PATCH", M + "/layers/cracks", {"visibility": "private"}, "visibility")
-    refused(409, "PATCH", "/tables/finds/columns/depth", {"visibility": "team"}, "visibility")
-    server.ok("PATCH", M + "/layers/finds", {"palette": {**by_column, "column": "name"}})
-    refused(409, "PATCH", "/tables/finds/columns/name", {"visibility": "private"}, "visibility")
-    server.ok("DELETE", M + "/layers/sum")
-    for body in (
-        {"visibility": "private", "name": "Both"},
-        {"visibility": "secret"},
-        {"visibility": None},
-    ):
-        assert server.request("PATCH", "/tables/finds/columns/depth", body).status == 422, body
-    assert (
-        server.post(
-            "/tables/finds/columns", {"name": "Must", "required": True, "visibility": "private"}
-        ).status
-        == 422
-    )
-    for path in (M + "/layers/cracks", "/models/sheet"):
-        assert server.request("PATCH", path, {"visibility": "hidden"}).status == 422
-
-
-def ladder(server, viewer, annotator, curator, public):
-    """What each role sees of each kind of thing, as it changes; what was seen in the past is hidden, too."""
-
-    def seen(path):
-        return tuple(
-            server.get(path, token=token).status == 200 for token in (viewer, annotator, curator)
-        )
-
-    by_visibility = {
-        "public": (True, True, True),
-        "team": (False, True, True),
-        "private": (False, False, True),
-    }
-    layer, column, file = (
-        M + "/layers/cracks",
-        "/tables/finds/columns/depth",
-        f"/attachments/{public['id']}",
-    )
-    for visibility in ("team", "private", "public"):
-        for path in (layer, column, file):
-            assert server.request(
-                "PATCH", path, {"visibility": visibility}, token=viewer
-            ).status in (403, 404)
-            assert server.request(
-                "PATCH", path, {"visibility": visibility}, token=annotator
-            ).status in (403, 404), path
-            server.ok("PATCH", path, {"visibility": visibility}, token=curator)
-        expected = by_visibility[visibility]
-        assert (
-            seen(layer)
-            == seen(layer + "/edits")
-            == seen(layer + "/texels.npy")
-            == seen(file)
-            == seen(file + "?thumbnail=64")
-            == expected
-        ), visibility
-        assert (
-            seen(column + "/classes")
-            == seen(query("/tables/finds/records", sortby="depth"))
-            == expected
-        ), visibility
-        for token, sees in zip((viewer, annotator, curator), expected):
-            assert (
-                "depth" in server.get("/tables/finds/records/1?at=1", token=token).json()["values"]
-            ) == sees, visibility
-            assert (
-                "plan.png"
-                in str(server.get("/tables/finds/records/1/attachments", token=token).json())
-            ) == sees, visibility
-    # Who attaches a file sees it, and says who does.
-    mine = server.ok(
-        "POST",
-        query("/tables/finds/records/2/attachments", name="mine.png", visibility="private"),
-        PNG,
-        token=annotator,
-    ).json()["attachments"][0]
-    path = f"/attachments/{mine['id']}"
-    assert seen(path) == (False, True, True)
-    other = server.add_person("other", "annotator")
-    assert (
-        server.get(path, token=other).status
-        == server.request("PATCH", path, {"visibility": "public"}, token=other).status
-        == server.request("DELETE", path, token=other).status
-        == 404
-    )
-    server.ok("PATCH", path, {"visibility": "team"}, token=annotator)
-    assert server.get(path, token=other).status == 200 and seen(path) == (False, True, True)
-    # A cell that is written by who does not see one of its files keeps it.
-    cell = server.get("/tables/finds/records/1", token=viewer).json()["values"]["photo"]
-    assert len(cell) == 2, "ids of files stay in their cells, and tell nothing"
-
-
-def undo_shows_nothing(server, viewer, annotator):
-    """The journal of a table tells nothing of a column that is hidden, and no undo shows it."""
-    for token in (viewer, annotator):
-        answer = server.get("/tables/finds/edits", token=token)
-        assert not leaks(answer.body), answer
-    assert leaks(server.get("/tables/finds/edits").body)
-    server.ok("POST", "/tables/finds/undo")
-    server.ok("POST", "/tables/finds/redo")
-    columns = server.get("/tables/finds/columns", token=viewer).json()["columns"]
-    assert COLUMN not in [column["slug"] for column in columns], columns
-
-
 def still(connection):
     """A whole picture at rest, as it came."""
     parts = []
@@ -184,7 +36,102 @@ def still(connection):
             parts = []
 
 
-def live(server, viewer, annotator, camera, thread):
+def message_of_layer(connection):
+    return connection.receive_until("layer")
+
+
+@pytest.fixture(scope="module")
+def port():
+    return free_port()
+
+
+@pytest.fixture(scope="module")
+def server(port):
+    with StrataServer(options=["--sql-listen", f"127.0.0.1:{port}"]) as server:
+        yield server
+
+
+@pytest.fixture(scope="module", autouse=True)
+def site(server):
+    camera, before, public, hidden, thread = make_site(server)
+    return types.SimpleNamespace(
+        camera=camera, before=before, public=public, hidden=hidden, thread=thread
+    )
+
+
+@pytest.fixture(scope="module")
+def camera(site):
+    return site.camera
+
+
+@pytest.fixture(scope="module")
+def public(site):
+    return site.public
+
+
+@pytest.fixture(scope="module")
+def thread(site):
+    return site.thread
+
+
+@pytest.fixture(scope="module")
+def viewer(server):
+    return server.add_person("viewer", "viewer")
+
+
+@pytest.fixture(scope="module")
+def annotator(server):
+    return server.add_person("annotator", "annotator")
+
+
+@pytest.fixture(scope="module")
+def curator(server):
+    return server.add_person("curator", "curator")
+
+
+@pytest.fixture
+def reader(server, port):
+    return Reader(server, port)
+
+
+def picture(server, camera, token):
+    return server.ok("POST", M + "/frame", {"camera": camera, "format": "png"}, token=token).body
+
+
+def test_curators_are_told_the_secrets(server, site, curator):
+    answered, told = sweep(server, curator, words(server, site.public), site.camera)
+    assert answered > 200 and len(told) > 15, (answered, sorted(told))
+    assert picture(server, site.camera, curator) != site.before
+
+
+@pytest.mark.parametrize("role", ("viewer", "annotator"))
+def test_the_secrets_are_not_there_through_any_door(server, site, role, request):
+    token = request.getfixturevalue(role)
+    words_of = words(server, site.public)
+    assert (
+        picture(server, site.camera, token) == site.before
+    ), "the picture is another than without the secrets"
+    answered, told = sweep(server, token, words_of, site.camera)
+    assert answered > 150 and not told, (answered, told)
+    named = names_unknown(server, token, site.camera)
+    closed = doors_closed(server, token, words_of, site.hidden, site.thread)
+    assert closed > 60, closed
+    print(f"{answered} answers without a secret, {closed} doors closed, {named} names unknown")
+
+
+def test_undo_shows_nothing(server, viewer, annotator):
+    """The journal of a table tells nothing of a column that is hidden, and no undo shows it."""
+    for token in (viewer, annotator):
+        answer = server.get("/tables/finds/edits", token=token)
+        assert not leaks(answer.body), answer
+    assert leaks(server.get("/tables/finds/edits").body)
+    server.ok("POST", "/tables/finds/undo")
+    server.ok("POST", "/tables/finds/redo")
+    columns = server.get("/tables/finds/columns", token=viewer).json()["columns"]
+    assert COLUMN not in [column["slug"] for column in columns], columns
+
+
+def test_live(server, viewer, annotator, camera, thread):
     """An open connection sees what it may from one moment to the next."""
 
     def message(connection, *ops):
@@ -288,11 +235,21 @@ def live(server, viewer, annotator, camera, thread):
         wait_for(lambda: still(eyes) == before, "the picture to be as if there was no such layer")
 
 
-def message_of_layer(connection):
-    return connection.receive_until("layer")
+def test_sql(server, reader):
+    """Analysts see what everybody sees."""
+    assert {row["slug"] for row in reader.rows("SELECT slug FROM layers")} == {"cracks", "finds"}
+    for view in ("layers", "areas", "edits", "record_edits", '"Finds"'):
+        done = reader.run(f"SELECT * FROM {view}")
+        assert done.returncode == 0 and not leaks(done.stdout.encode()), (view, done)
+    server.ok("PATCH", f"/tables/finds/columns/{COLUMN}", {"visibility": "team"})
+    assert not leaks(reader.run('SELECT * FROM "Finds"').stdout.encode())
+    server.ok("PATCH", f"/tables/finds/columns/{COLUMN}", {"visibility": "public"})
+    assert leaks(reader.run('SELECT * FROM "Finds"').stdout.encode())
+    server.ok("PATCH", f"/tables/finds/columns/{COLUMN}", {"visibility": "private"})
+    assert not leaks(reader.run('SELECT * FROM "Finds"').stdout.encode())
 
 
-def source(server, viewer, annotator, curator):
+def test_source(server, viewer, annotator, curator):
     """The scan's files, its mesh and its pictures in full are a right of their own."""
     doors = [M + "/source/sheet.ply", M + "/vertices.ply"]
     look = server.ok("POST", query(M + "/looks", name="UV"), PNG).json()["slug"]
@@ -316,67 +273,152 @@ def source(server, viewer, annotator, curator):
     assert server.request("PATCH", M, {"source_download": "owner"}).status == 422
 
 
-def sql(server, reader):
-    """Analysts see what everybody sees."""
-    assert {row["slug"] for row in reader.rows("SELECT slug FROM layers")} == {"cracks", "finds"}
-    for view in ("layers", "areas", "edits", "record_edits", '"Finds"'):
-        done = reader.run(f"SELECT * FROM {view}")
-        assert done.returncode == 0 and not leaks(done.stdout.encode()), (view, done)
-    server.ok("PATCH", f"/tables/finds/columns/{COLUMN}", {"visibility": "team"})
-    assert not leaks(reader.run('SELECT * FROM "Finds"').stdout.encode())
-    server.ok("PATCH", f"/tables/finds/columns/{COLUMN}", {"visibility": "public"})
-    assert leaks(reader.run('SELECT * FROM "Finds"').stdout.encode())
-    server.ok("PATCH", f"/tables/finds/columns/{COLUMN}", {"visibility": "private"})
-    assert not leaks(reader.run('SELECT * FROM "Finds"').stdout.encode())
+def test_ladder(server, viewer, annotator, curator, public):
+    """What each role sees of each kind of thing, as it changes; what was seen in the past is hidden, too."""
 
-
-def main():
-    port = free_port()
-    with StrataServer(options=["--sql-listen", f"127.0.0.1:{port}"]) as server:
-        camera, before, public, hidden, thread = make_site(server)
-        viewer, annotator, curator = (
-            server.add_person(role, role) for role in ("viewer", "annotator", "curator")
+    def seen(path):
+        return tuple(
+            server.get(path, token=token).status == 200 for token in (viewer, annotator, curator)
         )
-        words_of = words(server, public)
-        answered, told = sweep(server, curator, words_of, camera)
-        assert answered > 200 and len(told) > 15, (answered, sorted(told))
-        print(f"curators: {answered} answers, secrets in {len(told)} operations", flush=True)
-        for token, role in ((viewer, "viewer"), (annotator, "annotator")):
-            picture = server.ok(
-                "POST", M + "/frame", {"camera": camera, "format": "png"}, token=token
-            ).body
-            assert picture == before, f"the picture of a {role} is another than without the secrets"
-            answered, told = sweep(server, token, words_of, camera)
-            assert answered > 150 and not told, (role, answered, told)
-            named = names_unknown(server, token, camera)
-            closed = doors_closed(server, token, words_of, hidden, thread)
-            assert closed > 60, closed
-            print(
-                f"{role}: {answered} answers without a secret, {closed} doors closed, {named} names unknown",
-                flush=True,
-            )
+
+    by_visibility = {
+        "public": (True, True, True),
+        "team": (False, True, True),
+        "private": (False, False, True),
+    }
+    layer, column, file = (
+        M + "/layers/cracks",
+        "/tables/finds/columns/depth",
+        f"/attachments/{public['id']}",
+    )
+    for visibility in ("team", "private", "public"):
+        for path in (layer, column, file):
+            assert server.request(
+                "PATCH", path, {"visibility": visibility}, token=viewer
+            ).status in (403, 404)
+            assert server.request(
+                "PATCH", path, {"visibility": visibility}, token=annotator
+            ).status in (403, 404), path
+            server.ok("PATCH", path, {"visibility": visibility}, token=curator)
+        expected = by_visibility[visibility]
         assert (
-            server.ok("POST", M + "/frame", {"camera": camera, "format": "png"}, token=curator).body
-            != before
-        )
-        undo_shows_nothing(server, viewer, annotator)
-        live(server, viewer, annotator, camera, thread)
-        sql(server, Reader(server, port))
-        source(server, viewer, annotator, curator)
-        ladder(server, viewer, annotator, curator, public)
-        shows_through(server)
-        server.ok("DELETE", f"{M}/layers/{LAYER}")
-        for token, seen in ((viewer, False), (annotator, False), (curator, True)):
+            seen(layer)
+            == seen(layer + "/edits")
+            == seen(layer + "/texels.npy")
+            == seen(file)
+            == seen(file + "?thumbnail=64")
+            == expected
+        ), visibility
+        assert (
+            seen(column + "/classes")
+            == seen(query("/tables/finds/records", sortby="depth"))
+            == expected
+        ), visibility
+        for token, sees in zip((viewer, annotator, curator), expected):
             assert (
-                str(thread)
-                in [
-                    str(each["id"])
-                    for each in server.get(M + "/comments", token=token).json()["comments"]
-                ]
-            ) == seen, "a thread outlives its layer"
-        assert server.stop() == 0
-        server.assert_clean_log()
+                "depth" in server.get("/tables/finds/records/1?at=1", token=token).json()["values"]
+            ) == sees, visibility
+            assert (
+                "plan.png"
+                in str(server.get("/tables/finds/records/1/attachments", token=token).json())
+            ) == sees, visibility
+    # Who attaches a file sees it, and says who does.
+    mine = server.ok(
+        "POST",
+        query("/tables/finds/records/2/attachments", name="mine.png", visibility="private"),
+        PNG,
+        token=annotator,
+    ).json()["attachments"][0]
+    path = f"/attachments/{mine['id']}"
+    assert seen(path) == (False, True, True)
+    other = server.add_person("other", "annotator")
+    assert (
+        server.get(path, token=other).status
+        == server.request("PATCH", path, {"visibility": "public"}, token=other).status
+        == server.request("DELETE", path, token=other).status
+        == 404
+    )
+    server.ok("PATCH", path, {"visibility": "team"}, token=annotator)
+    assert server.get(path, token=other).status == 200 and seen(path) == (False, True, True)
+    # A cell that is written by who does not see one of its files keeps it.
+    cell = server.get("/tables/finds/records/1", token=viewer).json()["values"]["photo"]
+    assert len(cell) == 2, "ids of files stay in their cells, and tell nothing"
 
 
-if __name__ == "__main__":
-    main()
+def test_nothing_hidden_shows_through(server):
+    """What more people see is not made of what fewer see, however it is tried."""
+
+    def refused(status, method, path, body, field):
+        answer = server.request(method, path, body)
+        assert (
+            answer.status == status
+            and answer.json()["field"] == field
+            and "show through" in answer.json()["title"]
+        ), answer
+
+    refused(
+        422, "POST", M + "/layers", {"name": "Sum", "expression": f'"{LAYER}" + 1'}, "expression"
+    )
+    refused(
+        422,
+        "POST",
+        M + "/layers",
+        {"name": "Sum", "expression": f"if(finds.\"{COLUMN}\" = 'x', 1, 0)"},
+        "expression",
+    )
+    refused(
+        422,
+        "POST",
+        f"{M}/layers/cracks/edits",
+        {"op": "fill", "mode": "where", "where": f'"{LAYER}" > 0', "value": 1},
+        "where",
+    )
+    by_column = {"mode": "categorical", "points": [], "column": COLUMN}
+    refused(422, "PATCH", M + "/layers/finds", {"palette": by_column}, "palette.column")
+    server.ok("PATCH", f"{M}/layers/{KEYS}", {"palette": by_column})
+    refused(422, "PATCH", f"{M}/layers/{KEYS}", {"visibility": "team"}, "palette.column")
+    server.ok(
+        "POST",
+        M + "/layers",
+        {"name": "Sum", "expression": f'"{LAYER}" + finds.depth', "visibility": "private"},
+    )
+    refused(422, "PATCH", M + "/layers/sum", {"visibility": "team"}, "expression")
+    server.ok("PATCH", M + "/layers/sum", {"expression": "cracks + finds.depth"})
+    server.ok("POST", M + "/layers/sum/compute")
+    server.ok("PATCH", M + "/layers/sum", {"visibility": "public"})
+    refused(409, "PATCH", M + "/layers/cracks", {"visibility": "private"}, "visibility")
+    refused(409, "PATCH", "/tables/finds/columns/depth", {"visibility": "team"}, "visibility")
+    server.ok("PATCH", M + "/layers/finds", {"palette": {**by_column, "column": "name"}})
+    refused(409, "PATCH", "/tables/finds/columns/name", {"visibility": "private"}, "visibility")
+    server.ok("DELETE", M + "/layers/sum")
+    for body in (
+        {"visibility": "private", "name": "Both"},
+        {"visibility": "secret"},
+        {"visibility": None},
+    ):
+        assert server.request("PATCH", "/tables/finds/columns/depth", body).status == 422, body
+    assert (
+        server.post(
+            "/tables/finds/columns", {"name": "Must", "required": True, "visibility": "private"}
+        ).status
+        == 422
+    )
+    for path in (M + "/layers/cracks", "/models/sheet"):
+        assert server.request("PATCH", path, {"visibility": "hidden"}).status == 422
+
+
+def test_a_thread_outlives_its_layer(server, viewer, annotator, curator, thread):
+    server.ok("DELETE", f"{M}/layers/{LAYER}")
+    for token, seen in ((viewer, False), (annotator, False), (curator, True)):
+        assert (
+            str(thread)
+            in [
+                str(each["id"])
+                for each in server.get(M + "/comments", token=token).json()["comments"]
+            ]
+        ) == seen
+
+
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()
