@@ -3,6 +3,8 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cctype>
+#include <chrono>
 #include <iostream>
 #include <thread>
 
@@ -25,6 +27,7 @@ namespace strata::cli {
 namespace {
 
 constexpr int kMaxTrashDays = 36500;
+constexpr int kMaxTimeout_s = 3600;
 
 struct ServeOptions {
   DataOptions data;
@@ -33,6 +36,7 @@ struct ServeOptions {
   std::filesystem::path tls_cert, tls_key;
   std::uint64_t gpu_memory = 0, memory = 0;
   int trash_days = net::ServerOptions{}.trash_days;
+  net::Timeouts timeouts;
   bool debug = false;
 };
 
@@ -138,6 +142,19 @@ void raise_descriptor_limit() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+void add_timeout(CLI::App& command, const std::string& name, std::chrono::seconds& timeout,
+                 const std::string& what) {
+  std::string variable = "STRATA_" + name;
+  for (char& letter : variable)
+    letter = letter == '-' ? '_' : static_cast<char>(std::toupper(letter));
+  command
+      .add_option_function<int>(
+          "--" + name, [&timeout](int seconds) { timeout = std::chrono::seconds(seconds); }, what)
+      ->envname(variable)
+      ->check(CLI::Range(1, kMaxTimeout_s))
+      ->default_str(std::to_string(timeout.count()));
+}
+
 int run(ServeOptions options) {
   raise_descriptor_limit();
   auto address = parse_listen(options.listen);
@@ -191,6 +208,7 @@ int run(ServeOptions options) {
   server_options.tls_key = options.tls_key;
   server_options.owner_token = owner_token();
   server_options.trash_days = options.trash_days;
+  server_options.timeouts = options.timeouts;
   auto server = net::Server::start(server_options, store, rooms, jobs, **renderer);
   if (!server) return report(server.error());
 
@@ -268,6 +286,14 @@ Command add_serve(CLI::App& app) {
       ->envname("STRATA_BIN_DAYS")
       ->check(CLI::Range(0, kMaxTrashDays))
       ->capture_default_str();
+  add_timeout(*command, "head-timeout", options->timeouts.head,
+              "Seconds from connecting to the end of the first request head");
+  add_timeout(*command, "idle-timeout", options->timeouts.idle,
+              "Seconds for the next request head, and for the answer to a ping");
+  add_timeout(*command, "stall-timeout", options->timeouts.stall,
+              "Seconds for a body, or an answer, that does not move");
+  add_timeout(*command, "recheck-every", options->timeouts.recheck,
+              "Seconds between checks whether a connected user is still signed in");
   command->add_flag("--gl-debug", options->debug, "Ask the driver for debug messages (slow)");
   return [options] { return run(*options); };
 }

@@ -1,7 +1,10 @@
 #include "net/live/model_events.h"
 
+#include <algorithm>
+
 #include "net/auth/session_recheck.h"
 #include "net/serialization/activity_serialization.h"
+#include "net/transport/server_options.h"
 #include "store/content/models.h"
 #include "store/content/projects.h"
 #include "store/store.h"
@@ -37,7 +40,7 @@ ModelEvents::ModelEvents(const RouteContext& context, const Request& request, co
 
 bool ModelEvents::is_still_welcome() {
   const auto now = std::chrono::steady_clock::now();
-  if (now - checked_ < kCheckEvery) return true;
+  if (now - checked_ < std::min(kCheckEvery, context_.options.timeouts.recheck)) return true;
   checked_ = now;
   const auto model = context_.store.models().find(std::to_string(model_));
   if (!model) return model.error().code != ErrorCode::not_found;

@@ -32,11 +32,8 @@ using asio::ip::tcp;
 using std::chrono::seconds;
 
 constexpr auto kUseResult = asio::as_tuple(asio::use_awaitable);
-constexpr seconds kFirstHead{10};  // from connecting to the end of the first head
-constexpr seconds kIdle{60};       // between requests
 constexpr seconds kEventPause{1}, kEventPing{15};
 constexpr int kMaxEventStreams = 256;
-constexpr seconds kStall{60};  // a body that does not move
 constexpr std::uint32_t kMaxHead = 8192;
 // of a larger body; by itself it is read in the kilobytes of its head
 constexpr std::size_t kReadAtOnce = 64 * 1024;
@@ -90,11 +87,12 @@ std::string rate_policy(const ServerOptions& options) {
          ";w=" + std::to_string(window_s);
 }
 
-// How long a body may take: a minute, and a second more for each kilobyte that came.
+// How long a body may take: a fixed time, and a second more for each kilobyte that came.
 class BodyClock {
  public:
+  explicit BodyClock(seconds at_least) : at_least_(at_least) {}
   bool is_over(std::uint64_t bytes) const {
-    return std::chrono::steady_clock::now() - begin_ > kStall + std::chrono::milliseconds(bytes);
+    return std::chrono::steady_clock::now() - begin_ > at_least_ + std::chrono::milliseconds(bytes);
   }
   static Error problem() {
     return {ErrorCode::timed_out, "Body too slow",
@@ -102,6 +100,7 @@ class BodyClock {
   }
 
  private:
+  const seconds at_least_;
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
@@ -144,7 +143,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       http::request_parser<http::empty_body> head;
       head.header_limit(kMaxHead);
       head.body_limit(boost::none);
-      connection().expires_after(first ? kFirstHead : kIdle);
+      connection().expires_after(first ? timeouts().head : timeouts().idle);
       auto [error, size] = co_await http::async_read_header(stream_, buffer_, head, kUseResult);
       if (error) {
         co_await refuse_head(error);
@@ -158,9 +157,11 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
  private:
+  const Timeouts& timeouts() const { return api_.options().timeouts; }
+
   // False: the connection is over. Who speaks plain HTTP here is told where to go.
   asio::awaitable<bool> start_tls() {
-    connection().expires_after(kFirstHead);
+    connection().expires_after(timeouts().head);
     auto [error, speaks_tls] = co_await beast::async_detect_ssl(connection(), buffer_, kUseResult);
     if (error) co_return false;
     if (speaks_tls) {
@@ -330,7 +331,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   asio::awaitable<bool> send_continue() {
     static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
-    connection().expires_after(kStall);
+    connection().expires_after(timeouts().stall);
     auto [error, size] = co_await asio::async_write(stream_, asio::buffer(kContinue), kUseResult);
     co_return !error;
   }
@@ -340,9 +341,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                                        Request& request, std::uint64_t max_body, Error& problem) {
     http::request_parser<http::string_body> parser(std::move(head));
     parser.body_limit(boost::none);
-    const BodyClock clock;
+    const BodyClock clock(timeouts().stall);
     while (!parser.is_done()) {
-      connection().expires_after(kStall);
+      connection().expires_after(timeouts().stall);
       auto [error, size] = co_await http::async_read_some(stream_, buffer_, parser, kUseResult);
       if (error) {
         problem = body_problem(error);
@@ -377,9 +378,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                  {}};
       co_return false;
     }
-    const BodyClock clock;
+    const BodyClock clock(timeouts().stall);
     while (!parser.is_done()) {
-      connection().expires_after(kStall);
+      connection().expires_after(timeouts().stall);
       auto [error, size] = co_await http::async_read_some(stream_, buffer_, parser, kUseResult);
       if (error) {
         problem = error == boost::system::errc::no_space_on_device
@@ -440,7 +441,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   asio::awaitable<bool> write(http::response<Body>& message) {
     http::response_serializer<Body> serializer(message);
     while (!serializer.is_done()) {
-      connection().expires_after(kStall);
+      connection().expires_after(timeouts().stall);
       auto [error, size] = co_await http::async_write_some(stream_, serializer, kUseResult);
       if (error) co_return false;
     }
@@ -497,7 +498,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     put_head(message, response, true);
     message.chunked(true);
     http::response_serializer<http::empty_body> serializer(message);
-    connection().expires_after(kStall);
+    connection().expires_after(timeouts().stall);
     auto [error, size] = co_await http::async_write_header(stream_, serializer, kUseResult);
     co_return !error;
   }
@@ -605,7 +606,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   asio::awaitable<bool> write_text(std::string text) {
-    connection().expires_after(kStall);
+    connection().expires_after(timeouts().stall);
     auto [error, size] = co_await asio::async_write(stream_, asio::buffer(text), kUseResult);
     co_return !error;
   }
@@ -617,7 +618,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     auto result = std::make_shared<std::promise<bool>>();
     auto future = result->get_future();
     asio::post(stream_.get_executor(), [self = shared_from_this(), data, result] {
-      self->connection().expires_after(kStall);
+      self->connection().expires_after(self->timeouts().stall);
       asio::async_write(self->stream_, asio::buffer(*data),
                         [self, data, result](beast::error_code error, std::size_t) {
                           result->set_value(!error);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -8,6 +9,14 @@
 #include "net/live/live_limits.h"
 
 namespace strata::net {
+
+// How long the server waits for others.
+struct Timeouts {
+  std::chrono::seconds head{10};     // from connecting to the end of the first request head
+  std::chrono::seconds idle{60};     // for the next head, and for the answer to a ping
+  std::chrono::seconds stall{60};    // for a body, or an answer, that does not move
+  std::chrono::seconds recheck{30};  // between checks whether a connected user is still signed in
+};
 
 struct ServerOptions {
   std::string host = "127.0.0.1";            // IPv6 without brackets
@@ -32,6 +41,7 @@ struct ServerOptions {
   double requests_per_second = 1000;  // of one connection
   double request_burst = 2000;
   int trash_days = 30;  // for which deleted things can be restored; 0: they are erased at once
+  Timeouts timeouts;
   LiveLimits live;
 };
 

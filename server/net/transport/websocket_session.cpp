@@ -25,10 +25,7 @@ using std::chrono::seconds;
 
 constexpr auto kUseResult = asio::as_tuple(asio::use_awaitable);
 constexpr seconds kHandshake{10};
-constexpr seconds kIdle{60};     // with pings in between
-constexpr seconds kStalled{60};  // one message that cannot be sent: the client does not read
 constexpr seconds kClosing{5};
-constexpr seconds kRecheck{30};  // whether the person is still signed in
 // Beyond the protocol's limit a message is refused with a problem; beyond this one the connection
 // ends.
 constexpr std::size_t kMaxMessage = 4u << 20;
@@ -97,10 +94,12 @@ class WebSocketSession final : public LiveSocket,
   }
 
  private:
+  const Timeouts& timeouts() const { return connections_->api.options().timeouts; }
+
   void prepare() {
     websocket::stream_base::timeout timeout;
     timeout.handshake_timeout = kHandshake;
-    timeout.idle_timeout = kIdle;
+    timeout.idle_timeout = timeouts().idle;
     timeout.keep_alive_pings = true;
     ws_.set_option(timeout);
     ws_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
@@ -144,7 +143,7 @@ class WebSocketSession final : public LiveSocket,
       };
       const Response answer = co_await on_worker(connections_, ws_.get_executor(), ask);
       if (answer.status == 401) start_close(kClosePolicy, "signed out");
-      recheck_timer_.expires_after(kRecheck);
+      recheck_timer_.expires_after(timeouts().recheck);
       auto [error] = co_await recheck_timer_.async_wait(kUseResult);
       if (error) co_return;
     }
@@ -189,7 +188,7 @@ class WebSocketSession final : public LiveSocket,
 
   void write(asio::const_buffer bytes) {
     writing_ = true;
-    stall_timer_.expires_after(kStalled);
+    stall_timer_.expires_after(timeouts().stall);
     stall_timer_.async_wait([weak = weak_from_this()](beast::error_code error) {
       auto self = weak.lock();
       if (!error && self && self->writing_) self->drop();

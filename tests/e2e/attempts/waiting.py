@@ -1,9 +1,11 @@
 """Who connects and then takes their time: each waits in a thread of its own while the other attempts go on."""
 import concurrent.futures
 import os
+import re
 import resource
 import socket
 import ssl
+import subprocess
 import tempfile
 import time
 
@@ -14,7 +16,10 @@ from support.meshes import folded_grid
 from support.process_memory import PeakGrowth
 from support.strata_server import LONG_S, StrataServer, wait_for
 
-LATE_S = 120  # a busy machine may be late by this, and its clocks may start late
+# The options of the server by which these attempts are made, in seconds: the answers tell what is
+# without them.
+TRIED_WITH = {"head-timeout": 2, "idle-timeout": 4, "stall-timeout": 3, "recheck-every": 1}
+LATE_S = 45  # a busy machine may be late by this; less than what most wait without an option
 CONNECTIONS = 2048
 
 
@@ -44,18 +49,28 @@ def connected(server, first=b""):
     return link
 
 
-def cut(section, what, took, limit_s, keeps):
-    answer = (
-        f"cut off after {limit_s} s"
-        if limit_s / 2 <= took <= limit_s + LATE_S
-        else f"after {took:.0f} s"
-    )
+def without_option(name):
+    """What the program says to do where an option is not given."""
+    told = subprocess.run(
+        [os.environ["STRATA_BINARY"], "serve", "--help"], capture_output=True, text=True, check=True
+    ).stdout
+    return int(re.search(rf"--{name} .*?\[(\d+)\]", told, re.DOTALL)[1])
+
+
+def options():
+    return [word for name, s in TRIED_WITH.items() for word in (f"--{name}", str(s))]
+
+
+def cut(section, what, took, option, limit_s, keeps):
+    """`limit_s` is documented, and holds without the option."""
+    tried_s = TRIED_WITH[option]
+    is_cut = tried_s / 2 <= took <= tried_s + LATE_S and without_option(option) == limit_s
     section.tried(
         what,
-        answer,
+        f"cut off after {limit_s} s" if is_cut else f"after {took:.0f} s",
         f"cut off after {limit_s} s",
         keeps,
-        f"{round(took)} s (held to {limit_s + LATE_S})",
+        f"{round(took)} s with `--{option} {tried_s}` (held to {tried_s + LATE_S})",
     )
 
 
@@ -204,20 +219,26 @@ def allow_descriptors(count):
     return True
 
 
+def make_sheet(server):
+    server.import_model(
+        folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048
+    )
+    server.ok("POST", M + "/layers", {"name": "Marks", "type": "u8"})
+    server.ok(
+        "POST",
+        M + "/layers/marks/edits",
+        {"op": "fill", "mode": "where", "where": "true", "value": 1},
+    )
+
+
 def plain(table):
     section = table.section("Slow and idle connections")
     may_crowd = allow_descriptors(2 * CONNECTIONS + 1000)
-    with StrataServer() as server:
-        server.import_model(
-            folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048
-        )
-        server.ok("POST", M + "/layers", {"name": "Marks", "type": "u8"})
-        server.ok(
-            "POST",
-            M + "/layers/marks/edits",
-            {"op": "fill", "mode": "where", "where": "true", "value": 1},
-        )
-        crowded = crowd(server) if may_crowd else None
+    # What must last while others are tried, at one without the options.
+    with StrataServer() as patient, StrataServer(options=options()) as server:
+        for each in (patient, server):
+            make_sheet(each)
+        crowded = crowd(patient) if may_crowd else None
         kept_alive = b"GET /livez HTTP/1.1\r\nHost: x\r\n\r\n"
         with concurrent.futures.ThreadPoolExecutor(16) as hands:
             silent = hands.submit(lambda: until_closed(connected(server)))
@@ -230,7 +251,7 @@ def plain(table):
                 for _ in range(3)
             ]
             second = hands.submit(
-                lambda: until_closed(connected(server, kept_alive + b"GET / HT"), 5, b"T")
+                lambda: until_closed(connected(server, kept_alive + b"GET / HT"), 1, b"T")
             )
             body = hands.submit(
                 lambda: until_closed(connected(server, post(server, "/login", 1000) + b"{"))
@@ -238,14 +259,15 @@ def plain(table):
             refused = hands.submit(
                 lambda: until_closed(connected(server, post(server, "/users", 1000)))
             )
-            no_pong, of_age, drops, readers = (
-                hands.submit(each, server)
-                for each in (deaf, expired, drops_of_a_body, slow_readers)
+            no_pong, of_age, drops = (
+                hands.submit(each, server) for each in (deaf, expired, drops_of_a_body)
             )
+            readers = hands.submit(slow_readers, patient)
             cut(
                 section,
                 "A connection that says nothing",
                 silent.result(),
+                "head-timeout",
                 10,
                 "10 s from connecting to the end of the first head",
             )
@@ -253,6 +275,7 @@ def plain(table):
                 section,
                 "A head of which a line comes each second (slow-loris)",
                 max(head.result() for head in heads),
+                "head-timeout",
                 10,
                 "10 s from connecting to the end of the first head, however it trickles",
             )
@@ -260,14 +283,23 @@ def plain(table):
                 section,
                 "A second head that comes letter by letter on a connection that was served",
                 second.result(),
+                "idle-timeout",
                 60,
                 "60 s from an answer to the end of the next head",
             )
-            cut(section, "A body that stops", body.result(), 60, "60 s without a byte")
+            cut(
+                section,
+                "A body that stops",
+                body.result(),
+                "stall-timeout",
+                60,
+                "60 s without a byte",
+            )
             cut(
                 section,
                 "A body that stops, of a call that was refused",
                 refused.result(),
+                "stall-timeout",
                 60,
                 "60 s without a byte",
             )
@@ -275,6 +307,7 @@ def plain(table):
                 section,
                 "200 bodies that come a byte a second",
                 drops.result(),
+                "stall-timeout",
                 60,
                 "a body has a minute, and a second more for each kilobyte; others are served meanwhile",
             )
@@ -285,18 +318,20 @@ def plain(table):
                 "4 streams at once: **further downloads get 503** until one ends, or does not move for 60 s; all else is served",
             )
             code, took = of_age.result()
-            assert took <= 45 + LATE_S, took
+            held_s = TRIED_WITH["recheck-every"] + 15 + LATE_S
+            assert took <= held_s and without_option("recheck-every") == 30, took
             section.tried(
                 "A live connection whose token comes of age",
                 code,
                 1008,
                 "asked again every 30 s, and what is remembered is 10 s old at most",
-                f"{round(took)} s (held to {45 + LATE_S})",
+                f"{round(took)} s with `--recheck-every {TRIED_WITH['recheck-every']}` (held to {held_s})",
             )
             cut(
                 section,
                 "A live connection that answers no ping",
                 no_pong.result(),
+                "idle-timeout",
                 60,
                 "pinged after 30 s, ended after 60",
             )
@@ -310,8 +345,9 @@ def plain(table):
                 f"{CONNECTIONS} connections in all, **none by address** (see above)",
                 f"{round(took)} s (held to {10 + LATE_S}); {memory}",
             )
-        assert server.get("//livez").status == 200 and server.stop() == 0
-        server.assert_clean_log()
+        for each in (patient, server):
+            assert each.get("//livez").status == 200 and each.stop() == 0
+            each.assert_clean_log()
 
 
 def tls(table):
@@ -319,13 +355,14 @@ def tls(table):
     with tempfile.TemporaryDirectory(prefix="strata-attempts-", dir="/tmp") as folder:
         os.chmod(folder, 0o755)
         chain, key = make_certificate(folder, "attempts")
-        with StrataServer(options=["--tls-cert", chain, "--tls-key", key]) as server:
+        with StrataServer(options=["--tls-cert", chain, "--tls-key", key, *options()]) as server:
             server.tls = trusting(chain)
             took = half_open_tls(server)
             cut(
                 section,
                 "A connection that says nothing, half a greeting, or a greeting and nothing more",
                 max(took),
+                "head-timeout",
                 10,
                 "10 s for the handshake",
             )

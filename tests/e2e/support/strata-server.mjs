@@ -16,6 +16,7 @@ import { createInterface } from "node:readline";
 
 export const kLong_ms = 120_000;
 
+const kOften = ["--recheck-every", "1"]; // so that tests need not wait for it
 const kInMemory = "/dev/shm";
 const kRoom_bytes = 8 * 2 ** 30; // for several tests at once, of which one writes gigabytes
 
@@ -70,7 +71,7 @@ export class StrataServer {
     this.#fill();
     this.process = spawn(
       this.binary,
-      ["serve", "--data", this.data, "--listen", `127.0.0.1:${this.port}`],
+      ["serve", "--data", this.data, "--listen", `127.0.0.1:${this.port}`, ...kOften],
       {
         env: { ...process.env, STRATA_OWNER_TOKEN: this.token },
         stdio: ["ignore", "pipe", "pipe"],

@@ -20,6 +20,7 @@ from .contract import Contract
 
 LONG_S = 180
 IN_MEMORY = "/dev/shm"
+OFTEN = ["--recheck-every", "1"]  # so that tests need not wait for it
 ROOM_BYTES = 8 << 30  # for several tests at once, of which one writes gigabytes
 
 # Calls that tokens for scripts may not make, the owner's among them once an administrator has a
@@ -147,6 +148,7 @@ class StrataServer:
                 self.data,
                 "--listen",
                 "127.0.0.1:0",
+                *OFTEN,
                 *self.options,
             ],
             stdout=subprocess.PIPE,
