@@ -3,7 +3,6 @@ import io
 import urllib.parse
 
 import pytest
-
 from support.meshes import folded_grid
 from support.missing import missing
 

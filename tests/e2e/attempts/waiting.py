@@ -54,7 +54,7 @@ def without_option(name):
     told = subprocess.run(
         [os.environ["STRATA_BINARY"], "serve", "--help"], capture_output=True, text=True, check=True
     ).stdout
-    return int(re.search(rf"--{name} .*?\[(\d+)\]", told, re.DOTALL)[1])
+    return int(re.search(rf"--{name} .*=(\d+) ", told)[1])
 
 
 def options():

@@ -3,15 +3,11 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer } from "../support/strata-server.mjs";
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
-
-const [ada, phone] = [await Browser.open(), await Browser.open(kPhone)];
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 
 const shot = async ({ page }, name) => {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -31,9 +27,13 @@ const post = async ({ token }, path, body) => {
   return answer.json();
 };
 
-try {
+let ada, phone, server, bea, id, bounds, place, thread;
+
+test.beforeAll(async () => {
+  [ada, phone] = [await Browser.open(), await Browser.open(kPhone)];
+  server = new StrataServer({ demo: true });
   await server.start();
-  const bea = await server.add_person("bea", "annotator");
+  bea = await server.add_person("bea", "annotator");
   await server.json("POST", `${kBase}/layers`, {
     name: "Finds",
     kind: "database",
@@ -43,19 +43,16 @@ try {
     palette: { mode: "categorical", points: [{ at: 1, color: "#2c6a63" }] },
   });
   await server.json("POST", "/tables/finds/records", { values: { name: "Handle" } });
-  const { id, bounds } = await server.json("PATCH", kBase, {
+  ({ id, bounds } = await server.json("PATCH", kBase, {
     scale_verified: true,
     credit: "A museum",
-  });
-  const place = [
-    bounds.max[0],
-    (bounds.min[1] + bounds.max[1]) / 2,
-    (bounds.min[2] + bounds.max[2]) / 2,
-  ];
+  }));
+  place = [bounds.max[0], (bounds.min[1] + bounds.max[1]) / 2, (bounds.min[2] + bounds.max[2]) / 2];
   await ada.sign_in(server, await server.add_person("ada", "curator"));
   await phone.sign_in(server, await server.add_person("carl", "viewer"));
+});
 
-  say("the panel tells what was done, the newest first");
+test("the panel tells what was done, the newest first", async () => {
   await ada.page.goto(`${server.url}/models/${id}`);
   await ada.drawn();
   await panel(ada).getByRole("button", { name: "Activity" }).click();
@@ -64,8 +61,9 @@ try {
   await line(ada, "Handle").waitFor();
   const first = await panel(ada).locator("[data-activity]").first().textContent();
   assert.match(first, /changed the model/);
+});
 
-  say("what others do comes by itself, a line for what is done in one go");
+test("what others do comes by itself, a line for what is done in one go", async () => {
   for (let i = 0; i < 3; ++i)
     await post(bea, `${kBase}/layers/finds/edits`, {
       op: "fill",
@@ -75,14 +73,15 @@ try {
     });
   await line(ada, "3 times").waitFor();
   assert.match(await line(ada, "3 times").textContent(), /bea\s*filled in Finds/);
-  const thread = await post(bea, `${kBase}/comments`, {
+  thread = await post(bea, `${kBase}/comments`, {
     text: "Is this the rim?",
     position: place,
   });
   await line(ada, "Is this the rim?").waitFor();
   await shot(ada, "activity");
+});
 
-  say("a line leads to its comment, record or layer");
+test("a line leads to its comment, record or layer", async () => {
   await line(ada, "Is this the rim?").click();
   await ada.page.locator("strata-comment-card section", { hasText: "Is this the rim?" }).waitFor();
   assert.match(ada.page.url(), new RegExp(`#comment=${thread.id}$`));
@@ -90,8 +89,9 @@ try {
   await line(ada, "Handle").click();
   await ada.page.locator("strata-table-panel").getByText("Handle").first().waitFor();
   await shot(ada, "activity_record");
+});
 
-  say("earlier lines are shown when asked for, and those of the whole project");
+test("earlier lines are shown when asked for, and those of the whole project", async () => {
   for (let i = 0; i < 60; ++i)
     await post(bea, `${kBase}/comments`, { text: `Note ${i}`, position: place });
   await line(ada, "Note 59").waitFor();
@@ -103,8 +103,9 @@ try {
   await line(ada, "filled in").first().waitFor();
   await panel(ada).getByRole("radio", { name: "Whole project" }).click();
   await line(ada, "Note 59").waitFor();
+});
 
-  say("it can be read and used on a phone");
+test("it can be read and used on a phone", async () => {
   await phone.page.goto(`${server.url}/models/${id}`);
   await phone.drawn();
   const shown = panel(phone).getByRole("button", { name: "Activity" });
@@ -113,17 +114,16 @@ try {
   await shown.tap();
   await line(phone, "Note 59").scrollIntoViewIfNeeded();
   await shot(phone, "activity_phone");
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   for (const who of [ada, phone]) who.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  for (const [name, who] of Object.entries({ ada, phone }))
-    await shot(who, `activity_failed_${name}`).catch(() => {});
-  throw error;
-} finally {
-  for (const who of [ada, phone]) await who.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const who of [ada, phone]) await who?.close();
+  await server?.remove();
+});

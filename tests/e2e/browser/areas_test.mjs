@@ -3,15 +3,10 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kMagenta = "#ff00ffff"; // nothing on the pot has this hue
-
-const browser = await Browser.open();
-const { page } = browser;
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 
 const base = "/models/demo-pot";
 const edits = async () => (await server.json("GET", `${base}/layers/test/edits?limit=1000`)).total;
@@ -61,11 +56,19 @@ async function taken_back(what) {
 }
 
 let cameras = 0; // that were sent: the number that a picture has may be older
-page.on("websocket", (socket) =>
-  socket.on("framesent", ({ payload }) => (cameras += JSON.parse(payload).op === "camera" ? 1 : 0)),
-);
 
-try {
+let browser, page, server, corners, now;
+
+test.beforeAll(async () => {
+  browser = await Browser.open();
+  ({ page } = browser);
+  server = new StrataServer({ demo: true });
+  page.on("websocket", (socket) =>
+    socket.on(
+      "framesent",
+      ({ payload }) => (cameras += JSON.parse(payload).op === "camera" ? 1 : 0),
+    ),
+  );
   await server.start();
   const palette = { mode: "categorical", points: [{ at: 1, color: kMagenta, label: "Test" }] };
   await server.json("POST", `${base}/layers`, {
@@ -83,9 +86,10 @@ try {
   const later = page.getByRole("button", { name: "Decide later" });
   if (await later.isVisible()) await later.click();
   await button("Paint on Test").click();
+});
 
-  say("a polygon is closed with Enter, and its inside is painted");
-  const corners = [
+test("a polygon is closed with Enter, and its inside is painted", async () => {
+  corners = [
     [0.44, 0.5],
     [0.56, 0.52],
     [0.54, 0.68],
@@ -107,8 +111,9 @@ try {
   await painted(await area_px(corners), "the polygon");
   assert.equal(cameras, held, "the camera moved while the outline was drawn");
   await taken_back("the polygon");
+});
 
-  say("a click on the first corner closes it; Backspace takes a corner back, Escape all");
+test("a click on the first corner closes it; Backspace takes a corner back, Escape all", async () => {
   await click(...corners, [0.1, 0.1]);
   await page.keyboard.press("Backspace");
   await click(corners[0]);
@@ -120,8 +125,9 @@ try {
   await browser.saved();
   assert.equal(await page.locator("strata-stage svg.over polygon").count(), 0);
   assert.equal(await edits(), known, "an outline that was given up painted");
+});
 
-  say("a lasso paints what the drag went round");
+test("a lasso paints what the drag went round", async () => {
   await page.keyboard.press("l");
   const round = Array.from({ length: 25 }, (_, i) => [
     0.5 + 0.06 * Math.cos(i / 4),
@@ -130,8 +136,9 @@ try {
   await browser.drag(round);
   await painted(await area_px(round.slice(0, 25)), "the lasso");
   await shot("lasso");
+});
 
-  say("what is connected is erased by one click, and what is not stays");
+test("what is connected is erased by one click, and what is not stays", async () => {
   await page.keyboard.press("b");
   await browser.drag([
     [0.35, 0.6],
@@ -153,8 +160,9 @@ try {
   await click([0.02, 0.02]);
   await page.getByText("There is no surface at this place").waitFor();
   await page.keyboard.press("b");
+});
 
-  say("a condition over other layers; a wrong one says where it is wrong");
+test("a condition over other layers; a wrong one says where it is wrong", async () => {
   await button("Fill where…").click();
   const condition = page.getByLabel("Condition");
   await condition.fill("cracks >");
@@ -175,10 +183,11 @@ try {
   // closed once it is durable
   await page.getByRole("heading", { name: /where…/ }).waitFor({ state: "hidden" });
   const cracks = (await statistics("cracks")).area_m2;
-  const now = (await statistics("test")).area_m2;
+  now = (await statistics("test")).area_m2;
   assert.ok(now > cracks * 0.9, `${now} m² for cracks of ${cracks} m²`);
+});
 
-  say("the whole piece under a point is the whole pot, and that is one step back");
+test("the whole piece under a point is the whole pot, and that is one step back", async () => {
   await page.keyboard.press("g");
   await radio("Paint").click();
   await radio("Whole piece").click();
@@ -189,16 +198,16 @@ try {
   await page.keyboard.press("Control+z");
   await browser.saved();
   assert.ok(Math.abs((await statistics("test")).area_m2 / now - 1) < 1e-9);
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   browser.assert_no_complaints(["422"]);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  await shot("areas");
-  throw error;
-} finally {
-  await browser.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  await browser?.close();
+  await server?.remove();
+});

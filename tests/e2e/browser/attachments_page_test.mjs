@@ -6,23 +6,13 @@ import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { encode_png } from "../support/png.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
-
-const browser = await Browser.open();
-const { page } = browser;
-const server = new StrataServer({ demo: true });
-const folder = mkdtempSync(join(tmpdir(), "strata-photos-"));
-let step = "start";
-const say = (text) => console.log((step = text));
 
 const base = "/models/demo-pot";
 const T = "/tables/finds";
 const button = (name) => page.getByRole("button", { name, exact: true });
-const panel = page.locator("strata-table-panel");
-const form = page.locator("strata-record-dialog");
-const photos = page.locator("strata-photos-dialog");
-const card = page.locator("strata-record-card");
 const shot = async (name) => {
   if (process.env.STRATA_TEST_OUTPUT)
     await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
@@ -47,8 +37,6 @@ const shown = (images) =>
       ),
     "thumbnails to be drawn",
   );
-
-const glance = page.locator("strata-hover-card section");
 let mouse = [0, 0];
 /** In shares of the stage; on the way it comes over something else. */
 async function rest_at(x, y) {
@@ -72,7 +60,19 @@ async function lies_beside() {
   );
 }
 
-try {
+let browser, page, server, folder, panel, form, photos, card, glance, asked;
+
+test.beforeAll(async () => {
+  browser = await Browser.open();
+  ({ page } = browser);
+  server = new StrataServer({ demo: true });
+  folder = mkdtempSync(join(tmpdir(), "strata-photos-"));
+  panel = page.locator("strata-table-panel");
+  form = page.locator("strata-record-dialog");
+  photos = page.locator("strata-photos-dialog");
+  card = page.locator("strata-record-card");
+
+  glance = page.locator("strata-hover-card section");
   await server.start();
   await server.json("POST", `${base}/layers`, {
     name: "Finds",
@@ -111,8 +111,9 @@ try {
   await button("Paint on Finds").click();
   await page.keyboard.press("t");
   await panel.getByText("3 records").waitFor();
+});
 
-  say("files are added in the record's form, and sent when it is saved");
+test("files are added in the record's form, and sent when it is saved", async () => {
   await panel.getByRole("rowheader", { name: "1", exact: true }).click();
   await button("Edit the record").click();
   await form
@@ -134,8 +135,9 @@ try {
     ["report.pdf", "reports"],
     ["south.png", "photos"],
   ]);
+});
 
-  say("the table shows pictures small, and how many files there are");
+test("the table shows pictures small, and how many files there are", async () => {
   await wait_for(
     async () => (await panel.locator("img.thumbnail").count()) === 2,
     "two thumbnails",
@@ -143,8 +145,9 @@ try {
   await shown(panel.locator("img.thumbnail"));
   await panel.getByText("1 file", { exact: true }).waitFor();
   await shot("files-in-table");
+});
 
-  say("a file that is no picture is refused by its column, and the form stays");
+test("a file that is no picture is refused by its column, and the form stays", async () => {
   await panel.getByRole("rowheader", { name: "2", exact: true }).click();
   await button("Edit the record").click();
   await form
@@ -157,8 +160,9 @@ try {
   await shot("files-refused");
   await button("Cancel").click();
   assert.deepEqual(await files(2), []);
+});
 
-  say("a file that is taken away comes back by undo");
+test("a file that is taken away comes back by undo", async () => {
   await panel.getByRole("rowheader", { name: "1", exact: true }).click();
   await button("Edit the record").click();
   await shown(form.locator("figure img"));
@@ -167,21 +171,24 @@ try {
   await wait_for(async () => (await files(1)).length === 2, "one file less");
   await button("Take back my last change of the table").click();
   await wait_for(async () => (await files(1)).length === 3, "the file to be back");
+});
 
-  say("the legend has the records that there are");
+test("the legend has the records that there are", async () => {
   assert.deepEqual(
     await page.locator("strata-layer-panel .legend-classes").first().locator("li").allInnerTexts(),
     ["SU 1", "SU 2", "SU 3"],
   );
+});
 
-  say("a click on the surface, while turning, shows the record with its picture");
+test("a click on the surface, while turning, shows the record with its picture", async () => {
   const box = await browser.stage_box();
   await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
   await card.getByText("SU 1").first().waitFor();
   await shown(card.locator("img"));
   await shot("card-with-picture");
+});
 
-  say("a mouse that rests on a record sees it at a glance, beside the pointer");
+test("a mouse that rests on a record sees it at a glance, beside the pointer", async () => {
   await button("Close the record").click();
   await server.json("POST", `${base}/layers/finds/edits`, {
     op: "fill",
@@ -189,7 +196,7 @@ try {
     mode: "where",
     where: "x > 0",
   });
-  const asked = [];
+  asked = [];
   page.on(
     "request",
     (request) =>
@@ -206,8 +213,9 @@ try {
   await lies_beside();
   assert.equal(await glance.evaluate((element) => getComputedStyle(element).pointerEvents), "none");
   assert.equal(await page.locator("strata-hover-card").getAttribute("aria-hidden"), "true");
+});
 
-  say("until the mouse rests on another, something is pressed or the view moves");
+test("until the mouse rests on another, something is pressed or the view moves", async () => {
   await rest_at(0.62, 0.62);
   await glance.getByText("SU 2", { exact: true }).waitFor();
   await page.keyboard.press("Escape");
@@ -248,8 +256,9 @@ try {
   }
   assert.equal(asked.filter((key) => key === "1").length, 1, "a record is asked for once");
   await page.keyboard.press("Home");
+});
 
-  say("a folder of photos finds its records by their names");
+test("a folder of photos finds its records by their names", async () => {
   await button("More about the table").click();
   const chooser = page.waitForEvent("filechooser");
   await page.getByRole("menuitem", { name: "Add photos by their names…" }).click();
@@ -275,19 +284,17 @@ try {
     async () => (await panel.locator("img.thumbnail").count()) === 4,
     "their thumbnails in the table",
   );
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   browser.assert_no_complaints(["415", "422"]);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(
-    `failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`,
-  );
-  await shot("attachments-failed");
-  throw error;
-} finally {
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
   rmSync(folder, { recursive: true, force: true });
-  await browser.close();
-  await server.remove();
-}
+  await browser?.close();
+  await server?.remove();
+});

@@ -4,25 +4,14 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kMany = 10_000;
 
-const browser = await Browser.open();
-const { page } = browser;
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
-
 const base = "/models/demo-pot";
 const T = "/tables/units";
 const button = (name) => page.getByRole("button", { name, exact: true });
-const panel = page.locator("strata-table-panel");
-const grid = panel.getByRole("grid");
-const bubble = panel.locator(".bubble");
-const dialog = page.locator(
-  "strata-record-dialog, strata-delete-record-dialog, strata-csv-dialog, strata-column-dialog",
-);
 const record = async (key) => (await server.json("GET", `${T}/records/${key}`)).values;
 const shot = async (name) => {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -76,7 +65,18 @@ async function menu(label, item) {
   await page.getByRole("menuitem", { name: item }).click();
 }
 
-try {
+let browser, page, server, panel, grid, bubble, dialog, let_names_go, are_names;
+
+test.beforeAll(async () => {
+  browser = await Browser.open();
+  ({ page } = browser);
+  server = new StrataServer({ demo: true });
+  panel = page.locator("strata-table-panel");
+  grid = panel.getByRole("grid");
+  bubble = panel.locator(".bubble");
+  dialog = page.locator(
+    "strata-record-dialog, strata-delete-record-dialog, strata-csv-dialog, strata-column-dialog",
+  );
   await server.start();
   const { project } = await server.json("GET", base);
   await server.json("POST", `/projects/${project}/tables`, {
@@ -110,9 +110,9 @@ try {
     resolution: 2048,
   });
   // The names of the records to choose from come only after something was typed.
-  let let_names_go;
+
   const typed = new Promise((resolve) => (let_names_go = resolve));
-  const are_names = (url) =>
+  are_names = (url) =>
     url.pathname.endsWith("/records") && url.searchParams.get("limit") === "1000";
   await page.route(are_names, async (route) => {
     await typed;
@@ -124,8 +124,9 @@ try {
   const later = page.getByRole("button", { name: "Decide later" });
   if (await later.isVisible()) await later.click();
   await button("Paint on Units").click();
+});
 
-  say("T opens the table; only the rows in sight are drawn, of ten thousand");
+test("T opens the table; only the rows in sight are drawn, of ten thousand", async () => {
   await page.keyboard.press("t");
   await panel.getByText("10,000 records").waitFor();
   await cell(1, "Code").getByText("SU 1", { exact: true }).waitFor();
@@ -137,8 +138,9 @@ try {
   await page.keyboard.press("Control+Home");
   await panel.getByText("SU 1", { exact: true }).waitFor();
   await shot("table");
+});
 
-  say("a click on a column's name sorts by it, again turns the order round");
+test("a click on a column's name sorts by it, again turns the order round", async () => {
   const depth = panel.getByRole("columnheader", { name: /^Depth/ });
   await depth.getByRole("button", { name: /Depth/ }).first().click();
   await depth.getByRole("button", { name: /Depth/ }).first().click();
@@ -151,8 +153,9 @@ try {
   );
   await depth.getByRole("button", { name: /Depth/ }).first().click();
   await cell(1, "Code").getByText("SU 1", { exact: true }).waitFor();
+});
 
-  say("cells are written into by kind");
+test("cells are written into by kind", async () => {
   await write(1, "Depth", "2.5");
   await stored(1, "depth", 2.5);
   await write(1, "Note", "Charcoal", "Tab"); // on to the next cell, which is a relation
@@ -184,8 +187,9 @@ try {
   await page.keyboard.press("ArrowUp");
   await page.keyboard.press("Delete");
   await stored(2, "note", null);
+});
 
-  say("what is emptied while it is still being saved is empty in the end");
+test("what is emptied while it is still being saved is empty in the end", async () => {
   const version = async () => (await server.json("GET", `${T}/records/2`)).version;
   const before = await version();
   await wait_for(
@@ -214,8 +218,9 @@ try {
   );
   await page.unroute("**/records/2");
   await stored(2, "note", null);
+});
 
-  say("what is no value is said at the cell, by the page or by the server");
+test("what is no value is said at the cell, by the page or by the server", async () => {
   await write(2, "Depth", "deep");
   await bubble.getByText("Give a number, with a point before its decimals.").waitFor();
   await page.keyboard.press("Escape");
@@ -229,16 +234,18 @@ try {
   await page.keyboard.press("Enter");
   await stored(2, "period", "1560~");
   assert.equal(await bubble.count(), 0);
+});
 
-  say("Ctrl+Z takes back what this person wrote into the table, and brings it back");
+test("Ctrl+Z takes back what this person wrote into the table, and brings it back", async () => {
   await page.keyboard.press("Control+z");
   await stored(2, "period", "1501");
   await cell(2, "Period").getByText("1501", { exact: true }).waitFor();
   await page.keyboard.press("Control+Shift+z");
   await stored(2, "period", "1560~");
   await cell(2, "Period").getByText("1560~").waitFor();
+});
 
-  say("what others do is seen at once; of two who write into one cell the second is asked");
+test("what others do is seen at once; of two who write into one cell the second is asked", async () => {
   const anna = (await server.add_person("anna", "annotator")).token;
   const as_anna = async (method, path, body) => {
     const answer = await fetch(`${server.url}/api/v1${path}`, {
@@ -269,8 +276,9 @@ try {
   await button("Keep theirs").click();
   await wait_for(async () => (await bubble.count()) === 0, "the question to go");
   await stored(3, "note", "anna's again");
+});
 
-  say("a new record by its form, with what is wrong at the field");
+test("a new record by its form, with what is wrong at the field", async () => {
   await button("New record").click();
   await dialog.getByLabel("Depth").fill("-1");
   await dialog.getByLabel("Code").fill("SU 1");
@@ -286,8 +294,9 @@ try {
   await cell(kMany + 1, "Code")
     .getByText("Pit")
     .waitFor(); // brought into sight, and chosen
+});
 
-  say("the chosen record is painted with, and its area is seen in the table");
+test("the chosen record is painted with, and its area is seen in the table", async () => {
   await button("Paint with it").click();
   await browser.drag([
     [0.45, 0.6],
@@ -298,10 +307,9 @@ try {
   await cell(kMany + 1, "Area")
     .getByText(/mm²|cm²/)
     .waitFor();
+});
 
-  say(
-    "a click with the pick tool shows the record's card, with its form and its row; the brush finds records by name",
-  );
+test("a click with the pick tool shows the record's card, with its form and its row; the brush finds records by name", async () => {
   await page.getByRole("combobox", { name: "Record to paint, by its name" }).fill("SU 55");
   await page.getByRole("option", { name: /^SU 55 55$/ }).click();
   await browser.drag([
@@ -336,8 +344,9 @@ try {
   await cell(55, "Code").click();
   await page.keyboard.press("Control+End");
   await cell(kMany + 1, "Key").click();
+});
 
-  say("a painted record that is to be deleted asks what becomes of that");
+test("a painted record that is to be deleted asks what becomes of that", async () => {
   await button("Delete the record").click();
   await button("Delete").click();
   await dialog.getByText(/on Units of Demo pot/).waitFor();
@@ -355,8 +364,9 @@ try {
     "the largest area first",
   );
   await panel.getByRole("columnheader", { name: /Area/ }).getByRole("button").first().click();
+});
 
-  say("a CSV is looked at first: nothing is written while a row is wrong");
+test("a CSV is looked at first: nothing is written while a row is wrong", async () => {
   await drop_csv("finds.csv", "code,depth,note\nSU 1,9,changed\nNew 1,deep,\nNew 1,2,\n");
   await dialog.getByText('"Depth" holds finite numbers.').waitFor();
   await shot("csv-report");
@@ -374,10 +384,9 @@ try {
     menu("More about the table", /^Save as CSV$/),
   ]);
   assert.equal(download.suggestedFilename(), "units.csv");
+});
 
-  say(
-    "columns come, get names in other languages, change their kind and tell what that loses, and go",
-  );
+test("columns come, get names in other languages, change their kind and tell what that loses, and go", async () => {
   await menu("More about the table", "New column…");
   await dialog.getByLabel("Name").fill("Bags");
   await dialog.getByLabel("Holds").selectOption("integer");
@@ -421,8 +430,9 @@ try {
     async () => (await panel.getByRole("columnheader", { name: /^Finds bags/ }).count()) === 0,
     "the column to go",
   );
+});
 
-  say("on a phone, too");
+test("on a phone, too", async () => {
   await page.setViewportSize({ width: 400, height: 800 });
   await shot("table-phone");
   await page.setViewportSize({ width: 1280, height: 800 });
@@ -430,18 +440,16 @@ try {
   await page.keyboard.press("Escape");
   await page.keyboard.press("t");
   assert.equal(await panel.count(), 0);
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   browser.assert_no_complaints(["422", "409", "412"]);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(
-    `failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`,
-  );
-  await shot("tables-failed");
-  throw error;
-} finally {
-  await browser.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  await browser?.close();
+  await server?.remove();
+});

@@ -4,20 +4,13 @@ import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const output = process.env.STRATA_TEST_OUTPUT;
 if (output) mkdirSync(output, { recursive: true });
-
-const carl = await Browser.open(); // a curator at a desk
-const phone = await Browser.open({ ...kPhone, colorScheme: "dark" }); // an administrator
-const bea = await Browser.open({ viewport: { width: 1180, height: 820 } }); // an annotator
-const everybody = { carl, phone, bea };
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 
 const shoot = async ({ page }, name) => {
   if (output) await page.screenshot({ path: join(output, `bin_${name}.png`) });
@@ -41,9 +34,16 @@ const confirm = async ({ page }, name) => {
   await question.getByRole("button", { name, exact: true }).click();
 };
 
-try {
+let carl, phone, bea, everybody, server, pot, before, layer, name;
+
+test.beforeAll(async () => {
+  carl = await Browser.open(); // a curator at a desk
+  phone = await Browser.open({ ...kPhone, colorScheme: "dark" }); // an administrator
+  bea = await Browser.open({ viewport: { width: 1180, height: 820 } }); // an annotator
+  everybody = { carl, phone, bea };
+  server = new StrataServer({ demo: true });
   await server.start();
-  const [pot] = (await server.json("GET", "/models")).models;
+  [pot] = (await server.json("GET", "/models")).models;
   await server.json("POST", `${kBase}/layers`, {
     name: "Finds",
     kind: "database",
@@ -56,11 +56,12 @@ try {
   await carl.sign_in(server, await server.add_person("carl", "curator"));
   await phone.sign_in(server, await server.add_person("pia", "administrator"));
   await bea.sign_in(server, await server.add_person("bea", "annotator"));
+});
 
-  say("a layer that was deleted comes back by Undo");
-  const before = await layers_of();
-  const [layer] = (await server.json("GET", `${kBase}/layers`)).layers;
-  const { name } = layer;
+test("a layer that was deleted comes back by Undo", async () => {
+  before = await layers_of();
+  [layer] = (await server.json("GET", `${kBase}/layers`)).layers;
+  ({ name } = layer);
   await carl.page.goto(`${server.url}/models/${pot.id}`);
   await carl.drawn();
   await menu(carl, `Options for ${name}`, "Delete…");
@@ -76,8 +77,9 @@ try {
   await notice(carl, `“${name}” is back.`).waitFor();
   await button(carl, `Options for ${name}`).waitFor();
   assert.deepEqual(await layers_of(), before);
+});
 
-  say("the Bin lists it, and gives it back by keys");
+test("the Bin lists it, and gives it back by keys", async () => {
   await menu(carl, `Options for ${name}`, "Delete…");
   await confirm(carl, "Delete");
   await notice(carl, `The layer “${name}” was deleted.`).waitFor();
@@ -94,8 +96,9 @@ try {
   assert.deepEqual(await layers_of(), before);
   await carl.page.keyboard.press("Escape");
   await wait_for(async () => (await bin(carl).count()) === 0, "the Bin to close");
+});
 
-  say("annotators find records in it, and nothing else");
+test("annotators find records in it, and nothing else", async () => {
   await server.request("DELETE", `${kBase}/layers/${layer.id}`);
   await bea.page.goto(`${server.url}/models/${pot.id}`);
   await bea.drawn();
@@ -122,8 +125,9 @@ try {
   await shoot(bea, "records");
   await button(bea, "Restore Handle").click();
   await bin(bea).getByText("“Handle” is back.").waitFor();
+});
 
-  say("a model comes back, too, and its project waits for it");
+test("a model comes back, too, and its project waits for it", async () => {
   await phone.page.goto(`${server.url}/projects/${pot.project}`);
   await phone.page.getByRole("link", { name: "Open Demo pot" }).waitFor();
   await pictured(phone);
@@ -149,8 +153,9 @@ try {
   await button(phone, "Restore Demo pot").tap();
   await bin(phone).getByText("“Demo pot” is back.").waitFor();
   await bin(phone).getByRole("button", { name: "Close" }).last().tap();
+});
 
-  say("for ever is asked before, and is for ever");
+test("for ever is asked before, and is for ever", async () => {
   await phone.page.goto(`${server.url}/projects/${pot.project}`);
   await menu(phone, "Options for Demo", "Bin…");
   await entry(phone, name).waitFor();
@@ -161,17 +166,16 @@ try {
   await bin(phone).getByText(`“${name}” was deleted for ever.`).waitFor();
   assert.deepEqual((await server.json("GET", `/projects/${pot.project}/bin`)).entries, []);
   assert.equal((await layers_of()).includes(name), false);
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   for (const who of Object.values(everybody)) who.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  for (const [who, browser] of Object.entries(everybody))
-    await shoot(browser, `failed_${who}`).catch(() => {});
-  throw error;
-} finally {
-  for (const browser of Object.values(everybody)) await browser.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const browser of Object.values(everybody)) await browser?.close();
+  await server?.remove();
+});

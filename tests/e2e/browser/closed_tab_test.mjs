@@ -2,13 +2,8 @@
 // page of the same person sends it, once.
 import assert from "node:assert/strict";
 import { Browser, kOfLostServer } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { kLong_ms, StrataServer, wait_for } from "../support/strata-server.mjs";
-
-const browser = await Browser.open();
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
-let { page } = browser;
 
 /** Ids of the batches of strokes that the browser keeps, or of other messages, in their order. */
 const kept = (wanted = "stroke.extend") =>
@@ -63,15 +58,21 @@ async function tab_dies() {
   page.setDefaultTimeout(kLong_ms);
 }
 
-try {
+let browser, server, page, ada, bea, before, left, hers;
+
+test.beforeAll(async () => {
+  browser = await Browser.open();
+  server = new StrataServer({ demo: true });
+  ({ page } = browser);
   await server.start();
-  const ada = await server.add_person("ada", "curator");
-  const bea = await server.add_person("bea", "annotator");
+  ada = await server.add_person("ada", "curator");
+  bea = await server.add_person("bea", "annotator");
   await server.json("POST", "/models/demo-pot/layers", { name: "Marks", type: "u8" });
   await browser.sign_in(server, ada);
   await open_model();
+});
 
-  say("closing warns while something is not saved, and only then");
+test("closing warns while something is not saved, and only then", async () => {
   const asked = [];
   page.on("dialog", (dialog) => (asked.push(dialog.type()), dialog.dismiss()));
   await browser.drag([
@@ -83,14 +84,15 @@ try {
     async () => (await kept()).length === 0,
     "the browser to keep nothing that is saved",
   );
-  const before = await ids();
+  before = await ids();
   assert.ok(before.length > 0, "nothing was painted");
-  let left = await paint_unheard(0.5);
+  left = await paint_unheard(0.5);
   await page.close({ runBeforeUnload: true });
   await wait_for(() => asked.length > 0, "the question whether to leave");
   assert.deepEqual([asked, page.isClosed()], [["beforeunload"], false]);
+});
 
-  say("the tab dies, and the server with what it had not read");
+test("the tab dies, and the server with what it had not read", async () => {
   await tab_dies();
   await server.signal("SIGKILL");
   await server.start();
@@ -99,8 +101,9 @@ try {
     before,
     "the server knew what it was not to know: this test shows nothing",
   );
+});
 
-  say("somebody else at the same browser sends nothing of it");
+test("somebody else at the same browser sends nothing of it", async () => {
   await browser.sign_in(server, bea);
   await open_model();
   await browser.drag([
@@ -108,14 +111,15 @@ try {
     [0.55, 0.7],
   ]);
   await browser.saved();
-  const hers = await history();
+  hers = await history();
   assert.deepEqual(
     [...new Set(hers.slice(0, hers.length - before.length).map(({ user }) => user))],
     ["bea"],
   );
   assert.deepEqual(await kept(), left);
+});
 
-  say("who painted it comes back: it is sent, in their name, once");
+test("who painted it comes back: it is sent, in their name, once", async () => {
   await browser.sign_in(server, ada);
   await open_model();
   await page.getByText(/from earlier sent again/).waitFor();
@@ -129,10 +133,9 @@ try {
       .reverse(),
     left.map((id) => `${id} ada`),
   );
+});
 
-  say(
-    "a tab that is closed in mid-stroke, of which the server read all: nothing is painted twice, and the stroke ends",
-  );
+test("a tab that is closed in mid-stroke, of which the server read all: nothing is painted twice, and the stroke ends", async () => {
   await page.mouse.move(0, 0);
   await server.signal("SIGSTOP");
   const box = await browser.stage_box();
@@ -162,10 +165,10 @@ try {
 
   browser.assert_no_complaints(kOfLostServer);
   assert.equal(await server.signal("SIGTERM"), 0);
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-30).join("\n")}`);
-  throw error;
-} finally {
-  await browser.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  await browser?.close();
+  await server?.remove();
+});

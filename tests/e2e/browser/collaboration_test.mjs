@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
 import { join } from "node:path";
 import { Browser, kOfLostServer, rgb } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kScan = join(process.env.STRATA_TEST_DATA ?? "", "statue_nefertiti_70k.ply");
@@ -12,33 +13,35 @@ const kEnough = 150; // pixels of a stroke that is there
 const kFew = 12; // that chance makes
 
 if (!has_scan) console.log(`the demo pot stands in for the scan: there is no ${kScan}`);
-const [anna, bea] = [await Browser.open(), await Browser.open()];
-const server = new StrataServer({ demo: !has_scan });
-let step = "start";
-const say = (text) => console.log((step = text));
 
 const appears = (who, color, what) =>
   wait_for(async () => (await who.count(color)) > kEnough, what, 150);
 const goes = (who, color, what) => wait_for(async () => (await who.count(color)) < kFew, what, 150);
 const choose_class = (who, name) => who.page.getByRole("radio", { name, exact: true }).click();
 
-try {
-  await server.start();
+let anna, bea, server, id, bone, glass, path;
 
-  say("a scan is imported by the page's file input, which opens it");
+test.beforeAll(async () => {
+  [anna, bea] = [await Browser.open(), await Browser.open()];
+  server = new StrataServer({ demo: !has_scan });
+  await server.start();
+});
+
+test("a scan is imported by the page's file input, which opens it", async () => {
   await anna.page.goto(server.link);
   await anna.page.getByRole("heading", { name: "Models", exact: true }).waitFor();
   if (has_scan) await anna.page.locator("input[type=file]").setInputFiles(kScan);
   else await anna.page.getByRole("link", { name: /Demo pot/ }).click();
   await anna.page.waitForURL(/\/models\/\d+/);
   await anna.drawn();
-  const id = Number(/\/models\/(\d+)/.exec(anna.page.url())[1]);
+  id = Number(/\/models\/(\d+)/.exec(anna.page.url())[1]);
   if (has_scan) {
     await anna.page.getByText(/This object is .*: right\?/).waitFor();
     await anna.page.getByRole("button", { name: "Decide later" }).click();
   }
+});
 
-  say("a layer of classes is created in the dialog");
+test("a layer of classes is created in the dialog", async () => {
   await anna.page.getByRole("button", { name: "New layer" }).click();
   await anna.page.getByRole("radio", { name: /^Class/ }).click();
   await anna.page.getByRole("button", { name: "Create layer" }).click();
@@ -55,14 +58,15 @@ try {
     layer.palette.points.slice(0, 2).map((point) => point.label),
     ["Bone", "Glass"],
   );
-  const [bone, glass] = layer.palette.points.map((point) => rgb(point.color));
-  const path = `/models/${id}/layers/${layer.id}`;
+  [bone, glass] = layer.palette.points.map((point) => rgb(point.color));
+  path = `/models/${id}/layers/${layer.id}`;
   // What other layers show would only disturb the counting of pixels.
   for (const other of layers.layers)
     if (other.id !== layer.id)
       await server.json("PATCH", `/models/${id}/layers/${other.id}`, { visible: false });
+});
 
-  say("somebody else opens the same model and looks from another side");
+test("somebody else opens the same model and looks from another side", async () => {
   await bea.sign_in(server, await server.add_person("bea", "annotator"));
   await bea.page.goto(`${server.url}/models/${id}`);
   await bea.drawn();
@@ -79,8 +83,9 @@ try {
     assert.ok((await who.count(bone)) < kFew, "the empty model has the colour of bone");
     assert.ok((await who.count(glass)) < kFew, "the empty model has the colour of glass");
   }
+});
 
-  say("each sees the other's stroke");
+test("each sees the other's stroke", async () => {
   await anna.drag([
     [0.46, 0.5],
     [0.56, 0.52],
@@ -95,12 +100,14 @@ try {
   await bea.saved();
   await appears(bea, glass, "bea's stroke on her own page");
   await appears(anna, glass, "bea's stroke on anna's page");
+});
 
-  say("the value under the pointer");
+test("the value under the pointer", async () => {
   await anna.point(0.5, 0.507);
   await anna.page.locator("strata-value-readout").getByText("Bone").waitFor();
+});
 
-  say("undo takes back one's own stroke only");
+test("undo takes back one's own stroke only", async () => {
   await anna.page.keyboard.press("Control+z");
   await anna.saved();
   await goes(anna, bone, "anna's stroke to go");
@@ -111,7 +118,7 @@ try {
   await appears(bea, bone, "anna's stroke to come back");
 
   if (has_scan) {
-    say("the size question: another unit keeps the paint");
+    console.log("the size question: another unit keeps the paint");
     const before = await server.json("GET", `${path}/statistics`);
     const model = await server.json("GET", `/models/${id}`);
     await anna.page.getByRole("button", { name: "Check the size" }).click();
@@ -138,8 +145,9 @@ try {
     );
     await appears(anna, bone, "the paint after the change");
   }
+});
 
-  say("the server is killed in mid-stroke: the page says so, reconnects by itself and sends again");
+test("the server is killed in mid-stroke: the page says so, reconnects by itself and sends again", async () => {
   const history = async () => (await server.json("GET", `${path}/edits?limit=1000`)).edits;
   const edits_before = (await history()).length;
   await server.signal("SIGSTOP");
@@ -165,23 +173,17 @@ try {
   await appears(bea, bone, "bea's page to show the model again");
   await anna.point(0.5, 0.36);
   await anna.page.locator("strata-value-readout").getByText("Bone").waitFor();
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   for (const who of [anna, bea]) who.assert_no_complaints(kOfLostServer);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  if (process.env.STRATA_TEST_OUTPUT) {
-    for (const [name, who] of Object.entries({ anna, bea })) {
-      await who.page
-        .screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `collaboration_${name}.png`) })
-        .catch(() => {});
-    }
-  }
-  throw error;
-} finally {
-  await anna.close();
-  await bea.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  await anna?.close();
+  await bea?.close();
+  await server?.remove();
+});

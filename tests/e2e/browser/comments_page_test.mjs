@@ -4,16 +4,12 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const kExpected = ["status of 412", "status of 422"]; // answers that the test wants
-
-const [ada, bea, phone] = [await Browser.open(), await Browser.open(), await Browser.open(kPhone)];
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 
 const shot = async ({ page }, name) => {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -49,7 +45,11 @@ async function click_at(who, x, y) {
 }
 let id;
 
-try {
+let ada, bea, phone, server, model, first, fingerprint;
+
+test.beforeAll(async () => {
+  [ada, bea, phone] = [await Browser.open(), await Browser.open(), await Browser.open(kPhone)];
+  server = new StrataServer({ demo: true });
   await server.start();
   for (const layer of (await server.json("GET", `${kBase}/layers`)).layers)
     await server.json("PATCH", `${kBase}/layers/${layer.id}`, { visible: false });
@@ -69,13 +69,14 @@ try {
     value: 1,
   });
   // or curators are asked for it
-  const model = await server.json("PATCH", kBase, { scale_verified: true });
+  model = await server.json("PATCH", kBase, { scale_verified: true });
   id = model.id;
   await ada.sign_in(server, await server.add_person("ada", "annotator"));
   await bea.sign_in(server, await server.add_person("bea", "annotator"));
   await phone.sign_in(server, await server.add_person("carl", "curator"));
+});
 
-  say("a click with the tool begins a comment there, and one beside the model none");
+test("a click with the tool begins a comment there, and one beside the model none", async () => {
   await open_model(ada);
   await open_model(bea);
   await ada.page.keyboard.press("c");
@@ -96,8 +97,9 @@ try {
   );
   await card(ada).getByLabel("About").selectOption({ label: "Handle (Finds)" });
   await shot(ada, "composer");
+});
 
-  say("what is not sent outlives the card and the page, and is nobody else's");
+test("what is not sent outlives the card and the page, and is nobody else's", async () => {
   await ada.page.keyboard.press("Escape");
   await gone(card(ada));
   await ada.page.reload();
@@ -109,12 +111,13 @@ try {
   );
   assert.equal((await comments()).length, 0);
   assert.equal(await pins(bea).count(), 0);
+});
 
-  say("it is sent by the keyboard, and seen by others without asking");
+test("it is sent by the keyboard, and seen by others without asking", async () => {
   await card(ada).getByRole("textbox", { name: "Comment" }).focus();
   await ada.page.keyboard.press("Control+Enter");
   await article(ada, "Is this the crack").waitFor();
-  const first = await comment_with("Is this the crack");
+  first = await comment_with("Is this the crack");
   assert.equal(first.record, 1);
   await pin(bea, first.id).waitFor();
   assert.match(
@@ -127,8 +130,9 @@ try {
   assert.equal(await link.getAttribute("rel"), "noopener noreferrer nofollow");
   await card(ada).getByText("About Handle (Finds)").waitFor();
   await shot(ada, "thread");
+});
 
-  say("a reply with somebody's name reaches them");
+test("a reply with somebody's name reaches them", async () => {
   await pin(bea, first.id).click();
   await article(bea, "Is this the crack").waitFor();
   await wait_for(
@@ -148,8 +152,9 @@ try {
   await ada.page.getByRole("button", { name: "Show", exact: true }).click();
   await article(ada, "<b>it</b> has grown.").waitFor();
   await shot(bea, "reply");
+});
 
-  say("names are completed behind an @, by keys and by the mouse");
+test("names are completed behind an @, by keys and by the mouse", async () => {
   const writing = card(bea).locator("textarea");
   const names = card(bea).getByRole("listbox", { name: "People whom you may name" });
   await writing.focus();
@@ -189,10 +194,9 @@ try {
   assert.equal(await writing.inputValue(), "Ask @carl and @owner ");
   assert.equal(await card(bea).getByRole("combobox").count(), 0, "it is a plain field again");
   await writing.fill("");
+});
 
-  say(
-    "pins are hidden behind the surface: on the far side, and inside where the wall stands before them",
-  );
+test("pins are hidden behind the surface: on the far side, and inside where the wall stands before them", async () => {
   await bea.page.keyboard.press("Escape");
   await bea.page.keyboard.press("c");
   await click_at(bea, 0.44, 0.42); // through the gap, the inside of the far wall
@@ -208,8 +212,9 @@ try {
   await pin(bea, first.id).waitFor();
   await gone(pin(bea, inside.id));
   await server.request("DELETE", `/comments/${inside.id}`);
+});
 
-  say("one who has the keyboard comes from the pin to the thread and back");
+test("one who has the keyboard comes from the pin to the thread and back", async () => {
   await pin(bea, first.id).focus();
   await bea.page.keyboard.press("Enter");
   await article(bea, "Is this the crack").waitFor();
@@ -217,8 +222,9 @@ try {
   await bea.page.keyboard.press("Escape");
   await gone(card(bea));
   assert.equal(await focused(bea), String(first.id));
+});
 
-  say("texts are edited by who wrote them, and others see it");
+test("texts are edited by who wrote them, and others see it", async () => {
   await article(ada, "Is this the crack").getByRole("button", { name: "Edit" }).click();
   assert.equal(await article(ada, "has grown").getByRole("button", { name: "Edit" }).count(), 0);
   await card(ada).locator(`textarea[name="edit ${first.id}"]`).fill("Is this the crack of 2020?");
@@ -228,8 +234,9 @@ try {
     .waitFor();
   await pin(bea, first.id).click();
   await article(bea, "Is this the crack of 2020?").waitFor();
+});
 
-  say("of two who change one text at once the later is told");
+test("of two who change one text at once the later is told", async () => {
   await article(ada, "of 2020?").getByRole("button", { name: "Edit" }).click();
   await card(ada).locator(`textarea[name="edit ${first.id}"]`).fill("Is this the crack of 2021?");
   await ada.page.route(`**/comments/${first.id}`, async (route) => {
@@ -249,8 +256,9 @@ try {
   );
   await card(ada).getByRole("button", { name: "Save" }).click();
   await article(bea, "Is this the crack of 2021?").waitFor();
+});
 
-  say("a thread is resolved by anybody who writes; its pin is shown only when asked for");
+test("a thread is resolved by anybody who writes; its pin is shown only when asked for", async () => {
   await card(bea).getByRole("button", { name: "Resolve" }).click();
   await card(bea)
     .getByText(/^Resolved by bea/)
@@ -268,8 +276,9 @@ try {
   await pin(ada, first.id).waitFor();
   await panel(ada).getByText("Is this the crack of 2021?").waitFor();
   await bea.page.keyboard.press("Escape");
+});
 
-  say("the list finds threads by words, state and person, and goes to them");
+test("the list finds threads by words, state and person, and goes to them", async () => {
   const height = model.bounds.max[2] - model.bounds.min[2];
   for (const [n, text] of ["Soot on the rim", "Old repair, see @bea", "Fingerprint"].entries()) {
     const [x, y, z] = first.position;
@@ -296,13 +305,14 @@ try {
   await bea.page.keyboard.press("2");
   await rows.filter({ hasText: "Fingerprint" }).click();
   await article(bea, "Fingerprint").waitFor();
-  const fingerprint = await comment_with("Fingerprint");
+  fingerprint = await comment_with("Fingerprint");
   await pin(bea, fingerprint.id).waitFor();
   await shot(bea, "flown");
   await panel(bea).getByRole("button", { name: "Mark all as read" }).click();
   await gone(panel(bea).getByRole("img", { name: /something new/ }));
+});
 
-  say("an address leads to its comment, also to a reply");
+test("an address leads to its comment, also to a reply", async () => {
   const reply = await comment_with("has grown");
   await bea.page.goto(`${server.url}/`);
   await bea.page.goto(`${server.url}/models/${id}#comment=${reply.id}`);
@@ -310,8 +320,9 @@ try {
   await pin(bea, first.id).waitFor();
   await bea.page.goto(`${server.url}/models/${id}#comment=999999`);
   await bea.page.getByText("This comment is not here any more.").waitFor();
+});
 
-  say("a first comment that is deleted leaves its place while there are replies");
+test("a first comment that is deleted leaves its place while there are replies", async () => {
   await pin(ada, first.id).click();
   await article(ada, "of 2021?").getByRole("button", { name: "Delete" }).click();
   await ada.page.getByRole("button", { name: "Cancel" }).click();
@@ -327,8 +338,9 @@ try {
   await gone(card(ada).getByText(/^Resolved by/));
   await panel(ada).getByRole("radio", { name: "Open" }).click();
   await shot(ada, "deleted");
+});
 
-  say("on a phone the thread is a sheet, and a finger writes");
+test("on a phone the thread is a sheet, and a finger writes", async () => {
   await open_model(phone);
   const box = await phone.stage_box();
   await button(phone, "Comment").click();
@@ -338,8 +350,9 @@ try {
   await card(phone).getByRole("button", { name: "Comment", exact: true }).click();
   await article(phone, "Glaze?").waitFor();
   await shot(phone, "phone_thread");
+});
 
-  say("what somebody says meanwhile is shown above the sheet");
+test("what somebody says meanwhile is shown above the sheet", async () => {
   const { id: aside } = await server.json("POST", `${kBase}/comments`, {
     text: "@carl, see here",
     position: first.position,
@@ -362,8 +375,9 @@ try {
   await gone(card(phone));
   await gone(pin(ada, first.id));
   await pin(ada, (await comment_with("Glaze?")).id).waitFor();
+});
 
-  say("without a pointer a comment goes to the middle of the view");
+test("without a pointer a comment goes to the middle of the view", async () => {
   await ada.page.keyboard.press("Escape");
   await ada.page.locator("strata-stage .surface").focus();
   await ada.page.keyboard.press("c");
@@ -377,16 +391,18 @@ try {
   await card(ada).getByRole("button", { name: "Discard" }).click();
   await gone(card(ada));
   assert.equal(await button(ada, "Your comment that is not sent yet").count(), 0);
+});
 
-  say("pins let paint through, and can be hidden");
+test("pins let paint through, and can be hidden", async () => {
   await ada.page.keyboard.press("b");
   const pin_of_paint = pins(ada).first();
   assert.equal(await pin_of_paint.evaluate((each) => getComputedStyle(each).pointerEvents), "none");
   await ada.page.keyboard.press("v");
   await panel(ada).getByRole("button", { name: "Hide them on the model" }).click();
   await wait_for(async () => (await pins(ada).count()) === 0, "the pins to go");
+});
 
-  say("who only looks reads, and is not offered to write");
+test("who only looks reads, and is not offered to write", async () => {
   await phone.page.context().clearCookies();
   await phone.sign_in(server, await server.add_person("vera", "viewer"));
   await open_model(phone);
@@ -401,17 +417,16 @@ try {
     0,
   );
   await shot(phone, "phone_viewer");
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   for (const who of [ada, bea, phone]) who.assert_no_complaints(kExpected);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  for (const [name, who] of Object.entries({ ada, bea, phone }))
-    await shot(who, `comments_failed_${name}`).catch(() => {});
-  throw error;
-} finally {
-  for (const who of [ada, bea, phone]) await who.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const who of [ada, bea, phone]) await who?.close();
+  await server?.remove();
+});

@@ -3,7 +3,7 @@
 // button or by itself.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { ends_well, test } from "../support/cases.mjs";
+import { attach_log, ends_well, test } from "../support/cases.mjs";
 import { wait_for } from "../support/strata-server.mjs";
 import { texts_of } from "../support/texts.mjs";
 
@@ -93,4 +93,5 @@ test("it may follow by itself", async ({ server, page }) => {
   await wait_for(async () => (await least()) === 7, "the layer to follow by itself");
 });
 
+test.afterEach(({ server }, info) => attach_log(info, server));
 ends_well({ complaints: ["422"] });

@@ -5,16 +5,12 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const kExpected = ["status of 404", "status of 422"]; // answers that the test wants
-
-const [ada, phone] = [await Browser.open(), await Browser.open({ ...kPhone, colorScheme: "dark" })];
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 let id;
 
 const shot = async ({ page }, name) => {
@@ -104,12 +100,16 @@ async function download(who, act) {
 }
 const make = (who) => download(who, () => button(who, "Make the figure").click());
 
-try {
+let ada, phone, server, model, hidden, hidden_name, finds, ada_person, preview, half, downloads;
+
+test.beforeAll(async () => {
+  [ada, phone] = [await Browser.open(), await Browser.open({ ...kPhone, colorScheme: "dark" })];
+  server = new StrataServer({ demo: true });
   await server.start();
-  const model = await server.json("PATCH", kBase, { scale_verified: false });
+  model = await server.json("PATCH", kBase, { scale_verified: false });
   id = model.id;
-  const [{ id: hidden, name: hidden_name }] = (await server.json("GET", `${kBase}/layers`)).layers;
-  const finds = await server.json("POST", `/projects/${model.project}/tables`, {
+  [{ id: hidden, name: hidden_name }] = (await server.json("GET", `${kBase}/layers`)).layers;
+  finds = await server.json("POST", `/projects/${model.project}/tables`, {
     name: "Finds",
     columns: [
       { name: "Name", kind: "text", required: true },
@@ -133,12 +133,13 @@ try {
     mode: "where",
     where: "true",
   });
-  const ada_person = await server.add_person("ada", "annotator");
+  ada_person = await server.add_person("ada", "annotator");
   await ada.sign_in(server, ada_person);
   await phone.sign_in(server, await server.add_person("vera", "viewer"));
   for (const who of [ada, phone]) listen(who);
+});
 
-  say("the dialog shows the sheet: white paper with the model on it, of all that the person sees");
+test("the dialog shows the sheet: white paper with the model on it, of all that the person sees", async () => {
   await open_model(ada);
   const panel = ada.page.locator("strata-view-panel");
   await panel.getByRole("button", { name: "View", exact: true }).click();
@@ -153,7 +154,7 @@ try {
     first.drawn > 0.03 && first.drawn < 0.7,
     `the model covers ${first.drawn} of the sheet`,
   );
-  const { preview } = asked.get(ada);
+  ({ preview } = asked.get(ada));
   assert.deepEqual(
     [
       preview.format,
@@ -171,14 +172,16 @@ try {
     /A4, seen from: As I see it, scale: As fits/,
   );
   await shot(ada, "first");
+});
 
-  say("where nobody has confirmed the size, that is told, until somebody has");
+test("where nobody has confirmed the size, that is told, until somebody has", async () => {
   const unsure = dialog(ada).getByText(/^Nobody has confirmed the size of this model/);
   await unsure.waitFor();
   await server.json("PATCH", kBase, { scale_verified: true, unit: model.unit });
   await unsure.waitFor({ state: "detached" });
+});
 
-  say("another scale is another sheet: twice as small is a quarter of the area");
+test("another scale is another sheet: twice as small is a quarter of the area", async () => {
   await field(ada, "legend").uncheck();
   await wait_for(async () => asked.get(ada).preview.legend === false, "a sheet without a legend");
   const one = await sheet_after(
@@ -199,11 +202,12 @@ try {
   assert.equal(await field(ada, "own_scale").getAttribute("aria-invalid"), "true");
   await button(ada, "Make the figure").click();
   assert.equal(asked.get(ada).file, undefined);
-  const half = await sheet_after(ada, two, () => field(ada, "own_scale").fill("2:3"));
+  half = await sheet_after(ada, two, () => field(ada, "own_scale").fill("2:3"));
   assert.equal(asked.get(ada).preview.scale, 1.5);
   assert.ok(half.drawn < one.drawn && half.drawn > two.drawn);
+});
 
-  say("so are another direction, paper and orientation");
+test("so are another direction, paper and orientation", async () => {
   const top = await sheet_after(ada, half, () => field(ada, "from").selectOption("top"));
   assert.deepEqual(
     [asked.get(ada).preview.direction, asked.get(ada).preview.camera.section.length],
@@ -214,10 +218,9 @@ try {
   );
   assert.notEqual(turned.width > turned.height, top.width > top.height);
   await sheet_after(ada, turned, () => radio(ada, "A5").click());
+});
 
-  say(
-    "square to a face: the dialog steps aside, Escape leads back as it was, a click takes the face",
-  );
+test("square to a face: the dialog steps aside, Escape leads back as it was, a click takes the face", async () => {
   const hint = ada.page.locator("strata-face-hint section");
   await field(ada, "from").selectOption("face");
   await hint.waitFor();
@@ -258,8 +261,9 @@ try {
     await hint.waitFor({ state: "detached" });
   });
   assert.notDeepEqual(asked.get(ada).preview.center, center);
+});
 
-  say("labels are what records have in a column; in SVG they are words");
+test("labels are what records have in a column; in SVG they are words", async () => {
   const unlabelled = await sheet(ada);
   await field(ada, "caption").fill("The handle,\nfrom the side");
   await sheet_after(ada, unlabelled, () => field(ada, "labels").selectOption({ label: "Finds" }));
@@ -280,8 +284,9 @@ try {
     ["name", 150, "The handle,\nfrom the side"],
   );
   await dialog(ada).getByText(`Saved as ${svg.name}.`).waitFor();
+});
 
-  say("a PDF is made, saved under its name, and listed no more");
+test("a PDF is made, saved under its name, and listed no more", async () => {
   await radio(ada, "PDF").click();
   await field(ada, "title").fill("Pot of Agathe");
   const pdf = await make(ada);
@@ -290,9 +295,10 @@ try {
   await dialog(ada).getByText(`Saved as ${pdf.name}.`).waitFor();
   assert.equal(await ada.page.locator("strata-layer-panel .job").count(), 0);
   await shot(ada, "saved");
+});
 
-  say("one that takes long is given up");
-  const downloads = [];
+test("one that takes long is given up", async () => {
+  downloads = [];
   ada.page.on("download", (file) => downloads.push(file.suggestedFilename()));
   await radio(ada, "A3").click();
   await radio(ada, "600 dpi").click();
@@ -315,8 +321,9 @@ try {
     (await started.json()).id,
   );
   assert.deepEqual([job.state, job.file, downloads], ["cancelled", undefined, []]);
+});
 
-  say("one whose dialog is closed goes on, and is offered");
+test("one whose dialog is closed goes on, and is offered", async () => {
   await radio(ada, "150 dpi").click();
   await radio(ada, "A5").click();
   await radio(ada, "PNG").click();
@@ -343,8 +350,9 @@ try {
   assert.match(png.name, /\.png$/);
   assert.equal(png.bytes.subarray(1, 4).toString("latin1"), "PNG");
   await row.waitFor({ state: "detached" });
+});
 
-  say("what was written is there again, also what was chosen, in another visit as well");
+test("what was written is there again, also what was chosen, in another visit as well", async () => {
   await open_dialog(ada);
   assert.deepEqual(
     [await field(ada, "title").inputValue(), await field(ada, "from").inputValue()],
@@ -364,8 +372,9 @@ try {
     ["", "front", "1 : 1.5"],
   );
   assert.equal(await radio(ada, "A5").getAttribute("aria-checked"), "true");
+});
 
-  say("what the server refuses stands at its field");
+test("what the server refuses stands at its field", async () => {
   await field(ada, "labels").selectOption({ label: "Finds" });
   await field(ada, "column").selectOption("depth");
   await sheet(ada);
@@ -387,8 +396,9 @@ try {
   await dialog(ada).locator("#labels_problem").waitFor({ state: "detached" });
   await ada.page.keyboard.press("Escape");
   await closed(ada);
+});
 
-  say("of a kept view, by its menu: what it shows, not what is seen");
+test("of a kept view, by its menu: what it shows, not what is seen", async () => {
   const list = ada.page.locator("strata-view-list");
   const as_ada = {
     Authorization: `Bearer ${ada_person.token}`,
@@ -423,8 +433,9 @@ try {
   await shot(ada, "of_view");
   await ada.page.keyboard.press("Escape");
   await closed(ada);
+});
 
-  say("what a browser kept and is no choice does no harm");
+test("what a browser kept and is no choice does no harm", async () => {
   await ada.page.evaluate(() =>
     localStorage.setItem("strata.figure", '{"from":"north","dpi":1e9,"paper":["a4"],"scale":"x"}'),
   );
@@ -435,8 +446,9 @@ try {
     [await field(ada, "from").inputValue(), await field(ada, "scale").inputValue()],
     ["camera", ""],
   );
+});
 
-  say("on a phone, by who may only look");
+test("on a phone, by who may only look", async () => {
   await open_model(phone);
   await phone.page.getByRole("button", { name: "Show the panel" }).tap();
   await phone.page
@@ -474,17 +486,16 @@ try {
     button(phone, "Make the figure").tap(),
   ]);
   assert.match(of_viewer.suggestedFilename(), /\.png$/);
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   for (const who of [ada, phone]) who.assert_no_complaints(kExpected);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  for (const [name, who] of Object.entries({ ada, phone }))
-    await shot(who, `failed_${name}`).catch(() => {});
-  throw error;
-} finally {
-  for (const who of [ada, phone]) await who.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const who of [ada, phone]) await who?.close();
+  await server?.remove();
+});

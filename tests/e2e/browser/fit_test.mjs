@@ -6,6 +6,7 @@ import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 import { violations } from "../support/accessible.mjs";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 import { texts_of } from "../support/texts.mjs";
 
@@ -22,13 +23,6 @@ const kHeadRules = [
 ];
 const output = process.env.STRATA_TEST_OUTPUT;
 if (output) mkdirSync(output, { recursive: true });
-
-const desk = await Browser.open({ viewport: kWindows.desk });
-const phone = await Browser.open({ viewport: kWindows.phone, hasTouch: true, isMobile: true });
-const server = new StrataServer({ demo: true });
-const { page } = desk;
-let step = "start";
-const say = (text) => console.log((step = text));
 const shoot = async (who, name) =>
   output && (await who.page.screenshot({ path: join(output, `fit_${name}.png`) }));
 const button = (name, who = desk) => who.page.getByRole("button", { name, exact: true });
@@ -58,9 +52,15 @@ const number_box = (field) =>
     };
   });
 
-try {
+let desk, phone, server, page, model, project, person, chip, chosen;
+
+test.beforeAll(async () => {
+  desk = await Browser.open({ viewport: kWindows.desk });
+  phone = await Browser.open({ viewport: kWindows.phone, hasTouch: true, isMobile: true });
+  server = new StrataServer({ demo: true });
+  ({ page } = desk);
   await server.start();
-  const [{ id: model, project }] = (await server.json("GET", "/models")).models;
+  [{ id: model, project }] = (await server.json("GET", "/models")).models;
   await server.json("POST", `/projects/${project}/templates/stone-condition`, {
     model: String(model),
   });
@@ -83,7 +83,7 @@ try {
   await server.json("POST", "/tables/stone-observations/records", {
     values: { urgency: "now", depth: 2.4 },
   });
-  const person = await server.add_person("ida", "curator");
+  person = await server.add_person("ida", "curator");
   // whose initials are not in what she is called
   await server.json("PATCH", "/users/ida", { full_name: "Ida Roe" });
   await desk.sign_in(server, person);
@@ -99,7 +99,7 @@ try {
     await page.reload();
     await desk.drawn();
 
-    say(`${language}: the chosen layer's name is read whole, and no card leaves the panel`);
+    console.log(`${language}: the chosen layer's name is read whole, and no card leaves the panel`);
     await button(w.layers.select(labels)).click();
     const panel = (await boxes(page.locator("strata-model-page aside")))[0];
     for (const card of await boxes(page.locator("strata-layer-panel li.layer")))
@@ -114,7 +114,7 @@ try {
     );
     await shoot(desk, `${language}_layers`);
 
-    say(`${language}: a number does not touch its unit, however long that is`);
+    console.log(`${language}: a number does not touch its unit, however long that is`);
     await button(w.layers.select("Curvature")).click();
     await page.keyboard.press("b");
     const value = await number_box(page.locator("strata-value-picker .number"));
@@ -124,7 +124,7 @@ try {
     );
     await shoot(desk, `${language}_value`);
 
-    say(`${language}: the words of the light switch keep apart`);
+    console.log(`${language}: the words of the light switch keep apart`);
     const view = page.locator("strata-view-panel");
     if ((await view.getByRole("radiogroup").count()) === 0)
       await view.getByRole("button", { name: w.view.title, expanded: false }).click();
@@ -145,7 +145,9 @@ try {
     );
     await shoot(desk, `${language}_light`);
 
-    say(`${language}: a chosen record leaves the filter its room, and the rows their places`);
+    console.log(
+      `${language}: a chosen record leaves the filter its room, and the rows their places`,
+    );
     await button(w.layers.select(labels)).click();
     await page.keyboard.press("Escape");
     await page.locator("strata-stage .surface").focus();
@@ -188,7 +190,7 @@ try {
     }
     await page.setViewportSize(kWindows.desk);
 
-    say(`${language}: in a record's form a number and its unit keep apart`);
+    console.log(`${language}: in a record's form a number and its unit keep apart`);
     await page
       .locator("strata-table-panel .chosen")
       .getByRole("button", { name: w.tables.edit, exact: true })
@@ -202,7 +204,9 @@ try {
     await page.locator("strata-record-dialog").waitFor({ state: "detached" });
     await button(w.tables.close).click();
 
-    say(`${language}: help has no frame as it opens, and one where the Tab key comes back to it`);
+    console.log(
+      `${language}: help has no frame as it opens, and one where the Tab key comes back to it`,
+    );
     await page.locator("strata-stage .surface").focus();
     await page.keyboard.press("?");
     const help = page.locator("strata-help-sheet");
@@ -228,8 +232,9 @@ try {
   await page.evaluate(() => (document.documentElement.dataset.theme = "dark"));
   await shoot(desk, "dark");
   await page.evaluate(() => (document.documentElement.dataset.theme = "light"));
+});
 
-  say("controls are named by what is seen on them, and everything lies in a landmark");
+test("controls are named by what is seen on them, and everything lies in a landmark", async () => {
   await page.evaluate(() => localStorage.setItem("strata.language", "en"));
   await page.reload();
   await desk.drawn();
@@ -240,14 +245,16 @@ try {
   await page.keyboard.press("t");
   await page.getByRole("grid").waitFor();
   assert.deepEqual(await violations(page, kHeadRules), []);
+});
 
-  say("the page of the contract has a main part, and heads of its tables");
+test("the page of the contract has a main part, and heads of its tables", async () => {
   await page.goto(`${server.url}/docs`);
   await page.getByRole("main").waitFor();
   assert.deepEqual(await violations(page, kHeadRules), []);
   assert.equal(await page.locator("th:empty").count(), 0);
+});
 
-  say("on a phone what is painted and undo are always in sight");
+test("on a phone what is painted and undo are always in sight", async () => {
   await phone.sign_in(server, person);
   await phone.page.goto(`${server.url}/models/${model}`);
   await phone.drawn();
@@ -274,7 +281,7 @@ try {
     assert.ok(hit, `something lies over ${what}`);
   };
   await button("Brush", phone).click();
-  const chip = phone.page.locator("strata-paint-chip button");
+  chip = phone.page.locator("strata-paint-chip button");
   await chip.waitFor();
   for (const place of [0, 60, 100_000]) {
     await rail.evaluate((each, left) => (each.scrollLeft = left), place);
@@ -283,11 +290,12 @@ try {
     await in_sight(chip, "what is painted");
   }
   await rail.evaluate((each) => (each.scrollLeft = 0));
-  const [chosen] = (await server.json("GET", `/models/${model}/layers`)).layers.slice(-1);
+  [chosen] = (await server.json("GET", `/models/${model}/layers`)).layers.slice(-1);
   assert.match(await chip.innerText(), new RegExp(`${chosen.name}\\s.*px`, "s"));
   await shoot(phone, "phone_brush");
+});
 
-  say("the line that says so leads to what can be chosen");
+test("the line that says so leads to what can be chosen", async () => {
   if ((await phone.page.locator("strata-model-page aside").count()) > 0)
     await button("Hide the panel", phone).click();
   await chip.click();
@@ -295,17 +303,16 @@ try {
   await shoot(phone, "phone_options");
   await phone.page.evaluate(() => (document.documentElement.dataset.theme = "dark"));
   await shoot(phone, "phone_dark");
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   for (const browser of [desk, phone]) browser.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-30).join("\n")}`);
-  for (const [name, who] of Object.entries({ desk, phone }))
-    await shoot(who, `failed_${name}`).catch(() => {});
-  throw error;
-} finally {
-  for (const browser of [desk, phone]) await browser.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const browser of [desk, phone]) await browser?.close();
+  await server?.remove();
+});

@@ -4,6 +4,7 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, kOfLostServer } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 // What the browser says of answers that the test wants, and of sockets that the server ends.
@@ -15,14 +16,6 @@ const kExpected = [
   "status of 422",
   ...kOfLostServer,
 ];
-
-const [owner, gil] = [
-  await Browser.open(),
-  await Browser.open({ viewport: { width: 390, height: 844 } }),
-];
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 const shot = async ({ page }, name) => {
   if (process.env.STRATA_TEST_OUTPUT)
     await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `groups_${name}.png`) });
@@ -45,17 +38,25 @@ async function leave_inner_dialog() {
   );
 }
 
-try {
+let owner, gil, server, slug, project, in_demo;
+
+test.beforeAll(async () => {
+  [owner, gil] = [
+    await Browser.open(),
+    await Browser.open({ viewport: { width: 390, height: 844 } }),
+  ];
+  server = new StrataServer({ demo: true });
   await server.start();
   const { models } = await server.json("GET", "/models");
-  const { slug, project } = models[0];
+  ({ slug, project } = models[0]);
   await owner.sign_in(server, await server.add_person("anna", "administrator"));
   await gil.sign_in(server, await server.add_person("gil", "guest"));
   await server.add_person("max", "viewer");
   await server.json("PATCH", "/users/gil", { full_name: "Gil Guest" });
   await gil.page.getByText("You see the models of projects that you have a role in.").waitFor();
+});
 
-  say("a group is made with the keyboard; a name that is taken is told at its field");
+test("a group is made with the keyboard; a name that is taken is told at its field", async () => {
   await choose_in_menu(owner, "People…");
   await owner.page.getByRole("row", { name: /Gil Guest/ }).waitFor();
   await show("Groups");
@@ -71,8 +72,9 @@ try {
   await owner.page.keyboard.press("Enter");
   await owner.page.getByRole("alert").getByText("There is a group called `Students`.").waitFor();
   assert.equal(await owner.page.getByLabel("New group").getAttribute("aria-invalid"), "true");
+});
 
-  say("people are put into it and taken out, found by their names");
+test("people are put into it and taken out, found by their names", async () => {
   await choose_for("Options for the group Students", "Who is in it…");
   await owner.page.getByRole("checkbox", { name: "max" }).check();
   await owner.page.getByText("1 person is in it.").waitFor();
@@ -89,10 +91,11 @@ try {
   await shot(owner, "members");
   await leave_inner_dialog();
   await owner.page.getByText("1 person · no role in any project").waitFor();
+});
 
-  say("it gets a role in the project of the demo: its people see it, and where that comes from");
+test("it gets a role in the project of the demo: its people see it, and where that comes from", async () => {
   await choose_for("Options for the group Students", "Roles in projects…");
-  const in_demo = owner.page
+  in_demo = owner.page
     .locator("strata-project-roles-dialog")
     .getByRole("combobox", { name: "Role in Demo" });
   assert.equal(await in_demo.inputValue(), "");
@@ -108,8 +111,9 @@ try {
   await gil.page.getByText("Annotator by group: Students").waitFor();
   await shot(gil, "account");
   await gil.page.keyboard.press("Escape");
+});
 
-  say("administrators see it of the person, too");
+test("administrators see it of the person, too", async () => {
   await show("People");
   await owner.page
     .getByRole("row", { name: /Gil Guest/ })
@@ -127,8 +131,9 @@ try {
   await shot(owner, "of_person");
   await leave_inner_dialog();
   await owner.page.getByLabel("Find people").fill("");
+});
 
-  say("somebody invited comes with the group, and is told so");
+test("somebody invited comes with the group, and is told so", async () => {
   await owner.page.getByRole("button", { name: "Invite somebody" }).click();
   await owner.page.getByLabel("Name for signing in").fill("ida");
   await owner.page.getByRole("combobox", { name: "Role", exact: true }).selectOption("guest");
@@ -144,8 +149,9 @@ try {
   await guest.page.getByText("You are in: Students.").waitFor();
   await shot(guest, "join");
   await guest.close();
+});
 
-  say("a page that is open follows the group's role, and ends with the group");
+test("a page that is open follows the group's role, and ends with the group", async () => {
   await gil.page.goto(`${server.url}/models/${slug}`);
   await gil.drawn();
   await gil.page.getByRole("button", { name: "Brush", exact: true }).waitFor();
@@ -171,8 +177,9 @@ try {
   await owner.page.getByText("There are no groups yet.").waitFor();
   await gil.page.goto(server.url);
   await gil.page.getByText("You see the models of projects that you have a role in.").waitFor();
+});
 
-  say("the project's activity tells it");
+test("the project's activity tells it", async () => {
   await owner.page.keyboard.press("Escape");
   await owner.page.goto(`${server.url}/models/${slug}`);
   await owner.drawn();
@@ -184,17 +191,16 @@ try {
   await activity.evaluate((panel) => panel.scrollIntoView());
   await shot(owner, "activity");
   assert.ok(project);
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   for (const who of [owner, gil]) who.assert_no_complaints(kExpected);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  await shot(owner, "failed_owner").catch(() => {});
-  await shot(gil, "failed_gil").catch(() => {});
-  throw error;
-} finally {
-  for (const who of [owner, gil]) await who.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const who of [owner, gil]) await who?.close();
+  await server?.remove();
+});

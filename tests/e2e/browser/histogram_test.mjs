@@ -2,7 +2,7 @@
 // everyone's then.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { ends_well, test } from "../support/cases.mjs";
+import { attach_log, ends_well, test } from "../support/cases.mjs";
 import { wait_for } from "../support/strata-server.mjs";
 import { texts_of } from "../support/texts.mjs";
 
@@ -76,4 +76,5 @@ test("what others paint is counted", async ({ server, page }) => {
   await wait_for(async () => (await mean_of(page)) !== mean, "what others paint to be counted");
 });
 
+test.afterEach(({ server }, info) => attach_log(info, server));
 ends_well();

@@ -10,6 +10,7 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { findings } from "../support/accessible.mjs";
 import { Browser, kOfLostServer } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { kModel, kTour, make_kiosk_site } from "../support/kiosk-site.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
@@ -27,25 +28,12 @@ const kMostHeapGrowth = 1.5;
 const kMostServerGrowth = 48; // MB
 const kMostNodeGrowth = 60;
 
-const browser = await Browser.open({ viewport: kUpright, hasTouch: true });
-const server = new StrataServer({ demo: true });
-const { page } = browser;
-// a kiosk needs none of WebCodecs
-await page.addInitScript(() =>
-  ["VideoDecoder", "ImageDecoder", "VideoFrame", "EncodedVideoChunk"].forEach(
-    (name) => delete globalThis[name],
-  ),
-);
-let step = "start";
-const say = (text) => console.log((step = text));
-
 const shot = async (name) => {
   if (process.env.STRATA_TEST_OUTPUT)
     await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `kiosk_${name}.png`) });
 };
 const button = (name) => page.getByRole("button", { name, exact: true });
 const heading = (name) => page.getByRole("heading", { level: 1, name, exact: true });
-const begin = page.getByRole("button", { name: /^Touch to begin/ });
 const live = () =>
   wait_for(
     () => page.locator("strata-kiosk-stage canvas.live[data-still=true]").count(),
@@ -60,20 +48,11 @@ const pass = async (seconds, step_s = 5) => {
 };
 const sent = { camera: null, layers: null };
 let cameras = 0;
-page.on("websocket", (socket) =>
-  socket.on("framesent", ({ payload }) => {
-    const message = JSON.parse(String(payload));
-    sent[message.op] = message;
-    if (message.op === "camera") ++cameras;
-  }),
-);
 const eye = ({ view }) =>
   [0, 1, 2].map(
     (c) => -[0, 1, 2].reduce((sum, row) => sum + view[4 * c + row] * view[12 + row], 0),
   );
 const apart = (a, b) => Math.hypot(...a.map((each, index) => each - b[index]));
-
-const cdp = await page.context().newCDPSession(page);
 /** Fingers along paths of equally many points, as a screen tells of them. */
 async function touch(...paths) {
   const points = (at) => paths.map((path, id) => ({ id, x: path[at][0], y: path[at][1] }));
@@ -136,12 +115,51 @@ async function assert_within_reach_on({ height }, where) {
 }
 const assert_accessible = async (where) => assert.deepEqual(await findings(page), [], where);
 
-try {
-  await server.start();
-  const { path, kiosk } = await make_kiosk_site(server, { idle_s: 30 });
-  await page.clock.install();
+let browser,
+  server,
+  page,
+  begin,
+  cdp,
+  path,
+  kiosk,
+  fits,
+  stage,
+  x,
+  y,
+  is_shown,
+  card,
+  stored,
+  sign,
+  picture,
+  is_loaded,
+  tour;
 
-  say("the link alone opens it, and nobody is signed in; it plays by itself");
+test.beforeAll(async () => {
+  browser = await Browser.open({ viewport: kUpright, hasTouch: true });
+  server = new StrataServer({ demo: true });
+  ({ page } = browser);
+  // a kiosk needs none of WebCodecs
+  await page.addInitScript(() =>
+    ["VideoDecoder", "ImageDecoder", "VideoFrame", "EncodedVideoChunk"].forEach(
+      (name) => delete globalThis[name],
+    ),
+  );
+  begin = page.getByRole("button", { name: /^Touch to begin/ });
+  page.on("websocket", (socket) =>
+    socket.on("framesent", ({ payload }) => {
+      const message = JSON.parse(String(payload));
+      sent[message.op] = message;
+      if (message.op === "camera") ++cameras;
+    }),
+  );
+
+  cdp = await page.context().newCDPSession(page);
+  await server.start();
+  ({ path, kiosk } = await make_kiosk_site(server, { idle_s: 30 }));
+  await page.clock.install();
+});
+
+test("the link alone opens it, and nobody is signed in; it plays by itself", async () => {
   await page.goto(server.url + path);
   await begin.waitFor();
   await live();
@@ -155,10 +173,9 @@ try {
     (await page.context().cookies()).filter(({ name }) => name !== "strata_kiosk").length,
     0,
   );
+});
 
-  say(
-    "at rest the server is asked for nothing; the picture comes nearer by itself, but not for who wants less motion",
-  );
+test("at rest the server is asked for nothing; the picture comes nearer by itself, but not for who wants less motion", async () => {
   const comes_near = () =>
     page
       .locator("strata-kiosk-stage canvas")
@@ -182,8 +199,9 @@ try {
   await shot("nearer");
   await page.emulateMedia({ reducedMotion: "reduce" });
   await wait_for(async () => !(await comes_near()), "an end of it");
+});
 
-  say("a touch begins at the first stop, and does nothing else");
+test("a touch begins at the first stop, and does nothing else", async () => {
   await page.touchscreen.tap(540, 400);
   await heading("The pot from the well").waitFor();
   assert.equal(await begin.count(), 0);
@@ -191,11 +209,10 @@ try {
   await assert_within_reach("first stop");
   await assert_accessible("first stop");
   await shot("first");
+});
 
-  say(
-    "on an upright screen the object has most of the height, and its words no more than they need",
-  );
-  const fits = async (where) => {
+test("on an upright screen the object has most of the height, and its words no more than they need", async () => {
+  fits = async (where) => {
     const stage = await page.locator("strata-kiosk-stage").boundingBox();
     assert.ok(
       stage.height >= 0.6 * kUpright.height,
@@ -209,8 +226,9 @@ try {
     assert.ok(room - needed < 12, `${where}: words of ${needed} in ${room}`);
   };
   await fits("first stop");
+});
 
-  say("keys reach all of it: Tab goes to a button, Enter presses it, and the object has its own");
+test("keys reach all of it: Tab goes to a button, Enter presses it, and the object has its own", async () => {
   const focused = () =>
     page.evaluate(() => {
       let at = document.activeElement;
@@ -244,10 +262,11 @@ try {
   await page.keyboard.press("Enter");
   await heading("The pot from the well").waitFor();
   await live();
+});
 
-  say("one finger turns, two move, enlarge and tilt");
-  const stage = await page.locator("strata-kiosk-stage").boundingBox();
-  const [x, y] = [stage.x + stage.width / 2, stage.y + stage.height / 2];
+test("one finger turns, two move, enlarge and tilt", async () => {
+  stage = await page.locator("strata-kiosk-stage").boundingBox();
+  [x, y] = [stage.x + stage.width / 2, stage.y + stage.height / 2];
   const at_first = sent.camera;
   await touch(line([x, y], [x + 200, y + 40]));
   await wait_for(() => apart(eye(sent.camera), eye(at_first)) > 20, "one finger to turn it");
@@ -292,13 +311,12 @@ try {
       false,
       name,
     );
+});
 
-  say(
-    "the next stop is there where its view has it, whatever was turned before; buttons and swipes choose its layers",
-  );
+test("the next stop is there where its view has it, whatever was turned before; buttons and swipes choose its layers", async () => {
   await button("Next").tap();
   await heading("Fourteen sherds").waitFor();
-  const is_shown = (name) =>
+  is_shown = (name) =>
     wait_for(
       async () => (await button(name).getAttribute("aria-pressed")) === "true",
       `the layer ${name}`,
@@ -322,8 +340,9 @@ try {
   await is_shown("cracks");
   await touch(line([row.x + 200, row.y + 30], [row.x + 500, row.y + 32]));
   await is_shown("Sherds");
+});
 
-  say("a tap on a class says which it is, beside the place, until the object moves");
+test("a tap on a class says which it is, beside the place, until the object moves", async () => {
   await fits("second stop");
   const choose = (name) =>
     wait_for(async () => {
@@ -349,11 +368,12 @@ try {
   await touch(line([x, y], [x + 120, y + 20]));
   await place.waitFor({ state: "detached" });
   await choose("Sherds");
+});
 
-  say("a tap tells of what is there, with its picture");
+test("a tap tells of what is there, with its picture", async () => {
   await live();
   await page.touchscreen.tap(x, y);
-  const card = page.locator(".card");
+  card = page.locator(".card");
   await card.getByRole("heading", { name: /^Sherd \d+$/ }).waitFor();
   await card.getByText(/^\d+(\.5)? mm$/).waitFor();
   await assert_within_reach("card");
@@ -384,8 +404,9 @@ try {
   );
   await is_shown("Sherds");
   assert.equal(sent.layers, before_swipe, "a swipe over the card changed the layer behind it");
+});
 
-  say("its words are in the visitor's language");
+test("its words are in the visitor's language", async () => {
   await button("Deutsch").tap();
   await heading("Vierzehn Scherben").waitFor();
   // of the last one nobody has written a German name
@@ -397,8 +418,9 @@ try {
   await button("Español").tap();
   await heading("Fourteen sherds").waitFor(); // which nobody has translated
   await button("Siguiente").waitFor();
+});
 
-  say("who touches nothing is asked, and stays by saying so");
+test("who touches nothing is asked, and stays by saying so", async () => {
   await pass(25);
   assert.equal(await button("Sigo aquí").count(), 0);
   await pass(10);
@@ -410,15 +432,17 @@ try {
   await button("Siguiente").waitFor();
   await pass(25);
   assert.equal(await button("Sigo aquí").count(), 0, "the time begins anew");
+});
 
-  say("otherwise it begins anew, in its own language");
+test("otherwise it begins anew, in its own language", async () => {
   await pass(45);
   await begin.waitFor();
   await heading("The pot from the well").waitFor();
   assert.equal(await page.evaluate(() => document.documentElement.lang), "en");
+});
 
-  say("it keeps what it shows");
-  const stored = () =>
+test("it keeps what it shows", async () => {
+  stored = () =>
     page.evaluate(async () =>
       (await (await caches.open("strata-kiosk")).keys()).map(({ url }) => new URL(url).pathname),
     );
@@ -441,15 +465,16 @@ try {
     "the secret is stored",
   );
   await page.evaluate(() => navigator.serviceWorker.ready);
+});
 
-  say("without its server the tour goes on with stored pictures");
+test("without its server the tour goes on with stored pictures", async () => {
   await begin.tap();
   await button("Next").waitFor();
   await server.signal("SIGTERM");
-  const sign = page.getByText("Still pictures for a moment");
+  sign = page.getByText("Still pictures for a moment");
   await wait_for(async () => (await pass(2), await sign.count()), "the sign", 200);
-  const picture = page.locator("strata-kiosk-stage img");
-  const is_loaded = () =>
+  picture = page.locator("strata-kiosk-stage img");
+  is_loaded = () =>
     wait_for(
       () => picture.evaluate(({ complete, naturalWidth }) => complete && naturalWidth > 0),
       "the stored picture",
@@ -468,16 +493,18 @@ try {
   );
   await shot("away_card");
   await card.getByRole("button", { name: "Close", exact: true }).tap();
+});
 
-  say("even when its browser begins anew");
+test("even when its browser begins anew", async () => {
   await page.reload();
   await wait_for(async () => (await pass(2), await begin.count()), "the stored tour", 200);
   await is_loaded();
   await pass(13);
   await heading("Fourteen sherds").waitFor();
   await is_loaded();
+});
 
-  say("and is live again by itself");
+test("and is live again by itself", async () => {
   await server.start();
   await wait_for(
     async () => (await pass(10), await page.locator("strata-kiosk-stage canvas.live").count()),
@@ -486,9 +513,10 @@ try {
   );
   await wait_for(async () => (await sign.count()) === 0, "no sign");
   assert.equal(await picture.count(), 0);
+});
 
-  say("a changed tour is shown without anybody's doing");
-  const tour = await server.json("GET", kTour);
+test("a changed tour is shown without anybody's doing", async () => {
+  tour = await server.json("GET", kTour);
   tour.stops[0].title.en = "The vessel from the well";
   await server.json("PATCH", kTour, { stops: tour.stops });
   await wait_for(
@@ -496,8 +524,9 @@ try {
     "the new title",
     100,
   );
+});
 
-  say("an administrator has it loaded anew");
+test("an administrator has it loaded anew", async () => {
   await page.evaluate(() => (globalThis.before = true));
   await server.json("POST", `/kiosks/${kiosk.id}/reload`);
   const is_new = () => page.evaluate(() => globalThis.before === undefined).catch(() => false);
@@ -511,8 +540,9 @@ try {
     async () => (await server.json("GET", "/kiosks")).kiosks[0].wants_reload === false,
     "the wish to be gone",
   );
+});
 
-  say(`memory stays flat over ${kRounds} visitors`);
+test(`memory stays flat over ${kRounds} visitors`, async () => {
   await live();
   const server_mb = () =>
     Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${server.process.pid}/status`, "utf8"))[1]) /
@@ -587,8 +617,9 @@ try {
     "the page holds on to what is gone",
   );
   assert.ok(after.server_mb - settled.server_mb < kMostServerGrowth, "the server's memory grows");
+});
 
-  say("revoked, it says so in plain words, and keeps nothing");
+test("revoked, it says so in plain words, and keeps nothing", async () => {
   await server.request("DELETE", `/kiosks/${kiosk.id}`);
   await page.getByRole("heading", { name: "This screen has no tour any more" }).waitFor();
   await assert_accessible("revoked");
@@ -607,14 +638,10 @@ try {
     "the secret is in the log",
   );
   console.log("ok");
-} catch (error) {
-  await shot("failed");
-  console.error(
-    `failed at: ${step} (${kModel})\n${error.stack}\n${browser.complaints.join("\n")}\nserver log:\n${server.log.slice(-20).join("\n")}`,
-  );
-  process.exitCode = 1;
-} finally {
-  await browser.close();
-  await server.remove();
-}
-process.exit();
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  await browser?.close();
+  await server?.remove();
+});

@@ -3,42 +3,46 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, kOfLostServer } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
-const [german, french] = [
-  await Browser.open({ locale: "de-DE" }),
-  await Browser.open({ locale: "fr-FR" }),
-];
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 const language_of = ({ page }) => page.evaluate(() => document.documentElement.lang);
 const heading = ({ page }, name) => page.getByRole("heading", { name, exact: true }).waitFor();
 
 /** The languages whose words a browser loaded. */
 const loaded = [];
-german.page.on("request", (request) => {
-  const found = /\/assets\/(en|de|es)-[^/]*\.js$/.exec(new URL(request.url()).pathname);
-  if (found) loaded.push(found[1]);
-});
 
-try {
+let german, french, server, model, project, value;
+
+test.beforeAll(async () => {
+  [german, french] = [
+    await Browser.open({ locale: "de-DE" }),
+    await Browser.open({ locale: "fr-FR" }),
+  ];
+  server = new StrataServer({ demo: true });
+  german.page.on("request", (request) => {
+    const found = /\/assets\/(en|de|es)-[^/]*\.js$/.exec(new URL(request.url()).pathname);
+    if (found) loaded.push(found[1]);
+  });
   await server.start();
   const { models } = await server.json("GET", "/models");
-  const [{ id: model, project }] = models;
+  [{ id: model, project }] = models;
+});
 
-  say("a browser in a language that the page is not written in gets English");
+test("a browser in a language that the page is not written in gets English", async () => {
   await french.page.goto(server.url);
   await heading(french, "Sign in");
   assert.equal(await language_of(french), "en");
+});
 
-  say("a German one gets German, and no other words are loaded");
+test("a German one gets German, and no other words are loaded", async () => {
   await german.page.goto(server.url);
   await heading(german, "Anmelden");
   assert.equal(await language_of(german), "de");
   assert.deepEqual(loaded, ["de"]);
+});
 
-  say("before the sign-in another language can be chosen; it is kept");
+test("before the sign-in another language can be chosen; it is kept", async () => {
   await german.page.getByRole("combobox", { name: "Sprache" }).selectOption("es");
   await heading(german, "Iniciar sesión");
   assert.equal(await language_of(german), "es");
@@ -46,8 +50,9 @@ try {
   await heading(german, "Iniciar sesión");
   await german.page.getByRole("combobox", { name: "Idioma" }).selectOption({ index: 0 });
   await heading(german, "Anmelden");
+});
 
-  say("numbers are written and read with a comma");
+test("numbers are written and read with a comma", async () => {
   await german.page.context().request.post(`${server.url}/api/v1/login`, {
     data: { token: server.token },
     headers: { Origin: server.url },
@@ -72,7 +77,7 @@ try {
   await german.drawn();
   await german.page.getByRole("button", { name: "Auf Feuchte malen" }).click();
   await german.page.keyboard.press("b");
-  const value = german.page.locator("strata-value-picker").getByRole("textbox", { name: "Wert" });
+  value = german.page.locator("strata-value-picker").getByRole("textbox", { name: "Wert" });
   assert.equal(await value.inputValue(), "2,5");
   await value.fill("");
   await value.pressSequentially("1,25");
@@ -88,8 +93,9 @@ try {
   await value.fill("1.250"); // which may be either
   await value.press("Enter");
   await german.page.getByText("ohne Tausenderpunkte").waitFor();
+});
 
-  say("data are called by the chosen language first");
+test("data are called by the chosen language first", async () => {
   const finds = await server.json("POST", `/projects/${project}/tables`, {
     name: "Finds",
     columns: [{ name: "Material", kind: "text", labels: { de: "Werkstoff", es: "Materia" } }],
@@ -106,8 +112,9 @@ try {
   await german.page.getByRole("button", { name: "Auf Funde malen" }).click();
   await german.page.getByRole("button", { name: "Tabelle der Datensätze" }).click();
   await german.page.getByRole("columnheader", { name: "Werkstoff" }).waitFor();
+});
 
-  say("with unsaved changes another language is asked about, and No leaves all as it is");
+test("with unsaved changes another language is asked about, and No leaves all as it is", async () => {
   await german.page.getByRole("button", { name: "Auf Feuchte malen" }).click();
   await german.page.keyboard.press("b");
   await value.fill("3");
@@ -131,8 +138,9 @@ try {
   await german.page.keyboard.press("Escape");
   await server.signal("SIGCONT");
   await german.saved();
+});
 
-  say("saved, it is changed at once");
+test("saved, it is changed at once", async () => {
   await german.page.getByRole("button", { name: /^Konto von/ }).click();
   await german.page.getByRole("menuitem", { name: /^Sprache/ }).click();
   await german.page.getByRole("combobox", { name: "Sprache" }).selectOption("es");
@@ -141,19 +149,16 @@ try {
   await german.page.getByRole("button", { name: "Pintar en Funde" }).click();
   await german.page.getByRole("button", { name: "Tabla de registros" }).click();
   await german.page.getByRole("columnheader", { name: "Materia" }).waitFor();
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   for (const who of [german, french]) who.assert_no_complaints(["status of 401", ...kOfLostServer]);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  if (process.env.STRATA_TEST_OUTPUT)
-    await german.page
-      .screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, "languages.png") })
-      .catch(() => {});
-  throw error;
-} finally {
-  for (const who of [german, french]) await who.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const who of [german, french]) await who?.close();
+  await server?.remove();
+});

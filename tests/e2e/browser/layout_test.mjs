@@ -6,6 +6,7 @@ import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 import { active } from "../support/accessible.mjs";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
@@ -15,22 +16,21 @@ const kLarge = { width: 2560, height: 1440 };
 const kWall = { width: 3840, height: 2160 };
 const output = process.env.STRATA_TEST_OUTPUT;
 if (output) mkdirSync(output, { recursive: true });
-
-const desk = await Browser.open();
-const phone = await Browser.open(kPhone);
-const server = new StrataServer({ demo: true });
-const { page } = desk;
-let step = "start";
-const say = (text) => console.log((step = text));
 const shoot = async (who, name) =>
   output && (await who.page.screenshot({ path: join(output, `layout_${name}.png`) }));
 const button = (name) => page.getByRole("button", { name, exact: true });
 const root_font_px = () =>
   page.evaluate(() => parseFloat(getComputedStyle(document.documentElement).fontSize));
 
-try {
+let desk, phone, server, page, model;
+
+test.beforeAll(async () => {
+  desk = await Browser.open();
+  phone = await Browser.open(kPhone);
+  server = new StrataServer({ demo: true });
+  ({ page } = desk);
   await server.start();
-  const [model] = (await server.json("GET", "/models")).models;
+  [model] = (await server.json("GET", "/models")).models;
   await server.json("POST", "/projects", { name: "Empty" });
   const finds = await server.json("POST", `/projects/${model.project}/tables`, {
     name: "Finds",
@@ -44,16 +44,18 @@ try {
     resolution: 2048,
     table: finds.slug,
   });
+});
 
-  say("a project without models asks for one thing");
+test("a project without models asks for one thing", async () => {
   await desk.sign_in(server, server.token);
   await page.goto(`${server.url}/projects/empty`);
   await button("Choose a file").waitFor();
   assert.deepEqual(await page.locator("strata-home-page button.primary").allInnerTexts(), [
     "Choose a file",
   ]);
+});
 
-  say("the options of a tool come into sight with it, and stay away when only the layer changes");
+test("the options of a tool come into sight with it, and stay away when only the layer changes", async () => {
   await page.goto(`${server.url}/models/${model.id}`);
   await desk.drawn();
   await button("Paint on cracks").click();
@@ -81,8 +83,9 @@ try {
     await page.getByRole("button", { name: "Paint on cracks" }).evaluate((each) => each.click());
   }
   await page.setViewportSize(kDesk);
+});
 
-  say("a question begins at the answer that harms nothing");
+test("a question begins at the answer that harms nothing", async () => {
   await button("Options for cracks").click();
   await page.getByRole("menuitem", { name: "Delete…" }).click();
   await page.locator("strata-question dialog[open]").waitFor();
@@ -93,8 +96,9 @@ try {
   await page.keyboard.press("Enter");
   await page.locator("strata-question").waitFor({ state: "detached" });
   assert.equal(await button("Options for cracks").count(), 1, "Enter deleted the layer");
+});
 
-  say("a menu that is open stays inside the window when either changes its width");
+test("a menu that is open stays inside the window when either changes its width", async () => {
   await button("Paint on Finds").click();
   await page.locator("strata-stage .surface").focus();
   await page.keyboard.press("t");
@@ -125,8 +129,9 @@ try {
   await page.keyboard.press("Escape");
   await page.keyboard.press("t");
   await page.setViewportSize(kDesk);
+});
 
-  say("tools that a phone has no room for are hinted at, at the end where they are");
+test("tools that a phone has no room for are hinted at, at the end where they are", async () => {
   await phone.sign_in(server, server.token);
   await phone.page.goto(`${server.url}/models/${model.id}`);
   await phone.drawn();
@@ -151,8 +156,9 @@ try {
     await page.locator("strata-tool-rail").evaluate((rail) => getComputedStyle(rail).maskImage),
     "none",
   );
+});
 
-  say("the help speaks of the pointers that there are");
+test("the help speaks of the pointers that there are", async () => {
   const parts = (who) => who.page.locator("strata-help-sheet h3").allInnerTexts();
   for (const who of [desk, phone]) {
     await who.page.getByRole("button", { name: "Help", exact: true }).click();
@@ -161,8 +167,9 @@ try {
   assert.deepEqual((await parts(desk)).slice(0, 3), ["Mouse", "Touch", "Keys"]);
   assert.deepEqual((await parts(phone)).slice(0, 2), ["Touch", "Keys"]);
   await shoot(phone, "help");
+});
 
-  say("in the window of a wall words are larger, and the help stands in two columns");
+test("in the window of a wall words are larger, and the help stands in two columns", async () => {
   assert.equal(await root_font_px(), 16);
   await page.setViewportSize(kWall);
   assert.equal(await root_font_px(), 24);
@@ -174,8 +181,9 @@ try {
   assert.equal(columns.length, 2);
   await shoot(desk, "wall_help");
   await page.keyboard.press("Escape");
+});
 
-  say("what is pointed at is where the pointer is, also where words are larger");
+test("what is pointed at is where the pointer is, also where words are larger", async () => {
   await page.setViewportSize(kLarge);
   assert.equal(await root_font_px(), 20);
   await page.keyboard.press("b");
@@ -194,8 +202,9 @@ try {
     "the circle of the brush around the pointer",
     150,
   );
+});
 
-  say("the panel is as wide as it is drawn, and grows with the words in it");
+test("the panel is as wide as it is drawn, and grows with the words in it", async () => {
   const panel = page.locator("strata-model-page aside");
   assert.ok(Math.abs((await panel.boundingBox()).width - 330 * 1.25) < 1);
   const splitter = await page.getByRole("separator", { name: "Width of the panel" }).boundingBox();
@@ -207,25 +216,25 @@ try {
     async () => Math.abs((await panel.boundingBox()).width - 600) < 2,
     "the panel to follow the pointer",
   );
+});
 
-  say("the gallery takes the width of a wall");
+test("the gallery takes the width of a wall", async () => {
   await page.goto(server.url);
   await page.getByRole("heading", { name: "Projects" }).waitFor();
   await page.setViewportSize(kWall);
   const { width } = await page.locator("ul.gallery").boundingBox();
   assert.ok(width > 0.9 * kWall.width, `the gallery has ${width} px of ${kWall.width}`);
   await shoot(desk, "wall_home");
+});
 
-  step = "the end";
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   for (const browser of [desk, phone]) browser.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-30).join("\n")}`);
-  for (const [name, who] of Object.entries({ desk, phone }))
-    await shoot(who, `failed_${name}`).catch(() => {});
-  throw error;
-} finally {
-  for (const browser of [desk, phone]) await browser.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const browser of [desk, phone]) await browser?.close();
+  await server?.remove();
+});

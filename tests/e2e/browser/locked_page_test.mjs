@@ -3,18 +3,10 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kEnough = 150; // pixels of a stroke that is there
-
-const [carl, ada, phone] = [
-  await Browser.open(),
-  await Browser.open(),
-  await Browser.open({ viewport: { width: 390, height: 844 } }),
-];
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 
 async function shoot({ page }, name) {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -46,21 +38,43 @@ function changes_sent({ page }) {
   return sent;
 }
 
-try {
+let carl,
+  ada,
+  phone,
+  server,
+  model,
+  layers,
+  palette,
+  finds,
+  bone,
+  edits,
+  sent,
+  texels,
+  saved,
+  known;
+
+test.beforeAll(async () => {
+  [carl, ada, phone] = [
+    await Browser.open(),
+    await Browser.open(),
+    await Browser.open({ viewport: { width: 390, height: 844 } }),
+  ];
+  server = new StrataServer({ demo: true });
   await server.start();
-  const model = (await server.json("GET", "/models")).models[0];
-  const layers = `/models/${model.id}/layers`;
+  model = (await server.json("GET", "/models")).models[0];
+  layers = `/models/${model.id}/layers`;
   for (const other of (await server.json("GET", layers)).layers)
     await server.json("PATCH", `${layers}/${other.id}`, { visible: false });
-  const palette = { mode: "categorical", points: [{ at: 1, color: "#d55e00", label: "Bone" }] };
+  palette = { mode: "categorical", points: [{ at: 1, color: "#d55e00", label: "Bone" }] };
   await server.json("POST", layers, { name: "Finds", type: "u8", palette });
-  const finds = `${layers}/finds`;
-  const bone = rgb(palette.points[0].color);
-  const edits = async () => (await server.json("GET", `${finds}/edits`)).total;
+  finds = `${layers}/finds`;
+  bone = rgb(palette.points[0].color);
+  edits = async () => (await server.json("GET", `${finds}/edits`)).total;
+});
 
-  say("a curator and two annotators look at the model; one of them paints");
+test("a curator and two annotators look at the model; one of them paints", async () => {
   await carl.sign_in(server, await server.add_person("carl", "curator"));
-  const sent = changes_sent(ada);
+  sent = changes_sent(ada);
   const adas = await server.add_person("ada", "annotator");
   for (const who of [ada, phone]) await who.sign_in(server, adas);
   for (const who of [carl, ada, phone]) {
@@ -89,8 +103,9 @@ try {
       .count()) > 0,
   );
   await ada.page.keyboard.press("Escape");
+});
 
-  say("the lock falls while her button is down: what she painted stays, and nothing more is sent");
+test("the lock falls while her button is down: what she painted stays, and nothing more is sent", async () => {
   const box = await ada.stage_box();
   const at = (x, y) => [box.x + x * box.width, box.y + y * box.height];
   const before = await edits();
@@ -103,14 +118,15 @@ try {
   await notice(ada).waitFor();
   await told_in_panel(ada).waitFor();
   await lock_of(ada, "Locked: a curator can unlock it.").waitFor();
-  const texels = (await server.json("GET", `${finds}/statistics`)).texels;
-  const [saved, known] = [await edits(), sent.length];
+  texels = (await server.json("GET", `${finds}/statistics`)).texels;
+  [saved, known] = [await edits(), sent.length];
   await ada.page.mouse.move(...at(0.56, 0.44), { steps: 5 });
   await ada.page.mouse.up();
   assert.equal(await cursor(ada), "not-allowed");
   await shoot(ada, "while_painting");
+});
 
-  say("no tool sends anything, and each says why");
+test("no tool sends anything, and each says why", async () => {
   for (const key of ["b", "e", "a", "l", "g"]) {
     await ada.page.keyboard.press(key);
     assert.equal(await cursor(ada), "not-allowed", key);
@@ -144,8 +160,9 @@ try {
     [await edits(), (await server.json("GET", `${finds}/statistics`)).texels],
     [saved, texels],
   );
+});
 
-  say("another layer is painted as before, and coming back to the locked one says so again");
+test("another layer is painted as before, and coming back to the locked one says so again", async () => {
   await server.json("POST", layers, { name: "Open", type: "u8", palette });
   await ada.page.getByRole("button", { name: "Paint on Open" }).click();
   await ada.page.keyboard.press("b");
@@ -160,8 +177,9 @@ try {
   while ((await close.count()) > 0) await close.first().click();
   await ada.page.getByRole("button", { name: "Paint on Finds" }).click();
   await notice(ada).waitFor();
+});
 
-  say("on a phone");
+test("on a phone", async () => {
   await phone.page.getByRole("button", { name: "Show the panel" }).click();
   await lock_of(phone, "Locked: a curator can unlock it.").waitFor();
   await phone.page.getByRole("button", { name: "Paint on Finds" }).click();
@@ -169,8 +187,9 @@ try {
   await notice(phone).waitFor();
   await told_in_panel(phone).waitFor();
   await shoot(phone, "phone");
+});
 
-  say("the curator sees the lock, paints all the same, and unlocks");
+test("the curator sees the lock, paints all the same, and unlocks", async () => {
   await lock_of(carl, "Locked for annotators. You may still change it.").waitFor();
   await carl.page.getByRole("button", { name: "Paint on Finds" }).click();
   await carl.page.keyboard.press("b");
@@ -197,12 +216,10 @@ try {
   for (const who of [carl, ada, phone]) who.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  for (const [name, who] of Object.entries({ carl, ada, phone }))
-    await shoot(who, `failed_${name}`).catch(() => {});
-  throw error;
-} finally {
-  for (const who of [carl, ada, phone]) await who.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const who of [carl, ada, phone]) await who?.close();
+  await server?.remove();
+});

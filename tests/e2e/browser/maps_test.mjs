@@ -9,24 +9,17 @@ import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { findings } from "../support/accessible.mjs";
 import { Browser, rgb } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kSupport = join(dirname(fileURLToPath(import.meta.url)), "..", "support");
 const kMagenta = "#ff00ffff"; // nothing on the pot has this hue
-
-const browser = await Browser.open();
-const { page } = browser;
-const server = new StrataServer({ demo: true });
-const folder = mkdtempSync(join(tmpdir(), "strata-maps-"));
 const file = (name) => join(folder, name);
-let step = "start";
-const say = (text) => console.log((step = text));
 
 const base = "/models/demo-pot";
 const layer = (name) => server.json("GET", `${base}/layers/${name}`);
 const statistics = (name) => server.json("GET", `${base}/layers/${name}/statistics`);
 const button = (name) => page.getByRole("button", { name, exact: true });
-const dialog = page.locator("strata-map-dialog, strata-orthophoto-dialog");
 const shot = async (name) => {
   if (process.env.STRATA_TEST_OUTPUT)
     await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
@@ -78,7 +71,14 @@ put("photo.pgw", place(32).encode())
   writeFileSync(file("notes.doc"), "?");
 }
 
-try {
+let browser, page, server, folder, dialog;
+
+test.beforeAll(async () => {
+  browser = await Browser.open();
+  ({ page } = browser);
+  server = new StrataServer({ demo: true });
+  folder = mkdtempSync(join(tmpdir(), "strata-maps-"));
+  dialog = page.locator("strata-map-dialog, strata-orthophoto-dialog");
   await server.start();
   make_files((await server.json("GET", base)).bounds);
   await server.json("POST", `${base}/layers`, {
@@ -99,8 +99,9 @@ try {
   await browser.drawn();
   const later = button("Decide later");
   if (await later.isVisible()) await later.click();
+});
 
-  say("a shapefile tells its attributes, and names become classes");
+test("a shapefile tells its attributes, and names become classes", async () => {
   await open_dialog("States");
   await shot("maps-empty");
   await give("walls.shp", "walls.dbf");
@@ -126,8 +127,9 @@ try {
     "the moss on the pot",
     150,
   );
+});
 
-  say("numbers with the names of another attribute");
+test("numbers with the names of another attribute", async () => {
   await open_dialog("States");
   await give("walls.shp", "walls.dbf");
   await page.getByLabel("Each area gets").selectOption("ID");
@@ -135,8 +137,9 @@ try {
   await seen_from_front();
   await paint();
   assert.deepEqual((await statistics("states")).keys.map(({ key }) => key).sort(), [7, 9]);
+});
 
-  say("a scanned map: its colours are found, and get values");
+test("a scanned map: its colours are found, and get values", async () => {
   await open_dialog("States");
   await give("plan.png", "plan.pgw");
   await page.getByText("The file says where it lies.").waitFor();
@@ -162,8 +165,9 @@ try {
       .filter((key) => key === 4 || key === 11),
     [4, 11],
   );
+});
 
-  say("a raster of numbers lies where it says");
+test("a raster of numbers lies where it says", async () => {
   await open_dialog("Depth");
   await give("depth.tif");
   await page.getByText("16 × 16 px · 1 band").waitFor();
@@ -176,8 +180,9 @@ try {
     depth.texels > 1000 && depth.min >= 0 && depth.max <= 7.5,
     JSON.stringify(depth).slice(0, 200),
   );
+});
 
-  say("a map with a coordinate system on a model without one is asked about");
+test("a map with a coordinate system on a model without one is asked about", async () => {
   await open_dialog("Depth");
   await give("utm.tif");
   await page.getByText("16 × 16 px · 1 band · EPSG:25830").waitFor();
@@ -204,8 +209,9 @@ try {
   await button("Yes, use the map").click();
   await dialog.waitFor({ state: "detached" });
   assert.equal((await statistics("depth")).max, 115);
+});
 
-  say("who may only paint adds no names to the legend, and paints those that are there");
+test("who may only paint adds no names to the legend, and paints those that are there", async () => {
   const annotator = (await server.add_person("ann", "annotator")).token;
   const as_annotator = (query) => {
     const form = new FormData();
@@ -229,8 +235,9 @@ try {
   assert.equal((await layer("few")).palette.points.length, 1);
   assert.equal((await statistics("few")).texels, 0);
   assert.equal((await as_annotator("attribute=ID")).status, 200);
+});
 
-  say("what is no map, and numbers for vertices");
+test("what is no map, and numbers for vertices", async () => {
   await open_dialog("Depth");
   await give("notes.doc");
   await page.getByRole("alert").getByText("“notes.doc” is none of these").waitFor();
@@ -242,8 +249,9 @@ try {
   await page.getByRole("alert").waitFor();
   await shot("maps-vertices");
   await page.keyboard.press("Escape");
+});
 
-  say("outlines of a layer are saved for a map");
+test("outlines of a layer are saved for a map", async () => {
   const saved = async (command) => {
     await button("Options for pieces").click();
     if (command === "Save outlines as GeoJSON") await shot("maps-outlines");
@@ -274,8 +282,9 @@ try {
     [gpkg.name, gpkg.bytes.subarray(0, 15).toString()],
     [`demo-pot-${pieces.slug}.gpkg`, "SQLite format 3"],
   );
+});
 
-  say("an orthophoto becomes a look");
+test("an orthophoto becomes a look", async () => {
   for (const { id } of (await server.json("GET", `${base}/layers`)).layers)
     await server.json("PATCH", `${base}/layers/${id}`, { visible: false });
   await page
@@ -299,8 +308,9 @@ try {
     300,
   );
   await shot("maps-look");
+});
 
-  say("it is renamed and moved");
+test("it is renamed and moved", async () => {
   const names = () => page.locator("strata-view-panel li .name").allTextContents();
   await button("Options for Ortho").click();
   await page.getByRole("menuitem", { name: "Rename…" }).click();
@@ -316,17 +326,17 @@ try {
     "the server to know",
   );
   await shot("maps-looks");
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   browser.assert_no_complaints(["422", "415"]);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  await shot("maps");
-  throw error;
-} finally {
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
   rmSync(folder, { recursive: true, force: true });
-  await browser.close();
-  await server.remove();
-}
+  await browser?.close();
+  await server?.remove();
+});

@@ -4,22 +4,15 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kCrack = "#ff00ff";
 const kSample = "#00e0ff";
 
-const browser = await Browser.open();
-const { page } = browser;
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
-
 const base = "/models/demo-pot";
 const L = `${base}/layers/damages`;
 const button = (name) => page.getByRole("button", { name, exact: true });
-const panel = page.locator("strata-table-panel");
-const form = page.locator("strata-record-dialog");
 const notice = (text) => page.locator("strata-notices").getByText(text).last().waitFor();
 const row = (text) => panel.locator(".line", { hasText: text });
 const shot = async (name) => {
@@ -44,7 +37,6 @@ async function click_at(x, y, count = 1) {
   const box = await browser.stage_box();
   await page.mouse.click(box.x + x * box.width, box.y + y * box.height, { clickCount: count });
 }
-const so_far = page.locator("strata-stage .length");
 function metres_of(text) {
   const [, number, unit] = /([\d.]+) (mm|cm|m)/.exec(text);
   return Number(number) * { mm: 0.001, cm: 0.01, m: 1 }[unit];
@@ -59,7 +51,27 @@ async function make_column(name, kind) {
   await panel.getByRole("columnheader", { name }).waitFor();
 }
 
-try {
+let browser,
+  page,
+  server,
+  panel,
+  form,
+  so_far,
+  metres_per,
+  by_clicks,
+  others,
+  kept,
+  frame,
+  draw,
+  cracks;
+
+test.beforeAll(async () => {
+  browser = await Browser.open();
+  ({ page } = browser);
+  server = new StrataServer({ demo: true });
+  panel = page.locator("strata-table-panel");
+  form = page.locator("strata-record-dialog");
+  so_far = page.locator("strata-stage .length");
   await server.start();
   await server.json("POST", `${base}/layers`, {
     name: "Damages",
@@ -79,7 +91,7 @@ try {
     await server.json("POST", "/tables/damages/records", { values: { name } });
   for (const other of ["pieces", "cracks"])
     await server.json("PATCH", `${base}/layers/${other}`, { visible: false });
-  const metres_per = { mm: 0.001, cm: 0.01, m: 1 }[(await server.json("GET", base)).unit];
+  metres_per = { mm: 0.001, cm: 0.01, m: 1 }[(await server.json("GET", base)).unit];
 
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
@@ -89,16 +101,18 @@ try {
   await button("Paint on Damages").click();
   await page.keyboard.press("t");
   await panel.getByText("2 records").waitFor();
+});
 
-  say("the tools are there once the table has columns for them");
+test("the tools are there once the table has columns for them", async () => {
   assert.deepEqual([await button("Line").count(), await button("Point").count()], [0, 0]);
   await make_column("Cracks", "line");
   await make_column("Samples", "point");
   await panel.getByRole("columnheader", { name: "Length" }).waitFor();
   await panel.getByRole("columnheader", { name: "Points" }).waitFor();
   await button("Line").click();
+});
 
-  say("a drag across the pot is a line, as long as it looks, in the record's colour");
+test("a drag across the pot is a line, as long as it looks, in the record's colour", async () => {
   await hides(kCrack, "nothing drawn yet");
   await browser.drag([
     [0.42, 0.57],
@@ -125,8 +139,9 @@ try {
     "the length beside the area",
   );
   await shot("mark-line");
+});
 
-  say("what was drawn is taken back by the notice, and by keys");
+test("what was drawn is taken back by the notice, and by keys", async () => {
   await page.locator("strata-notices").getByRole("button", { name: "Undo" }).click();
   await hides(kCrack, "the line to be gone");
   assert.deepEqual(await marks(1, "cracks"), []);
@@ -134,10 +149,9 @@ try {
   await shows(kCrack, "the line again");
   await page.keyboard.press("Control+Z");
   await hides(kCrack, "and gone");
+});
 
-  say(
-    "clicks are its places; a double click ends it, Escape gives it up; how long it is so far stands at the pointer",
-  );
+test("clicks are its places; a double click ends it, Escape gives it up; how long it is so far stands at the pointer", async () => {
   await click_at(0.42, 0.56);
   await click_at(0.5, 0.6);
   await browser.point(0.52, 0.58);
@@ -157,10 +171,11 @@ try {
   await shot("mark-line-by-clicks");
   await click_at(0.56, 0.56, 2);
   await shows(kCrack, "the line of clicks");
-  const [by_clicks, ...others] = await marks(1, "cracks");
+  [by_clicks, ...others] = await marks(1, "cracks");
   assert.deepEqual([others, await so_far.count()], [[], 0]);
+});
 
-  say("and told while it is drawn what the line then has");
+test("and told while it is drawn what the line then has", async () => {
   await click_at(0.42, 0.56);
   await click_at(0.5, 0.6);
   await browser.point(0.56, 0.56);
@@ -170,15 +185,17 @@ try {
     `the length to be ${made_m} m`,
   );
   await page.keyboard.press("Escape");
+});
 
-  say("where there is no surface there is no line, and a notice says so");
+test("where there is no surface there is no line, and a notice says so", async () => {
   await browser.drag([
     [0.02, 0.1],
     [0.1, 0.12],
   ]);
   await notice("There is no surface there.");
+});
 
-  say("a click sets a point, for the record that is chosen");
+test("a click sets a point, for the record that is chosen", async () => {
   await row("Sample A").getByRole("rowheader").click();
   await button("Paint with it").click();
   await page.keyboard.press("s");
@@ -192,8 +209,9 @@ try {
     "the number of points",
   );
   await shot("mark-point");
+});
 
-  say("a record that has a line or a point alone is gone to, also after the page was loaded again");
+test("a record that has a line or a point alone is gone to, also after the page was loaded again", async () => {
   const view_of = async () =>
     new URL(page.url()).searchParams.toString() +
     (await page.locator("strata-stage .scale").innerText());
@@ -233,13 +251,14 @@ try {
   await wait_for(async () => (await row("Nothing").count()) === 0, "the record to be gone");
   await page.locator("strata-stage .surface").focus();
   await page.keyboard.press("Home");
+});
 
-  say("a drag along the silhouette is one line on the surface that was begun");
+test("a drag along the silhouette is one line on the surface that was begun", async () => {
   await row("North crack").getByRole("rowheader").click();
   await button("Paint with it").click();
   await button("Choose none").click();
   await button("Line").click();
-  const kept = (await marks(1, "cracks")).length;
+  kept = (await marks(1, "cracks")).length;
   let camera = null;
   page.on("request", (request) => {
     if (request.method() === "POST" && request.url().endsWith("/profile"))
@@ -249,7 +268,7 @@ try {
   await browser.point(0.46, 0.58);
   await wait_for(() => camera, "the camera of what is drawn");
   await page.keyboard.press("Escape");
-  const frame = await browser.stage_box();
+  frame = await browser.stage_box();
   const scale = camera.width / frame.width;
   /** Where the pot begins in a row of the picture, in pixels of the page. */
   const edge_at = async (y) => {
@@ -265,7 +284,7 @@ try {
   const way = [];
   for (let y = top; y <= bottom; y += 3)
     way.push([(await edge_at(y)) + 3 + 7 * Math.sin((y - top) / 6), y]);
-  const draw = async (points) => {
+  draw = async (points) => {
     await page.mouse.move(frame.x + points[0][0], frame.y + points[0][1]);
     await page.mouse.down();
     for (const [x, y] of points.slice(1))
@@ -308,8 +327,9 @@ try {
   assert.ok(deepest < 0.0015, `a step that leads ${deepest} m below the surface`);
   await page.locator("strata-notices").getByRole("button", { name: "Undo" }).last().click();
   await wait_for(async () => (await marks(1, "cracks")).length === kept, "the line to be gone");
+});
 
-  say("a line that crosses an edge for good is cut, says so, and is taken back as a whole");
+test("a line that crosses an edge for good is cut, says so, and is taken back as a whole", async () => {
   const middle = 0.5 * frame.width;
   await draw([
     [middle, 0.6 * frame.height],
@@ -333,11 +353,12 @@ try {
     "all of its pieces to be gone",
   );
   await page.keyboard.press("v");
+});
 
-  say("the form lists what the record has, and takes one out");
+test("the form lists what the record has, and takes one out", async () => {
   await row("North crack").getByRole("rowheader").click();
   await button("Edit the record").click();
-  const cracks = form.getByRole("group", { name: "Cracks" });
+  cracks = form.getByRole("group", { name: "Cracks" });
   await cracks.getByRole("button", { name: /^Take out / }).waitFor();
   await shot("mark-form");
   await cracks.getByRole("button", { name: /^Take out / }).click();
@@ -347,8 +368,9 @@ try {
     async () => !/ m/.test(await row("North crack").innerText()),
     "the length to be gone, too",
   );
+});
 
-  say("and leads to drawing more, after it has kept what was written");
+test("and leads to drawing more, after it has kept what was written", async () => {
   await button("Edit the record").click();
   await form.locator("textarea").fill("Long crack");
   await cracks.getByRole("button", { name: "Draw…" }).click();
@@ -363,18 +385,16 @@ try {
   await button("Choose none").click();
   await page.keyboard.press("v");
   await shot("marks");
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   browser.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(
-    `failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`,
-  );
-  await shot("marks-failure");
-  throw error;
-} finally {
-  await browser.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  await browser?.close();
+  await server?.remove();
+});

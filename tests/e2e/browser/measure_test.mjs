@@ -5,19 +5,9 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
-const browser = await Browser.open();
-const phone = await Browser.open({
-  viewport: { width: 390, height: 844 },
-  hasTouch: true,
-  isMobile: true,
-  deviceScaleFactor: 2,
-});
-const server = new StrataServer();
-const { page } = browser;
-let step = "start";
-const say = (text) => console.log((step = text));
 const shot = async (name, of = page) => {
   if (process.env.STRATA_TEST_OUTPUT)
     await of.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `measure_${name}.png`) });
@@ -106,7 +96,6 @@ const of = (where) => {
     );
   return { panel, button, figure, told, is_about, places, none };
 };
-const desk = of(browser);
 
 /**
  * Seen from above in parallel: what a place of the roof is on the page, by what the server sees at
@@ -152,10 +141,39 @@ async function from_above({ page: on }) {
   };
 }
 
-try {
+let browser,
+  phone,
+  server,
+  page,
+  desk,
+  model,
+  viewer,
+  roof_from_above,
+  mm_per_px,
+  click,
+  near,
+  plot,
+  readout,
+  x,
+  y,
+  z,
+  moisture,
+  moved_px;
+
+test.beforeAll(async () => {
+  browser = await Browser.open();
+  phone = await Browser.open({
+    viewport: { width: 390, height: 844 },
+    hasTouch: true,
+    isMobile: true,
+    deviceScaleFactor: 2,
+  });
+  server = new StrataServer();
+  ({ page } = browser);
+  desk = of(browser);
   await server.start();
-  const model = await import_roof();
-  const viewer = await server.add_person("vera", "viewer");
+  model = await import_roof();
+  viewer = await server.add_person("vera", "viewer");
   await server.json("POST", `/models/${model}/layers`, {
     name: "Moisture",
     type: "f32",
@@ -190,14 +208,15 @@ try {
     where: "x < 50",
     value: 7,
   });
+});
 
-  say("who may only look has the tool, by its key, with no layer chosen");
+test("who may only look has the tool, by its key, with no layer chosen", async () => {
   await browser.sign_in(server, viewer);
   await page.goto(`${server.url}/models/${model}`);
   await browser.drawn();
-  const roof_from_above = await from_above(browser);
-  const { mm_per_px, click } = roof_from_above;
-  const near = 2.5 * mm_per_px; // two ends, each within a pixel and a bit
+  roof_from_above = await from_above(browser);
+  ({ mm_per_px, click } = roof_from_above);
+  near = 2.5 * mm_per_px; // two ends, each within a pixel and a bit
   await page.keyboard.press("m");
   assert.equal(
     await page.getByRole("button", { name: "Measure", exact: true }).getAttribute("aria-pressed"),
@@ -208,10 +227,9 @@ try {
   await unconfirmed.waitFor();
   await server.json("PATCH", `/models/${model}`, { scale_verified: true });
   await unconfirmed.waitFor({ state: "detached" });
+});
 
-  say(
-    "up and down the roof: straight it is its shadow, along the surface it is longer by the slope",
-  );
+test("up and down the roof: straight it is its shadow, along the surface it is longer by the slope", async () => {
   await click(40, 10);
   await desk.places(1);
   await click(40, 110);
@@ -221,8 +239,9 @@ try {
   await desk.is_about("rise", 0, near * kSlope);
   assert.equal(await desk.figure("area").count(), 0);
   await shot("two_places");
+});
 
-  say("Backspace takes a place back, and another one is set: half way up the height is the roof's");
+test("Backspace takes a place back, and another one is set: half way up the height is the roof's", async () => {
   await page.keyboard.press("Backspace");
   await desk.places(1);
   await click(40, 60);
@@ -230,8 +249,9 @@ try {
   await desk.is_about("straight", 50 * kAlong, near * kAlong);
   await desk.is_about("along", 50 * kAlong, near * kAlong);
   await desk.is_about("rise", 50 * kSlope, near * kSlope);
+});
 
-  say("the length to the pointer stands beside it");
+test("the length to the pointer stands beside it", async () => {
   await page.mouse.move(...roof_from_above.page_of(120, 60));
   const so_far = page.locator("strata-stage .length");
   await wait_for(async () => {
@@ -240,8 +260,9 @@ try {
     return Math.abs(cm * 10 - (50 * kAlong + 80)) < 3 * near;
   }, "the length so far");
   await shot("so_far");
+});
 
-  say("a second click on the last place ends; a rectangle on one side of the roof has its area");
+test("a second click on the last place ends; a rectangle on one side of the roof has its area", async () => {
   await page.keyboard.press("Escape");
   await desk.none();
   for (const [x, y] of [
@@ -266,14 +287,15 @@ try {
     "one side of a roof is flat",
   );
   await shot("area");
+});
 
-  say("the next click begins anew; what is measured stays when the camera moves");
+test("the next click begins anew; what is measured stays when the camera moves", async () => {
   await click(20, 10);
   await desk.places(1);
   await click(20, 110);
   await desk.places(2);
   await page.keyboard.press("Enter");
-  const plot = desk.panel.getByRole("slider", { name: "Place along the profile" });
+  plot = desk.panel.getByRole("slider", { name: "Place along the profile" });
   await plot.locator("path.curve").waitFor();
   const drawn = async () =>
     page
@@ -285,9 +307,10 @@ try {
   await desk.is_about("along", 100 * kAlong, near * kAlong, ", still");
   await shot("turned");
   await page.keyboard.press("5");
+});
 
-  say("arrow keys go along the curve: in its middle is the ridge, marked on the model");
-  const readout = desk.panel.locator("strata-profile-plot output");
+test("arrow keys go along the curve: in its middle is the ridge, marked on the model", async () => {
+  readout = desk.panel.locator("strata-profile-plot output");
   const in_mm = (number, unit) => Number(number) * { µm: 0.001, mm: 1, cm: 10 }[unit];
   const sample = async () => {
     const found = /At ([\d.]+) (µm|mm|cm) · Height \(z\) ([\d.]+) (µm|mm|cm)/.exec(
@@ -317,8 +340,9 @@ try {
   const box = await plot.boundingBox();
   await page.mouse.move(box.x + box.width - 20, box.y + box.height / 2);
   await wait_for(async () => (await sample()).along_mm > 90 * kAlong, "the pointer's place");
+});
 
-  say("at one scale for both the roof is as steep as it is");
+test("at one scale for both the roof is as steep as it is", async () => {
   const slope = async () => {
     const d = await plot.locator("path.curve").getAttribute("d");
     const points = d
@@ -333,8 +357,9 @@ try {
   await desk.panel.getByLabel("Same scale (1:1)").check();
   await wait_for(async () => Math.abs((await slope()) / shown - 1) < 0.03, "the true slope");
   await shot("equal_scale");
+});
 
-  say("the curve of a layer has a gap where there is no value");
+test("the curve of a layer has a gap where there is no value", async () => {
   await plot.focus(); // keys that are pressed on a checkbox are its own
   await page.keyboard.press("Escape");
   await desk.none();
@@ -374,8 +399,9 @@ try {
     value: 2,
   });
   await readout.getByText("Moisture 2 %").waitFor(); // what others paint meanwhile
+});
 
-  say("the profile is saved as the server's CSV and as a picture");
+test("the profile is saved as the server's CSV and as a picture", async () => {
   const save = async (name) => {
     const [download] = await Promise.all([
       page.waitForEvent("download"),
@@ -394,7 +420,7 @@ try {
     .map((line) => line.split(","));
   assert.equal(head[0], "along_mm");
   assert.ok(head.includes("moisture") && head.includes("units"), `${head}`);
-  const [x, y, z, moisture] = ["x", "y", "z", "moisture"].map((name) => head.indexOf(name));
+  [x, y, z, moisture] = ["x", "y", "z", "moisture"].map((name) => head.indexOf(name));
   assert.ok(Math.abs(Number(lines.at(-1)[0]) - 180) < near, lines.at(-1).join());
   for (const line of lines)
     assert.ok(Math.abs(Number(line[z]) - height_at(Number(line[y]))) < 0.01, line.join());
@@ -417,14 +443,16 @@ try {
   );
   assert.equal(drawing.curves, 2);
   assert.ok(!picture.text.includes("var(") && !picture.text.includes("lit$"), "it stands alone");
+});
 
-  say("where there is no surface there is no place");
+test("where there is no surface there is no place", async () => {
   await page.keyboard.press("Escape");
   await click(100, 140);
   await page.locator("strata-notices").getByText("There is no surface there.").waitFor();
   await desk.none();
+});
 
-  say("keys alone: a place in the middle, the model is moved, another one");
+test("keys alone: a place in the middle, the model is moved, another one", async () => {
   await page.mouse.move(2, 2);
   await page.locator("strata-stage .surface").focus();
   await page.keyboard.press("m");
@@ -433,7 +461,7 @@ try {
   await page.keyboard.press("m");
   await desk.places(2);
   await page.keyboard.press("Enter");
-  const moved_px =
+  moved_px =
     3 *
     0.04 *
     Math.min(
@@ -444,10 +472,9 @@ try {
     );
   await desk.is_about("straight", moved_px * mm_per_px, near);
   await shot("keys");
+});
 
-  say(
-    "buttons do the same, and the keyboard stays in the panel when the one that was pressed goes",
-  );
+test("buttons do the same, and the keyboard stays in the panel when the one that was pressed goes", async () => {
   await desk.button("Clear").focus();
   await page.keyboard.press("Enter");
   await desk.none();
@@ -474,17 +501,17 @@ try {
     "the keyboard at the first button that is left",
   );
   await desk.is_about("straight", moved_px * mm_per_px, near);
+});
 
-  say("where not all places are seen at once, the nearest surface counts, and the panel says so");
+test("where not all places are seen at once, the nearest surface counts, and the panel says so", async () => {
   await desk.panel.getByRole("radio", { name: "What is nearest" }).click();
   await desk.panel.getByText(/Of each step of the straight lines/).waitFor();
   await desk.is_about("along", moved_px * mm_per_px, near);
   await desk.panel.getByRole("radio", { name: "What is seen" }).click();
   await desk.panel.getByText(/The surface that was seen/).waitFor();
+});
 
-  say(
-    "what lies on two sides is measured straight; a line through the object is no way over its surface, and none is told",
-  );
+test("what lies on two sides is measured straight; a line through the object is no way over its surface, and none is told", async () => {
   await page.keyboard.press("Escape");
   await desk.none();
   await page.keyboard.press("1"); // from the front
@@ -502,8 +529,9 @@ try {
   await desk.panel.getByRole("radio", { name: "What is seen" }).click();
   await desk.is_about("along", 60 * kAlong, near * kAlong);
   assert.equal(await desk.panel.getByText(/The straight lines pass/).count(), 0);
+});
 
-  say("another tool takes all of it away");
+test("another tool takes all of it away", async () => {
   await page.keyboard.press("v");
   await wait_for(
     async () => (await page.locator("strata-stage svg.measured").count()) === 0,
@@ -511,8 +539,9 @@ try {
   );
   await page.keyboard.press("m");
   await desk.none();
+});
 
-  say("by fingers, on a phone: taps set places, a drag turns, buttons end and clear");
+test("by fingers, on a phone: taps set places, a drag turns, buttons end and clear", async () => {
   const hand = of(phone);
   await phone.sign_in(server, viewer);
   await phone.page.goto(`${server.url}/models/${model}`);
@@ -556,21 +585,18 @@ try {
   await touch("touchEnd");
   await wait_for(async () => (await marks()) !== unturned, "the model to be turned");
   await hand.places(1);
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   browser.assert_no_complaints();
   phone.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(
-    `failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}\n${phone.complaints.join("\n")}`,
-  );
-  await shot("failure");
-  await shot("failure_phone", phone.page);
-  throw error;
-} finally {
-  await browser.close();
-  await phone.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  await browser?.close();
+  await phone?.close();
+  await server?.remove();
+});

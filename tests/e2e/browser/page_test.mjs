@@ -4,16 +4,11 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, has_hue, kOfLostServer, rgb } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kMagenta = "#ff00ffff"; // nothing on the pot has this hue
 const kEdge_px = 3; // of the footprint's edge: half a texel, and JPEG's blocks of colour
-
-const browser = await Browser.open();
-const { page } = browser;
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 
 const base = "/models/demo-pot";
 const edits = async (layer) =>
@@ -137,7 +132,12 @@ async function drop_scan(name) {
   );
 }
 
-try {
+let browser, page, server, cameras, box, before;
+
+test.beforeAll(async () => {
+  browser = await Browser.open();
+  ({ page } = browser);
+  server = new StrataServer({ demo: true });
   await server.start();
   const palette = { mode: "categorical", points: [{ at: 1, color: kMagenta, label: "Test" }] };
   await server.json("POST", `${base}/layers`, {
@@ -147,7 +147,7 @@ try {
     palette,
   });
   await show_only("test");
-  const cameras = []; // that left the page
+  cameras = []; // that left the page
   page.on("websocket", (socket) =>
     socket.on("framesent", ({ payload }) => {
       const message = JSON.parse(payload);
@@ -158,8 +158,9 @@ try {
   await page.getByRole("link", { name: /Demo pot/ }).click();
   await browser.drawn();
   await button("Paint on Test").click();
+});
 
-  say("the cursor shows the true footprint, in pixels and in millimetres, far and near");
+test("the cursor shows the true footprint, in pixels and in millimetres, far and near", async () => {
   await page.keyboard.press("b");
   await compare_footprint("40 px");
   await radio("on the object").click();
@@ -171,14 +172,15 @@ try {
   assert.ok(near > far * 1.4, `the circle of 9 mm grows from ${far} to ${near} px only`);
   await page.keyboard.press("Home");
   await radio("on screen").click();
+});
 
-  say("Space turns the model, also after a tool was chosen with the mouse");
+test("Space turns the model, also after a tool was chosen with the mouse", async () => {
   await button("Eraser").click();
   await button("Brush").click();
   const painted = await edits("test");
   const canvas = page.locator("strata-stage canvas").first();
   const camera = () => canvas.evaluate((each) => Number(each.dataset.cameraSeq));
-  const [box, before] = [await browser.stage_box(), await camera()];
+  [box, before] = [await browser.stage_box(), await camera()];
   await browser.point(0.5, 0.5);
   await page.keyboard.down(" ");
   await browser.drag([
@@ -194,8 +196,9 @@ try {
     "true",
     "Space pressed a button",
   );
+});
 
-  say("keys do not act behind a question; a choice obeys the arrows");
+test("keys do not act behind a question; a choice obeys the arrows", async () => {
   await button("Fill the whole surface").click();
   await page.getByRole("heading", { name: "Fill all of “Test”?" }).waitFor();
   await page.keyboard.press("e");
@@ -210,8 +213,9 @@ try {
   assert.equal(await radio("Square").getAttribute("aria-checked"), "true");
   await page.keyboard.press("ArrowRight");
   assert.equal(await radio("Round").getAttribute("aria-checked"), "true");
+});
 
-  say("keys do not move the camera in mid-stroke");
+test("keys do not move the camera in mid-stroke", async () => {
   await page.mouse.move(box.x + box.width * 0.5, box.y + box.height * 0.6);
   await wait_for(async () => cameras.at(-1).moving === false, "the camera to come to rest");
   const held = cameras.length;
@@ -222,8 +226,9 @@ try {
   await page.mouse.up();
   await browser.saved();
   assert.equal(cameras.length, held, "the camera moved in mid-stroke");
+});
 
-  say("a stroke that is not saved yet when its page is left: the server dies, too");
+test("a stroke that is not saved yet when its page is left: the server dies, too", async () => {
   const known = await edits("test");
   await server.signal("SIGSTOP");
   await browser.drag([
@@ -241,8 +246,9 @@ try {
   await page.goForward();
   await browser.drawn();
   await page.keyboard.press("b");
+});
 
-  say("somebody else changes the layer that is being edited");
+test("somebody else changes the layer that is being edited", async () => {
   await menu("Test", "Edit…");
   await page.getByLabel("Label of class 1").waitFor();
   await server.json("PATCH", `${base}/layers/test`, { description: "by the other" });
@@ -264,8 +270,9 @@ try {
     [changed.name, changed.description, changed.palette.points.length],
     ["Test", "by the other", 2],
   );
+});
 
-  say("a layer of things with records");
+test("a layer of things with records", async () => {
   await button("New layer").click();
   await radio(/^Things with records/).click();
   await page.getByLabel("Name", { exact: true }).fill("Finds");
@@ -295,8 +302,9 @@ try {
       .then(({ keys }) => keys.map(({ key }) => key)),
     [70012],
   );
+});
 
-  say("a unit that was confirmed by mistake is corrected");
+test("a unit that was confirmed by mistake is corrected", async () => {
   await button("About this model").click();
   await button("Correct size and direction…").click();
   await radio("centimetres").click();
@@ -305,10 +313,9 @@ try {
     async () => (await server.json("GET", base)).unit === "cm",
     "the unit to be corrected",
   );
+});
 
-  say(
-    "a scan that is dropped on a model's page is imported, and the person stays until they open it",
-  );
+test("a scan that is dropped on a model's page is imported, and the person stays until they open it", async () => {
   const here = page.url();
   assert.ok(await drop_scan("dropped_box.ply"), "the browser would have left for the file");
   await page.getByText("“dropped box” is ready.").waitFor();
@@ -317,20 +324,16 @@ try {
   await page.getByRole("heading", { name: "dropped box", exact: true }).waitFor();
   await browser.drawn(); // straight from one model to another
   await page.getByText(/This object is .*: right\?/).waitFor();
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   browser.assert_no_complaints([...kOfLostServer, "412", "404 (Not Found)"]);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  if (process.env.STRATA_TEST_OUTPUT) {
-    await page
-      .screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, "page.png") })
-      .catch(() => {});
-  }
-  throw error;
-} finally {
-  await browser.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  await browser?.close();
+  await server?.remove();
+});

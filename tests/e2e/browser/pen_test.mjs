@@ -3,21 +3,21 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
-const tilda = await Browser.open({
-  viewport: { width: 1180, height: 820 },
-  hasTouch: true,
-  isMobile: true,
-});
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
+let tilda, server, model, edits, pen, touch, camera, before, painted;
 
-try {
+test.beforeAll(async () => {
+  tilda = await Browser.open({
+    viewport: { width: 1180, height: 820 },
+    hasTouch: true,
+    isMobile: true,
+  });
+  server = new StrataServer({ demo: true });
   await server.start();
-  const [model] = (await server.json("GET", "/models")).models;
-  const edits = async () =>
+  [model] = (await server.json("GET", "/models")).models;
+  edits = async () =>
     (await server.json("GET", `/models/${model.id}/layers/cracks/edits?limit=1`)).total;
   await tilda.sign_in(server, await server.add_person("tilda", "annotator"));
   await tilda.page.goto(`${server.url}/models/${model.id}`);
@@ -27,21 +27,22 @@ try {
   const box = await tilda.stage_box();
   const at = ([x, y]) => ({ x: box.x + x * box.width, y: box.y + y * box.height });
   const device = await tilda.context.newCDPSession(tilda.page);
-  const pen = (type, place, more = {}) =>
+  pen = (type, place, more = {}) =>
     device.send("Input.dispatchMouseEvent", { type, ...at(place), pointerType: "pen", ...more });
-  const touch = (type, ...places) =>
+  touch = (type, ...places) =>
     device.send("Input.dispatchTouchEvent", {
       type,
       touchPoints: places.map((place, id) => ({ ...at(place), id })),
     });
-  const camera = () =>
+  camera = () =>
     tilda.page
       .locator("strata-stage canvas")
       .first()
       .evaluate((canvas) => Number(canvas.dataset.cameraSeq));
-  const before = await edits();
+  before = await edits();
+});
 
-  say("the pen paints with the hand beside it, which neither paints nor turns");
+test("the pen paints with the hand beside it, which neither paints nor turns", async () => {
   const stood = await camera();
   await pen("mouseMoved", [0.4, 0.5]);
   await touch("touchStart", [0.7, 0.7]);
@@ -65,10 +66,9 @@ try {
   assert.equal(await camera(), stood, "the hand turned the model");
   if (process.env.STRATA_TEST_OUTPUT)
     await tilda.page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, "pen.png") });
+});
 
-  say(
-    "pressed half as hard the pen paints a narrower line, and as wide as ever where its pressure is not to count",
-  );
+test("pressed half as hard the pen paints a narrower line, and as wide as ever where its pressure is not to count", async () => {
   const area_of_line = async (y, force) => {
     const painted = async () =>
       (await server.json("GET", `/models/${model.id}/layers/cracks/edits?limit=1000`)).edits.filter(
@@ -109,10 +109,11 @@ try {
   await tilda.page.getByLabel("A pen that is pressed less paints a narrower line").uncheck();
   const wide = await area_of_line(0.62, 0.4);
   assert.ok(wide > 1.5 * soft, `the line is ${wide / soft} of the soft one's area`);
+});
 
-  say("away with the pen: two fingers move the model, one turns it, and neither paints");
+test("away with the pen: two fingers move the model, one turns it, and neither paints", async () => {
   await pen("mouseMoved", [-0.02, 0.5]); // over the tools
-  const painted = await edits();
+  painted = await edits();
   // How long it counts as there is the page's affair: the fingers try again until they are listened
   // to.
   const moves = (gesture) => async () => {
@@ -137,19 +138,16 @@ try {
   await wait_for(moves(drag), "one finger to turn the model");
   await tilda.saved();
   assert.equal(await edits(), painted, "a finger painted while there is a pen");
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   tilda.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  if (process.env.STRATA_TEST_OUTPUT)
-    await tilda.page
-      .screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, "pen_failed.png") })
-      .catch(() => {});
-  throw error;
-} finally {
-  await tilda.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  await tilda?.close();
+  await server?.remove();
+});

@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, kOfLostServer } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kOwnersPassword = "four words of mine";
@@ -18,15 +19,6 @@ const kExpected = [
   "status of 422",
   ...kOfLostServer,
 ];
-
-const [owner, ada, phone] = [
-  await Browser.open(),
-  await Browser.open(),
-  await Browser.open({ viewport: { width: 390, height: 844 } }),
-];
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 
 const at_home = ({ page }) => page.getByRole("heading", { name: "Models", exact: true }).waitFor();
 const at_sign_in = ({ page }) =>
@@ -99,12 +91,19 @@ async function import_square(name, project) {
   );
 }
 
-try {
-  await server.start();
+let owner, ada, phone, server, link_field, link, path, edits;
 
-  say(
-    "the owner, who came by the printed link, is asked for a password, and told what is wrong with one",
-  );
+test.beforeAll(async () => {
+  [owner, ada, phone] = [
+    await Browser.open(),
+    await Browser.open(),
+    await Browser.open({ viewport: { width: 390, height: 844 } }),
+  ];
+  server = new StrataServer({ demo: true });
+  await server.start();
+});
+
+test("the owner, who came by the printed link, is asked for a password, and told what is wrong with one", async () => {
   await owner.page.goto(server.link);
   await at_home(owner);
   await owner.page.getByRole("button", { name: "Choose a password" }).click();
@@ -123,8 +122,9 @@ try {
   await close_dialog(owner);
   await server.sign_in_owner({ user: "owner", password: kOwnersPassword });
   assert.equal(await owner.page.getByRole("button", { name: "Choose a password" }).count(), 0);
+});
 
-  say("they sign out, and in again by name and password");
+test("they sign out, and in again by name and password", async () => {
   await choose_in_menu(owner, "Sign out");
   await at_sign_in(owner);
   await sign_in(owner, "owner", "four words of hers");
@@ -133,10 +133,9 @@ try {
   await alert_of(owner, "Name or password does not fit");
   await sign_in(owner, "Owner", kOwnersPassword); // in any case
   await at_home(owner);
+});
 
-  say(
-    "a token that is not known is told so, and the owner's is one for scripts since they have a password",
-  );
+test("a token that is not known is told so, and the owner's is one for scripts since they have a password", async () => {
   await phone.page.goto(server.url);
   await phone.page.getByText("With a link or token").click();
   await phone.page.getByLabel("Link or token").fill("no such token");
@@ -146,8 +145,9 @@ try {
   await phone.page.keyboard.press("Enter");
   await alert_of(phone, "for scripts");
   await at_sign_in(phone);
+});
 
-  say("Ada is invited; a name that cannot be is told at its field");
+test("Ada is invited; a name that cannot be is told at its field", async () => {
   await choose_in_menu(owner, "People…");
   await owner.page.getByRole("button", { name: "Invite somebody" }).click();
   await owner.page.getByLabel("Name for signing in").fill("owner");
@@ -161,11 +161,11 @@ try {
   await owner.page.getByLabel("Full name").fill("Ada Lovelace");
   await owner.page.getByRole("combobox", { name: "Role", exact: true }).selectOption("annotator");
   await owner.page.getByRole("button", { name: "Make link" }).click();
-  const link_field = owner.page.getByRole("textbox", {
+  link_field = owner.page.getByRole("textbox", {
     name: "Link for Ada Lovelace",
     exact: true,
   });
-  const link = await link_field.inputValue();
+  link = await link_field.inputValue();
   assert.ok(link.startsWith(`${server.url}/join#`), link);
   await owner.page
     .getByRole("row", { name: /Ada Lovelace/ })
@@ -176,15 +176,17 @@ try {
     0,
     "the owner's row can be changed",
   );
+});
 
-  say("at a browser where somebody else is signed in the link says so");
+test("at a browser where somebody else is signed in the link says so", async () => {
   const beside = await owner.context.newPage();
   await beside.goto(link);
   await beside.getByText(/Somebody else is signed in at this browser: owner/).waitFor();
   assert.equal(await beside.getByLabel("Password", { exact: true }).count(), 0);
   await beside.close();
+});
 
-  say("Ada opens her link, chooses a password, and is in; the secret is gone from the address");
+test("Ada opens her link, chooses a password, and is in; the secret is gone from the address", async () => {
   await ada.page.goto(link);
   await ada.page.getByRole("heading", { name: "Welcome, Ada Lovelace" }).waitFor();
   await ada.page.getByLabel("Password", { exact: true }).fill(kAdasPassword);
@@ -205,20 +207,22 @@ try {
     0,
     "an annotator is offered to import",
   );
+});
 
-  say("the link was good for one use");
+test("the link was good for one use", async () => {
   await phone.page.goto(link);
   await phone.page.getByText("This link is of no use any more").waitFor();
   await phone.page.goto(`${server.url}/join`);
   await phone.page.getByText("This link is not whole").waitFor();
+});
 
-  say("she sees the model, and paints");
+test("she sees the model, and paints", async () => {
   await ada.page.getByRole("link", { name: /Demo pot/ }).click();
   await ada.drawn();
-  const path = new URL(ada.page.url()).pathname;
+  path = new URL(ada.page.url()).pathname;
   await ada.page.getByRole("button", { name: "Paint on cracks" }).click();
   await ada.page.keyboard.press("b");
-  const edits = async () => (await server.json("GET", `${path}/layers/cracks/edits?limit=1`)).total;
+  edits = async () => (await server.json("GET", `${path}/layers/cracks/edits?limit=1`)).total;
   const before = await edits();
   await ada.drag([
     [0.46, 0.5],
@@ -226,8 +230,9 @@ try {
   ]);
   await ada.saved();
   await wait_for(async () => (await edits()) > before, "her stroke to be in the history");
+});
 
-  say("the owner makes her a viewer: her page, which is open, offers no painting any more");
+test("the owner makes her a viewer: her page, which is open, offers no painting any more", async () => {
   await owner.page.getByLabel("Role of Ada Lovelace").selectOption("viewer");
   await owner.page.getByText("Is viewer now.").waitFor();
   await ada.page.getByText("Your role is viewer now.").waitFor();
@@ -240,8 +245,9 @@ try {
   await ada.page.getByText("ada · Viewer").waitFor();
   await ada.page.keyboard.press("Escape");
   assert.equal(await edits(), painted);
+});
 
-  say("the owner disables her: she is out, and cannot come back");
+test("the owner disables her: she is out, and cannot come back", async () => {
   await choose_for(owner, "Ada Lovelace", "Disable…");
   await owner.page.getByText("They are signed out everywhere").waitFor();
   await owner.page.getByRole("button", { name: "Disable", exact: true }).click();
@@ -254,14 +260,16 @@ try {
   // before the next try, which must not come while this one is under way
   await alert_of(ada, "Name or password does not fit");
   await at_sign_in(ada);
+});
 
-  say("enabled again she comes back to where she was");
+test("enabled again she comes back to where she was", async () => {
   await choose_for(owner, "Ada Lovelace", "Enable");
   await owner.page.getByText("Can sign in again.").waitFor();
   await sign_in(ada, "ada", kAdasPassword);
   await ada.drawn();
+});
 
-  say("who forgot a password gets a new link; the old password is good for nothing then");
+test("who forgot a password gets a new link; the old password is good for nothing then", async () => {
   await choose_for(owner, "Ada Lovelace", "New link…");
   await owner.page.getByRole("button", { name: "Make link" }).click();
   const next_link = await wait_for(async () => {
@@ -278,8 +286,9 @@ try {
   await alert_of(ada, "Name or password does not fit");
   await sign_in(ada, "ada", kAdasNext);
   await ada.drawn();
+});
 
-  say("she changes her password on the page, with the one until now; it ends her other sessions");
+test("she changes her password on the page, with the one until now; it ends her other sessions", async () => {
   await choose_in_menu(phone, "Account…");
   const change = async (current, password, repeat = password) => {
     await phone.page.getByLabel("Password until now").fill(current);
@@ -302,8 +311,9 @@ try {
   await sign_in(ada, "ada", kAdasThird);
   await ada.drawn();
   await close_dialog(phone);
+});
 
-  say("she signs out at one of her browsers, from another");
+test("she signs out at one of her browsers, from another", async () => {
   await choose_in_menu(phone, "Account…");
   await phone.page.getByText("this browser").waitFor();
   await phone.page.getByRole("button", { name: /^Sign out: / }).click();
@@ -312,8 +322,9 @@ try {
   await sign_in(ada, "ada", kAdasThird);
   await ada.drawn();
   await close_dialog(phone);
+});
 
-  say("she sees where she is signed in, and signs out there");
+test("she sees where she is signed in, and signs out there", async () => {
   await choose_in_menu(phone, "Account…");
   await phone.page.getByText("this browser").waitFor();
   await phone.page.getByRole("button", { name: "Sign out everywhere else" }).click();
@@ -325,8 +336,9 @@ try {
     .getByRole("button", { name: "Account of Countess of Lovelace", includeHidden: true })
     .waitFor();
   await close_dialog(phone);
+});
 
-  say("a token made on the page works for a script, as its role allows, until it is revoked");
+test("a token made on the page works for a script, as its role allows, until it is revoked", async () => {
   await close_dialog(owner);
   await choose_in_menu(owner, "Account…");
   await owner.page.getByRole("button", { name: "New token" }).click();
@@ -357,8 +369,9 @@ try {
   await owner.page.getByText("You have none.").waitFor();
   assert.equal(await call(token, "/models"), 401);
   await close_dialog(owner);
+});
 
-  say("deleted she is out; what she did stays, under a name that nobody can tell");
+test("deleted she is out; what she did stays, under a name that nobody can tell", async () => {
   await choose_in_menu(owner, "People…");
   await owner.page.getByLabel("Find people").fill("countess");
   await owner.page.getByText("1 of 2 people").waitFor();
@@ -374,10 +387,9 @@ try {
     "what she did is not in the history",
   );
   assert.ok(!history.some(({ user }) => user === "ada"), "her name is still in the history");
+});
 
-  say(
-    "an administrator lets a guest annotate in one project: they see its models on their page, and no others",
-  );
+test("an administrator lets a guest annotate in one project: they see its models on their page, and no others", async () => {
   await server.json("POST", "/projects", { name: "Villa Giulia" });
   await import_square("Threshold", "villa-giulia");
   await ada.sign_in(server, await server.add_person("anna", "administrator"));
@@ -415,22 +427,16 @@ try {
     .waitFor();
   await phone.page.goto(server.url);
   await phone.page.getByText("You see the models of projects that you have a role in.").waitFor();
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   for (const who of [owner, ada, phone]) who.assert_no_complaints(kExpected);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  if (process.env.STRATA_TEST_OUTPUT) {
-    for (const [name, who] of Object.entries({ owner, ada, phone })) {
-      await who.page
-        .screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `people_${name}.png`) })
-        .catch(() => {});
-    }
-  }
-  throw error;
-} finally {
-  for (const who of [owner, ada, phone]) await who.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const who of [owner, ada, phone]) await who?.close();
+  await server?.remove();
+});

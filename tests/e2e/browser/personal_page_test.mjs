@@ -4,12 +4,8 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
-
-const [cleo, elsewhere, ada] = [await Browser.open(), await Browser.open(), await Browser.open()];
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 
 async function shoot({ page }, name) {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -29,11 +25,15 @@ async function look(who, model) {
   await who.drawn();
 }
 
-try {
+let cleo, elsewhere, ada, server, model, layers, layer, before, order, edits, computed;
+
+test.beforeAll(async () => {
+  [cleo, elsewhere, ada] = [await Browser.open(), await Browser.open(), await Browser.open()];
+  server = new StrataServer({ demo: true });
   await server.start();
-  const model = (await server.json("GET", "/models")).models[0];
-  const layers = `/models/${model.id}/layers`;
-  const layer = async (slug) =>
+  model = (await server.json("GET", "/models")).models[0];
+  layers = `/models/${model.id}/layers`;
+  layer = async (slug) =>
     (await server.json("GET", layers)).layers.find((each) => each.slug === slug);
   const cleos = await server.add_person("cleo", "curator");
   const adas = await server.add_person("ada", "annotator");
@@ -41,12 +41,16 @@ try {
   for (const who of [cleo, elsewhere]) await who.sign_in(server, cleos);
   await ada.sign_in(server, adas);
   for (const who of [cleo, ada]) await look(who, model);
-  const before = (await server.json("GET", layers)).layers.map(
-    ({ id, visible, opacity, order }) => ({ id, visible, opacity, order }),
-  );
+  before = (await server.json("GET", layers)).layers.map(({ id, visible, opacity, order }) => ({
+    id,
+    visible,
+    opacity,
+    order,
+  }));
+});
 
-  say("an annotator hides a layer and moves another");
-  const order = await names(ada);
+test("an annotator hides a layer and moves another", async () => {
+  order = await names(ada);
   await button(ada, "Hide cracks").click();
   await choose_for(ada, order[0], "Move down");
   const moved = [order[1], order[0], ...order.slice(2)];
@@ -72,10 +76,9 @@ try {
     "for others nothing has changed",
   );
   assert.deepEqual(await names(cleo), order);
+});
 
-  say(
-    "a curator computes a condition: painted where it holds, hidden for others, locked for everybody",
-  );
+test("a curator computes a condition: painted where it holds, hidden for others, locked for everybody", async () => {
   await cleo.page.getByRole("button", { name: "New layer" }).click();
   await cleo.page.getByRole("radio", { name: /From an expression/ }).click();
   await cleo.page.getByLabel("Expression: a number").fill("z > 0 and not valid(cracks)");
@@ -97,8 +100,8 @@ try {
   assert.deepEqual([min, max], [1, 1]);
   await button(cleo, "Paint on Risk").click();
   await panel(cleo).getByText("Locked: its values were computed.").waitFor();
-  const edits = async () => (await server.json("GET", `${layers}/risk/edits`)).total;
-  const computed = await edits();
+  edits = async () => (await server.json("GET", `${layers}/risk/edits`)).total;
+  computed = await edits();
   await cleo.page.keyboard.press("b");
   await cleo.page
     .locator("strata-brush-panel")
@@ -111,8 +114,9 @@ try {
   await shoot(cleo, "computed");
   await look(elsewhere, model);
   await button(elsewhere, "Hide Risk").waitFor();
+});
 
-  say("unlocked, it is edited by hand, and says so to everybody");
+test("unlocked, it is edited by hand, and says so to everybody", async () => {
   await panel(cleo).getByRole("button", { name: "Unlock to edit by hand" }).click();
   await panel(cleo)
     .getByText(/^Edited by hand: .* It is not computed again by itself\.$/)
@@ -139,15 +143,17 @@ try {
     "the layer to be as it was computed",
   );
   await panel(cleo).getByText("Locked: its values were computed.").waitFor();
+});
 
-  say("what everybody sees at first is changed only by asking for it");
+test("what everybody sees at first is changed only by asking for it", async () => {
   await button(cleo, "Save as default for everyone").click();
   await wait_for(async () => (await layer("risk")).visible, "the default");
   await button(ada, "Back to the default").click();
   await button(ada, "Hide cracks").waitFor();
   assert.deepEqual(await names(ada), await names(cleo));
+});
 
-  say("one colour and one name");
+test("one colour and one name", async () => {
   const { color } = await server
     .json("GET", "/users")
     .then(({ users }) => users.find(({ user }) => user === "cleo"));
@@ -186,12 +192,10 @@ try {
   for (const who of [cleo, elsewhere, ada]) who.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.error(`failed at: ${step}`);
-  for (const [name, who] of Object.entries({ cleo, elsewhere, ada }))
-    await shoot(who, `failed_${name}`).catch(() => {});
-  throw error;
-} finally {
-  for (const who of [cleo, elsewhere, ada]) await who.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const who of [cleo, elsewhere, ada]) await who?.close();
+  await server?.remove();
+});

@@ -5,19 +5,12 @@ import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 import { active } from "../support/accessible.mjs";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const output = process.env.STRATA_TEST_OUTPUT;
 if (output) mkdirSync(output, { recursive: true });
-
-const ada = await Browser.open(); // an administrator at a desk
-const pia = await Browser.open({ ...kPhone, colorScheme: "dark" }); // another, with a phone
-const nora = await Browser.open(); // who may not
-const everybody = { ada, pia, nora };
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 
 const shoot = async ({ page }, name) => {
   if (output) await page.screenshot({ path: join(output, `projects_${name}.png`) });
@@ -68,18 +61,26 @@ const kSquare = [
   "",
 ].join("\n");
 
-try {
+let ada, pia, nora, everybody, server, pot, curator, annotator;
+
+test.beforeAll(async () => {
+  ada = await Browser.open(); // an administrator at a desk
+  pia = await Browser.open({ ...kPhone, colorScheme: "dark" }); // another, with a phone
+  nora = await Browser.open(); // who may not
+  everybody = { ada, pia, nora };
+  server = new StrataServer({ demo: true });
   await server.start();
-  const [pot] = (await server.json("GET", "/models")).models;
-  const [curator, annotator] = [
+  [pot] = (await server.json("GET", "/models")).models;
+  [curator, annotator] = [
     await server.add_person("carl", "curator"),
     await server.add_person("nora", "annotator"),
   ];
   await ada.sign_in(server, await server.add_person("ada", "administrator"));
   await pia.sign_in(server, await server.add_person("pia", "administrator"));
   await nora.sign_in(server, annotator);
+});
 
-  say("from a model home is its project, also where the only other one is that of every site");
+test("from a model home is its project, also where the only other one is that of every site", async () => {
   await ada.page.goto(`${server.url}/models/${pot.id}`);
   await ada.drawn();
   await ada.page.getByRole("link", { name: "All models" }).click();
@@ -91,8 +92,9 @@ try {
     0,
     "there is nothing to go up to",
   );
+});
 
-  say("an administrator makes a project by keyboard, and is led to it");
+test("an administrator makes a project by keyboard, and is led to it", async () => {
   await ada.page.goto(server.url);
   await heading(ada, "Models");
   await button(ada, "New project").focus();
@@ -119,8 +121,9 @@ try {
   await ada.page.getByText("Who may work on it is said in the account menu").waitFor();
   await shoot(ada, "made_desk");
   assert.equal((await server.json("GET", "/projects/villa-giulia")).name, "Villa Giulia");
+});
 
-  say("escape leaves everything as it is, and gives the keyboard back");
+test("escape leaves everything as it is, and gives the keyboard back", async () => {
   await ada.page.goto(server.url);
   await heading(ada, "Projects");
   await from_menu(ada, "Demo", "Rename and describe…");
@@ -132,18 +135,18 @@ try {
     "the keyboard to be back at the menu",
   );
   assert.equal((await server.json("GET", `/projects/${pot.project}`)).name, "Demo");
+});
 
-  say("the project that every site has can be named, not deleted");
+test("the project that every site has can be named, not deleted", async () => {
   await ada.page.goto(`${server.url}/projects/default`);
   await heading(ada, "Default");
   await button(ada, "Options for Default").click();
   await ada.page.getByRole("menuitem", { name: "Rename and describe…" }).waitFor();
   assert.equal(await ada.page.getByRole("menuitem", { name: "Delete…" }).count(), 0);
   await ada.page.keyboard.press("Escape");
+});
 
-  say(
-    "who changes a project that somebody else changed meanwhile is told, and then may; its address stays",
-  );
+test("who changes a project that somebody else changed meanwhile is told, and then may; its address stays", async () => {
   await ada.page.getByRole("link", { name: "All projects" }).click();
   await heading(ada, "Projects");
   assert.deepEqual(await cards(ada), ["Demo", "Villa Giulia"]);
@@ -166,8 +169,9 @@ try {
     ["Villa Giulia, Rome", "Frescoes of the east wing, campaign of 2026."],
   );
   await shoot(ada, "gallery_desk");
+});
 
-  say("a project may demand that programs name versions; the page does");
+test("a project may demand that programs name versions; the page does", async () => {
   const demand = () =>
     inside(ada).getByRole("checkbox", { name: "Programs must name the version that they change" });
   for (const is_demanded of [true, false]) {
@@ -183,8 +187,9 @@ try {
       is_demanded,
     );
   }
+});
 
-  say("with models it stays, and it is said what to do");
+test("with models it stays, and it is said what to do", async () => {
   const started = await fetch(
     `${server.url}/api/v1/models?filename=square.ply&name=Threshold&unit=mm&project=villa-giulia`,
     {
@@ -212,8 +217,9 @@ try {
   await shoot(pia, "with_models_phone_dark");
   await inside(pia).locator("footer").getByRole("button", { name: "Close" }).tap();
   await is_closed(pia);
+});
 
-  say("with tables only, these are named, and its name is typed");
+test("with tables only, these are named, and its name is typed", async () => {
   const [{ id: model }] = (await server.json("GET", "/models")).models.filter(
     ({ name }) => name === "Threshold",
   );
@@ -256,8 +262,9 @@ try {
   assert.equal(await status({ token: server.token }, "GET", "/projects/villa-giulia"), 404);
   assert.equal(await status({ token: server.token }, "GET", `/tables/${finds.id}`), 404);
   await shoot(pia, "deleted_phone_dark");
+});
 
-  say("by touch: a project is made on a phone, and deleted while it is empty by one more tap");
+test("by touch: a project is made on a phone, and deleted while it is empty by one more tap", async () => {
   await button(pia, "New project").tap();
   await box(pia, "Name").fill("遺跡");
   await button(pia, "Make the project").tap();
@@ -272,8 +279,9 @@ try {
   await inside(pia).getByRole("button", { name: "Delete", exact: true }).tap();
   await heading(pia, "Models");
   await is_closed(pia);
+});
 
-  say("who may not is offered none of it, and the server refuses them");
+test("who may not is offered none of it, and the server refuses them", async () => {
   await server.json("POST", "/projects", { name: "Archive" });
   for (const person of [annotator, curator]) {
     await nora.sign_in(server, person);
@@ -298,8 +306,9 @@ try {
     assert.equal(await status(person, "DELETE", "/projects/archive"), 403);
   }
   await shoot(nora, "curator_empty");
+});
 
-  say("whose role changes while the dialog is open is told so there");
+test("whose role changes while the dialog is open is told so there", async () => {
   await ada.page.goto(server.url);
   await heading(ada, "Projects");
   await button(ada, "New project").click();
@@ -312,19 +321,18 @@ try {
     (await server.json("GET", "/projects")).projects.map(({ name }) => name).sort(),
     ["Archive", "Default", "Demo"],
   );
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   ada.assert_no_complaints(["412", "403", "401"]);
   pia.assert_no_complaints(["409"]); // the table that another one names is tried first
   nora.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  for (const [name, who] of Object.entries(everybody))
-    await shoot(who, `failed_${name}`).catch(() => {});
-  throw error;
-} finally {
-  for (const who of Object.values(everybody)) await who.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const who of Object.values(everybody)) await who?.close();
+  await server?.remove();
+});

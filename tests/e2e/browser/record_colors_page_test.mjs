@@ -4,24 +4,16 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kSherds = 14;
 const kEnough = 1500; // pixels of a sherd or more
 const [kLoose, kFirm] = ["#ff00ff", "#00e0ff"];
 
-const browser = await Browser.open();
-const { page } = browser;
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
-
 const base = "/models/demo-pot";
 const L = `${base}/layers/sherds`;
 const button = (name) => page.getByRole("button", { name, exact: true });
-const dialog = page.locator("strata-color-dialog");
-const panel = page.locator("strata-table-panel");
-const legend = page.locator("strata-layer-panel .legend-column");
 const shot = async (name) => {
   if (process.env.STRATA_TEST_OUTPUT)
     await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
@@ -41,7 +33,15 @@ const fill_filter = async (text) => {
   await page.keyboard.press("Enter");
 };
 
-try {
+let browser, page, server, dialog, panel, legend, loose_area;
+
+test.beforeAll(async () => {
+  browser = await Browser.open();
+  ({ page } = browser);
+  server = new StrataServer({ demo: true });
+  dialog = page.locator("strata-color-dialog");
+  panel = page.locator("strata-table-panel");
+  legend = page.locator("strata-layer-panel .legend-column");
   await server.start();
   await server.json("POST", `${base}/layers`, {
     name: "Sherds",
@@ -68,9 +68,9 @@ try {
   }
   for (const other of ["pieces", "cracks"])
     await server.json("PATCH", `${base}/layers/${other}`, { visible: false });
-  const { area_m2: loose_area } = await server.json("POST", `${L}/extent`, {
+  ({ area_m2: loose_area } = await server.json("POST", `${L}/extent`, {
     filter: "state = 'loose'",
-  });
+  }));
 
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
@@ -78,8 +78,9 @@ try {
   const later = page.getByRole("button", { name: "Decide later" });
   if (await later.isVisible()) await later.click();
   await button("Paint on Sherds").click();
+});
 
-  say("the layer is coloured by a column, as it is chosen");
+test("the layer is coloured by a column, as it is chosen", async () => {
   await open_colors();
   await dialog.getByLabel("Colour by").selectOption({ label: "State" });
   await dialog.locator("li", { hasText: "firm" }).getByText("9", { exact: true }).waitFor();
@@ -90,8 +91,9 @@ try {
   await shows(kFirm, kEnough, "firm sherds in theirs");
   assert.equal((await palette()).column, undefined, "nobody else sees it yet");
   await shot("colors-by-column");
+});
 
-  say("with patterns, half of the colour makes room for what lies below");
+test("with patterns, half of the colour makes room for what lies below", async () => {
   const plain = await browser.count(rgb(kFirm));
   await dialog.getByLabel("Patterns for all").check();
   await wait_for(
@@ -107,8 +109,9 @@ try {
     "plain colours",
     150,
   );
+});
 
-  say("for everyone: the layer keeps it, and the legend says what is what");
+test("for everyone: the layer keeps it, and the legend says what is what", async () => {
   await dialog.getByRole("button", { name: "For everyone" }).click();
   await wait_for(async () => (await palette()).column === "state", "the layer to keep its colours");
   assert.deepEqual(
@@ -120,8 +123,9 @@ try {
   );
   await legend.getByText("By State").waitFor();
   await legend.getByText("Others, or no value").waitFor();
+});
 
-  say("numbers make classes, and what is for me alone is nobody else's");
+test("numbers make classes, and what is for me alone is nobody else's", async () => {
   await open_colors();
   await dialog.getByLabel("Colour by").selectOption({ label: "Thickness" });
   await dialog.getByLabel("How many").fill("4");
@@ -141,15 +145,17 @@ try {
   await hides(kLoose, "the gradient in place of the states");
   await button("Back to the default").click();
   await shows(kLoose, kEnough, "the colours that everyone sees");
+});
 
-  say("a dialog that is closed without a choice changes nothing");
+test("a dialog that is closed without a choice changes nothing", async () => {
   await open_colors();
   await dialog.getByLabel("Colour by").selectOption({ label: "Each record its own colour" });
   await hides(kLoose, "a colour for each");
   await page.keyboard.press("Escape");
   await shows(kLoose, kEnough, "the colours of before");
+});
 
-  say("rows that are chosen stand out");
+test("rows that are chosen stand out", async () => {
   await page.keyboard.press("t");
   await panel.getByText("14 records").waitFor();
   await shows(kFirm, kEnough, "the model beside the table");
@@ -163,8 +169,9 @@ try {
   await button("Hide all other records").click();
   await button("Choose none").click();
   await shows(kFirm, kEnough, "all of them again");
+});
 
-  say("and rows that a filter finds, as long as it finds them");
+test("and rows that a filter finds, as long as it finds them", async () => {
   await fill_filter("state = 'loose'");
   await panel.getByText("4 of 14 records").waitFor();
   await hides(kFirm, "only what the filter finds");
@@ -189,18 +196,16 @@ try {
   await hides(kFirm, "and back");
   await button("Close the table").click();
   await shows(kFirm, kEnough, "what stood out to go with the table");
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   browser.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(
-    `failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`,
-  );
-  await shot("record-colors-failure");
-  throw error;
-} finally {
-  await browser.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  await browser?.close();
+  await server?.remove();
+});

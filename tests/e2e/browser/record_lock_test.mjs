@@ -3,19 +3,10 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kExpected = ["status of 412"]; // what the browser says of a change that came too late
-
-const [ada, bea, phone] = [
-  await Browser.open(),
-  await Browser.open(),
-  await Browser.open({ viewport: { width: 390, height: 844 } }),
-];
-const everybody = { ada, bea, phone };
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 
 const base = "/models/demo-pot";
 const T = "/tables/units";
@@ -62,7 +53,16 @@ async function type_into(who, key, column, text) {
   await who.page.keyboard.type(text);
 }
 
-try {
+let ada, bea, phone, everybody, server;
+
+test.beforeAll(async () => {
+  [ada, bea, phone] = [
+    await Browser.open(),
+    await Browser.open(),
+    await Browser.open({ viewport: { width: 390, height: 844 } }),
+  ];
+  everybody = { ada, bea, phone };
+  server = new StrataServer({ demo: true });
   await server.start();
   const { project } = await server.json("GET", base);
   await server.json("POST", `/projects/${project}/tables`, {
@@ -94,23 +94,26 @@ try {
     await who.page.keyboard.press("t");
     await cell(who, 1, "Code").getByText("SU 1", { exact: true }).waitFor();
   }
+});
 
-  say("who has a record's form open is seen in its row, by viewers, too");
+test("who has a record's form open is seen in its row, by viewers, too", async () => {
   await open_form(ada, 1);
   for (const who of [bea, phone]) await mark(who, 1, "ada").waitFor();
   assert.equal(await mark(ada, 1, "ada").count(), 0, "one's own row");
   await shoot(bea, "row");
   await shoot(phone, "phone_row");
+});
 
-  say("a second form of it can be read, but not changed");
+test("a second form of it can be read, but not changed", async () => {
   await open_form(bea, 1);
   await form(bea).getByText("ada is editing this.").waitFor();
   assert.equal(await note(bea).getAttribute("readonly"), "");
   assert.ok(await form(bea).getByRole("combobox", { name: "Soil" }).isDisabled());
   assert.ok(await save(bea).isDisabled());
   await shoot(bea, "waiting");
+});
 
-  say("taken over after a question, the other form keeps what was written, to be copied");
+test("taken over after a question, the other form keeps what was written, to be copied", async () => {
   await note(ada).fill("Mine, and not saved");
   await button(bea, "Take over").click();
   await bea.page.getByText("ada is editing it.").waitFor();
@@ -137,10 +140,9 @@ try {
   await note(bea).fill("Bea's");
   await save(bea).click();
   await stored(1, "note", "Bea's");
+});
 
-  say(
-    "left by the other it is one's own again: the text is still there, and what was saved meanwhile is told",
-  );
+test("left by the other it is one's own again: the text is still there, and what was saved meanwhile is told", async () => {
   await form(ada).getByText("bea took this over.").waitFor({ state: "detached" });
   assert.equal(await note(ada).inputValue(), "Mine, and not saved");
   await save(ada).click();
@@ -149,8 +151,9 @@ try {
   await save(ada).click();
   await stored(1, "note", "Mine, and not saved");
   await form(ada).waitFor({ state: "detached" });
+});
 
-  say("whoever waits without taking over begins with what was saved");
+test("whoever waits without taking over begins with what was saved", async () => {
   await open_form(ada, 2);
   await open_form(bea, 2);
   await form(bea).getByText("ada is editing this.").waitFor();
@@ -162,8 +165,9 @@ try {
   await save(bea).click();
   await stored(2, "note", "And by bea");
   await mark(phone, 2, "bea").waitFor({ state: "detached" });
+});
 
-  say("a cell that is written into is seen, asked for and taken over; its text stays, too");
+test("a cell that is written into is seen, asked for and taken over; its text stays, too", async () => {
   await type_into(ada, 3, "Note", "Half a sen");
   await mark(bea, 3, "ada").waitFor();
   await cell(bea, 3, "Note").click();
@@ -189,8 +193,9 @@ try {
   await ada.page.keyboard.press("Escape");
   await editor(ada).waitFor({ state: "detached" });
   await mark(bea, 3, "ada").waitFor({ state: "detached" });
+});
 
-  say("an end of the connection is the end of it");
+test("an end of the connection is the end of it", async () => {
   await open_form(ada, 4);
   await mark(bea, 4, "ada").waitFor();
   await ada.page.goto(server.url);
@@ -201,12 +206,10 @@ try {
   for (const who of Object.values(everybody)) who.assert_no_complaints(kExpected);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  for (const [name, who] of Object.entries(everybody))
-    await shoot(who, `failed_${name}`).catch(() => {});
-  throw error;
-} finally {
-  for (const who of Object.values(everybody)) await who.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const who of Object.values(everybody)) await who?.close();
+  await server?.remove();
+});

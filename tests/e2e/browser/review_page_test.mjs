@@ -3,18 +3,10 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kEnough = 150; // pixels of a stroke that is there
-
-const [cleo, ada, phone] = [
-  await Browser.open(),
-  await Browser.open(),
-  await Browser.open({ viewport: { width: 390, height: 844 } }),
-];
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 
 async function shoot({ page }, name) {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -37,19 +29,28 @@ async function stroke_by_ada(from, to) {
   await ada.saved();
 }
 
-try {
+let cleo, ada, phone, server, model, finds, bone, texels, bare, painted;
+
+test.beforeAll(async () => {
+  [cleo, ada, phone] = [
+    await Browser.open(),
+    await Browser.open(),
+    await Browser.open({ viewport: { width: 390, height: 844 } }),
+  ];
+  server = new StrataServer({ demo: true });
   await server.start();
-  const model = (await server.json("GET", "/models")).models[0];
+  model = (await server.json("GET", "/models")).models[0];
   const layers = `/models/${model.id}/layers`;
   for (const other of (await server.json("GET", layers)).layers)
     await server.json("PATCH", `${layers}/${other.id}`, { visible: false });
   const palette = { mode: "categorical", points: [{ at: 1, color: "#d55e00", label: "Bone" }] };
   await server.json("POST", layers, { name: "Finds", type: "u8", palette });
-  const finds = `${layers}/finds`;
-  const bone = rgb(palette.points[0].color);
-  const texels = async () => (await server.json("GET", `${finds}/statistics`)).texels;
+  finds = `${layers}/finds`;
+  bone = rgb(palette.points[0].color);
+  texels = async () => (await server.json("GET", `${finds}/statistics`)).texels;
+});
 
-  say("the curator asks for review by the layer's menu; an annotator is told so");
+test("the curator asks for review by the layer's menu; an annotator is told so", async () => {
   await cleo.sign_in(server, await server.add_person("cleo", "curator"));
   const adas = await server.add_person("ada", "annotator");
   for (const who of [ada, phone]) await who.sign_in(server, adas);
@@ -75,9 +76,10 @@ try {
     .waitFor();
   await panel(cleo).getByRole("button", { name: "Review" }).click();
   await panel(cleo).getByText("Nothing waits for review.").waitFor();
+});
 
-  say("what she paints is hatched for both, and the curator's list has it");
-  const bare = await dark(ada);
+test("what she paints is hatched for both, and the curator's list has it", async () => {
+  bare = await dark(ada);
   await stroke_by_ada([0.46, 0.5], [0.56, 0.52]);
   await stroke_by_ada([0.46, 0.6], [0.56, 0.62]);
   for (const who of [ada, cleo]) {
@@ -100,8 +102,9 @@ try {
   );
   await shoot(ada, "annotator");
   await shoot(cleo, "curator");
+});
 
-  say("the curator looks at a stroke as its author saw it");
+test("the curator looks at a stroke as its author saw it", async () => {
   await cleo.page.keyboard.press("6"); // another view
   await cleo.drawn();
   await listed(cleo).first().click();
@@ -110,16 +113,18 @@ try {
     "the strokes, from where they were painted",
     150,
   );
+});
 
-  say("she accepts one: its hatch is gone, and its author hears so");
-  const painted = await texels();
+test("she accepts one: its hatch is gone, and its author hears so", async () => {
+  painted = await texels();
   await panel(cleo).getByRole("button", { name: "Accept: stroke, ada" }).first().click();
   await notice(cleo, "1 edit accepted").waitFor();
   await notice(ada, "cleo accepted what you painted on Finds").waitFor();
   await wait_for(async () => (await listed(cleo).count()) === 1, "one stroke left");
   assert.equal(await texels(), painted);
+});
 
-  say("and rejects the other with a reason");
+test("and rejects the other with a reason", async () => {
   await panel(cleo).getByRole("button", { name: "Reject: stroke, ada" }).click();
   await shoot(cleo, "reason");
   await cleo.page.keyboard.type("This is the old restoration");
@@ -130,8 +135,9 @@ try {
   await wait_for(async () => (await texels()) < painted, "the stroke to go");
   for (const who of [ada, cleo])
     await wait_for(async () => (await dark(who)) < bare + kEnough / 3, "no hatch any more", 150);
+});
 
-  say("the decision is taken back; once more by the notice, as long as it is there");
+test("the decision is taken back; once more by the notice, as long as it is there", async () => {
   const { edits } = await server.json("GET", `${finds}/edits?limit=1000`);
   const rejected = edits.find(({ review }) => review === "rejected").sequence;
   await server.json("POST", `${finds}/review`, { decision: "reopen", edits: [rejected] });
@@ -148,13 +154,15 @@ try {
   await panel(cleo).getByRole("button", { name: "Accept all" }).click();
   await panel(cleo).getByText("Nothing waits for review.").waitFor();
   assert.equal(await texels(), painted);
+});
 
-  say("what was accepted the annotator cannot take back");
+test("what was accepted the annotator cannot take back", async () => {
   await ada.page.keyboard.press("Control+z");
   await notice(ada, "what was accepted a curator can take back").waitFor();
   assert.equal(await texels(), painted);
+});
 
-  say("on a phone");
+test("on a phone", async () => {
   await stroke_by_ada([0.48, 0.4], [0.54, 0.42]);
   await phone.page.getByRole("button", { name: "Show the panel" }).click();
   await panel(phone).getByRole("button", { name: "Review" }).click();
@@ -165,12 +173,10 @@ try {
   for (const who of [cleo, ada, phone]) who.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  for (const [name, who] of Object.entries({ cleo, ada, phone }))
-    await shoot(who, `failed_${name}`).catch(() => {});
-  throw error;
-} finally {
-  for (const who of [cleo, ada, phone]) await who.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const who of [cleo, ada, phone]) await who?.close();
+  await server?.remove();
+});

@@ -5,6 +5,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { kRoot } from "../support/modules.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
@@ -62,14 +63,6 @@ function bowl(axis, comment = "") {
     "",
   ].join("\n");
 }
-
-const [desk, phone] = [
-  await Browser.open({ viewport: { width: 1440, height: 900 } }),
-  await Browser.open({ ...kPhone }),
-];
-const server = new StrataServer();
-let step = "start";
-const say = (text) => console.log((step = text));
 const shot = async ({ page }, name) => {
   if (process.env.STRATA_TEST_OUTPUT)
     await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `scale_${name}.png`) });
@@ -118,19 +111,27 @@ const bar_says = (who, unit) =>
     `a scale bar in ${unit}`,
   );
 
-try {
+let desk, phone, server, model, with_card, after;
+
+test.beforeAll(async () => {
+  [desk, phone] = [
+    await Browser.open({ viewport: { width: 1440, height: 900 } }),
+    await Browser.open({ ...kPhone }),
+  ];
+  server = new StrataServer();
   await server.start();
   await desk.sign_in(server, server.token);
   await phone.sign_in(server, server.token);
+});
 
-  say("a PLY whose header has the unit: the card says so, and the scale bar agrees");
+test("a PLY whose header has the unit: the card says so, and the scale bar agrees", async () => {
   await drop(desk, file_of("bowl_with_unit.ply", bowl("y", "unit: mm")));
   await asked(desk);
   assert.match(await reason(desk, "unit"), /From the file itself: “unit: mm”/);
   assert.match(await title(desk), /80 × 40 × 80 mm/);
   assert.deepEqual(await chosen(desk), ["millimetres", "+Y"]);
   await bar_says(desk, "(mm|cm)");
-  let model = await model_of("bowl with unit");
+  model = await model_of("bowl with unit");
   assert.deepEqual(
     [
       model.unit,
@@ -141,8 +142,9 @@ try {
     ],
     ["mm", false, "y", "comment", "shape"],
   );
+});
 
-  say("six small pictures, each another one");
+test("six small pictures, each another one", async () => {
   assert.deepEqual(
     await texts_of(asks(desk).locator("[role=radiogroup]").last().getByRole("radio")),
     kUps,
@@ -154,9 +156,10 @@ try {
     6,
   );
   await shot(desk, "desk");
+});
 
-  say("the picture is not dimmed, and the model can be turned while the question stands");
-  const with_card = await ground(desk);
+test("the picture is not dimmed, and the model can be turned while the question stands", async () => {
+  with_card = await ground(desk);
   const before = await desk.settled(() =>
     desk.page.locator("strata-stage canvas").first().screenshot(),
   );
@@ -165,12 +168,11 @@ try {
     [0.5, 0.55],
   ]);
   await card(desk).waitFor();
-  const after = await desk.settled(() =>
-    desk.page.locator("strata-stage canvas").first().screenshot(),
-  );
+  after = await desk.settled(() => desk.page.locator("strata-stage canvas").first().screenshot());
   assert.ok(!before.equals(after), "the model did not turn");
+});
 
-  say("another choice turns the model and changes the scale bar at once, and nothing is kept");
+test("another choice turns the model and changes the scale bar at once, and nothing is kept", async () => {
   await choose(desk, "metres");
   await bar_says(desk, "m");
   assert.match(await title(desk), /80 × 40 × 80 m:/);
@@ -184,8 +186,9 @@ try {
     [(await model_of("bowl with unit")).unit, (await model_of("bowl with unit")).up],
     ["mm", "y"],
   );
+});
 
-  say("decide later: what the card named is kept, marked, and asked again");
+test("decide later: what the card named is kept, marked, and asked again", async () => {
   await asks(desk)
     .getByText(/“Decide later” keeps millimetres and \+Y up/)
     .waitFor();
@@ -201,8 +204,9 @@ try {
   );
   await desk.page.reload();
   await asked(desk);
+});
 
-  say("yes: it is confirmed, upside down as chosen");
+test("yes: it is confirmed, upside down as chosen", async () => {
   await choose(desk, "−Y");
   await asks(desk).getByRole("button", { name: "Yes, that is right" }).click();
   await wait_for(
@@ -212,10 +216,9 @@ try {
   model = await model_of("bowl with unit");
   assert.deepEqual([model.unit, model.up], ["mm", "-y"]);
   await wait_for(async () => !/not confirmed/.test(await bar(desk)), "the scale bar to be sure");
+});
 
-  say(
-    "without a unit in the file the size decides, and says that it is guessed; on a phone the model is seen above the card",
-  );
+test("without a unit in the file the size decides, and says that it is guessed; on a phone the model is seen above the card", async () => {
   await drop(phone, file_of("plain_bowl.ply", bowl("z")));
   await asked(phone);
   assert.match(await reason(phone, "unit"), /Guessed from the size/);
@@ -241,7 +244,7 @@ try {
   await card(phone).waitFor({ state: "detached" });
 
   if (existsSync(kScan)) {
-    say("a real scan");
+    console.log("a real scan");
     await drop(desk, {
       name: "vessel_lekythos_gigamesh_15k.ply",
       mimeType: "application/octet-stream",
@@ -264,12 +267,10 @@ try {
   for (const who of [desk, phone]) who.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  for (const [name, who] of Object.entries({ desk, phone }))
-    await shot(who, `failed_${name}`).catch(() => {});
-  throw error;
-} finally {
-  for (const who of [desk, phone]) await who.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const who of [desk, phone]) await who?.close();
+  await server?.remove();
+});

@@ -4,14 +4,10 @@ import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
-const browser = await Browser.open();
-const { page } = browser;
-const server = new StrataServer({ demo: true });
 const pictures = process.env.STRATA_TEST_OUTPUT;
-let step = "start";
-const say = (text) => console.log((step = text));
 const button = (name) => page.getByRole("button", { name, exact: true });
 const base = "/models/demo-pot";
 
@@ -79,13 +75,19 @@ async function start_computing(kind, fields = {}) {
   for (const [label, value] of Object.entries(fields)) await page.getByLabel(label).fill(value);
 }
 
-try {
+let browser, page, server, now;
+
+test.beforeAll(async () => {
+  browser = await Browser.open();
+  ({ page } = browser);
+  server = new StrataServer({ demo: true });
   await server.start();
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
   await browser.drawn();
+});
 
-  say("a layer is computed from the shape");
+test("a layer is computed from the shape", async () => {
   await start_computing("Curvature", { "Within a radius of": "0" });
   await button("Compute layer").click();
   await page.getByText("Give a length larger than 0").waitFor();
@@ -114,8 +116,9 @@ try {
   );
   await browser.settled();
   await keep_picture("curvature");
+});
 
-  say("it is locked; unlocked, it can be taken back like a stroke");
+test("it is locked; unlocked, it can be taken back like a stroke", async () => {
   await button("Unlock to edit by hand").first().click();
   await wait_for(
     async () => (await button("Unlock to edit by hand").count()) === 0,
@@ -127,8 +130,9 @@ try {
     async () => (await server.json("GET", `${base}/layers/curvature/statistics`)).texels === 0,
     "the layer to be empty",
   );
+});
 
-  say("long work shows how far it is, and is cancelled");
+test("long work shows how far it is, and is cancelled", async () => {
   await start_computing("Openness", {
     Name: "Never",
     "Looks as far as": "30",
@@ -146,17 +150,19 @@ try {
   assert.ok(
     !(await server.json("GET", `${base}/layers`)).layers.some(({ name }) => name === "Never"),
   );
+});
 
-  say("what cannot be computed says why");
+test("what cannot be computed says why", async () => {
   await start_computing("Distance to the edge");
   await button("Compute layer").click();
   await page.getByText(/This model is closed/).waitFor();
   await keep_picture("failed");
   await button("Remove the note about Distance to the edge").click();
+});
 
-  say("layers are brought over from another scan, with a report");
+test("layers are brought over from another scan, with a report", async () => {
   const then = await import_hill("Then", 40);
-  const now = await import_hill("Now", 57);
+  now = await import_hill("Now", 57);
   const made = await server.json("POST", `/models/${then}/layers`, {
     name: "Terraces",
     type: "u8",
@@ -187,15 +193,17 @@ try {
   assert.equal(brought.recipe.max_angle, 45, JSON.stringify(brought));
   await browser.settled();
   await keep_picture("transferred");
+});
 
-  say("numbers of the scan's file become a layer");
+test("numbers of the scan's file become a layer", async () => {
   await start_computing("Values from the scan's file");
   await button("Compute layer").click();
   await button("Paint on quality").waitFor();
   await browser.settled();
   await keep_picture("quality");
+});
 
-  say("a table of numbers for the vertices of the scan is painted");
+test("a table of numbers for the vertices of the scan is painted", async () => {
   const numbers = hill(57)
     .split("end_header\n")[1]
     .split("\n")
@@ -221,11 +229,10 @@ try {
 
   browser.assert_no_complaints();
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}`);
-  await keep_picture("failure").catch(() => {});
-  throw error;
-} finally {
-  await browser.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  await browser?.close();
+  await server?.remove();
+});

@@ -5,22 +5,11 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { findings } from "../support/accessible.mjs";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
-
-const browser = await Browser.open({
-  viewport: { width: 1440, height: 900 },
-  acceptDownloads: true,
-});
-const { page } = browser;
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 
 const base = "/models/demo-pot";
 const button = (name) => page.getByRole("button", { name, exact: true });
-const panel = page.locator("strata-table-panel");
-const sheet = page.locator("strata-column-filter");
-const filter = panel.getByRole("textbox", { name: "Filter" });
 const columns = ["Key", "Code", "Depth", "Soil", "Sealed", "Note", "Kind", "Above", "Dug"];
 const cell = (key, column) =>
   panel
@@ -59,7 +48,18 @@ const saved = async (click) => {
 const tool = () =>
   page.locator("strata-tool-rail button[aria-pressed=true]").getAttribute("aria-label");
 
-try {
+let browser, page, server, panel, sheet, filter, line, areas;
+
+test.beforeAll(async () => {
+  browser = await Browser.open({
+    viewport: { width: 1440, height: 900 },
+    acceptDownloads: true,
+  });
+  ({ page } = browser);
+  server = new StrataServer({ demo: true });
+  panel = page.locator("strata-table-panel");
+  sheet = page.locator("strata-column-filter");
+  filter = panel.getByRole("textbox", { name: "Filter" });
   await server.start();
   const { project, id: model } = await server.json("GET", base);
   const terms = await fetch(`${server.url}/api/v1/projects/${project}/terms?name=Kinds`, {
@@ -123,10 +123,9 @@ try {
   await page.locator("strata-stage .surface").focus();
   await page.keyboard.press("t");
   await shown([1, 2, 3, 4]);
+});
 
-  say(
-    "where a key cannot be meant as text it is one of the page; Home and End stay within the row",
-  );
+test("where a key cannot be meant as text it is one of the page; Home and End stay within the row", async () => {
   await cell(2, "Soil").click();
   await page.keyboard.press("m");
   await wait_for(
@@ -173,10 +172,11 @@ try {
   await panel.waitFor({ state: "detached" });
   await page.keyboard.press("t");
   await shown([1, 2, 3, 4]);
+});
 
-  say("values of a column are chosen with how many records have them");
+test("values of a column are chosen with how many records have them", async () => {
   await open_filter("Soil");
-  const line = (text) => sheet.getByRole("listitem").filter({ hasText: text });
+  line = (text) => sheet.getByRole("listitem").filter({ hasText: text });
   assert.match(await line("clay").innerText(), /clay\s*2/);
   assert.match(await line("sand").innerText(), /sand\s*1/);
   assert.match(await line("without a value").innerText(), /1$/);
@@ -187,8 +187,9 @@ try {
   await shown([2, 3]);
   assert.equal(await filter.inputValue(), "soil = 'clay'");
   await panel.getByRole("button", { name: "Filter by Soil (is on)" }).waitFor();
+});
 
-  say("columns are filtered together; what was typed stays");
+test("columns are filtered together; what was typed stays", async () => {
   await filter.fill("soil = 'clay' and code like 'SU%'");
   await page.keyboard.press("Enter");
   await open_filter("Depth");
@@ -205,8 +206,9 @@ try {
   await shot("column-filter-two");
   await button("Show all records").click();
   await shown([1, 2, 3, 4]);
+});
 
-  say("each kind of column has its questions");
+test("each kind of column has its questions", async () => {
   await open_filter("Note");
   await show_with("contains");
   await sheet.getByLabel("Text", { exact: true }).fill("50 %");
@@ -249,8 +251,9 @@ try {
   await apply();
   await shown([3]);
   await button("Show all records").click();
+});
 
-  say("by keys alone");
+test("by keys alone", async () => {
   const funnel = panel.getByRole("button", { name: "Filter by Code" });
   await funnel.focus();
   await page.keyboard.press("Enter");
@@ -272,8 +275,9 @@ try {
         .evaluate((each) => each.matches(":focus")),
     "the keyboard back at the funnel",
   );
+});
 
-  say("the rows are saved as they are shown");
+test("the rows are saved as they are shown", async () => {
   const csv = await saved(() =>
     panel.locator(".bar").getByRole("button", { name: "Save as CSV" }).click(),
   );
@@ -286,12 +290,13 @@ try {
   assert.equal(xlsx.name, "units.xlsx");
   assert.equal(xlsx.bytes.subarray(0, 2).toString(), "PK");
   await button("Close the table").click();
+});
 
-  say("areas are copied and saved");
+test("areas are copied and saved", async () => {
   await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
   await button("Options for pieces").click();
   await page.getByRole("menuitem", { name: /^Areas/ }).click();
-  const areas = page.locator("strata-statistics-dialog");
+  areas = page.locator("strata-statistics-dialog");
   await areas.getByRole("button", { name: "Copy: Areas of “pieces”" }).click();
   const copied = await page.evaluate(() => navigator.clipboard.readText());
   assert.match(copied, /^Class\tArea\tShare of the surface\n.*\t.*cm²\t.* %/);
@@ -306,8 +311,9 @@ try {
     ).bytes.toString(),
     /percent_of_surface/,
   );
+});
 
-  say("two layers are set against each other, with names and sums");
+test("two layers are set against each other, with names and sums", async () => {
   await areas.getByLabel("Other layer").selectOption({ label: "Units" });
   const table = areas.getByRole("table");
   await table.waitFor();
@@ -337,18 +343,16 @@ try {
       .toString(),
     "PK",
   );
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   browser.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(
-    `failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`,
-  );
-  await shot("table-filter-failed");
-  throw error;
-} finally {
-  await browser.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  await browser?.close();
+  await server?.remove();
+});

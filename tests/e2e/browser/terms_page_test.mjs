@@ -6,24 +6,11 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
-
-const browser = await Browser.open();
-const { page } = browser;
-const server = new StrataServer({ demo: true });
-const folder = mkdtempSync(join(tmpdir(), "strata-terms-"));
-let step = "start";
-const say = (text) => console.log((step = text));
 
 const base = "/models/demo-pot";
 const button = (name) => page.getByRole("button", { name, exact: true });
-const brush = page.locator("strata-brush-panel");
-const layers = page.locator("strata-layer-panel");
-const templates = page.locator("strata-template-dialog");
-const importer = page.locator("strata-terms-dialog");
-const maker = page.locator("strata-layer-dialog");
-const table = page.locator("strata-table-panel");
-const search = brush.getByRole("combobox");
 const term = (name) => brush.getByRole("treeitem", { name, exact: true });
 const shot = async (name) => {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -55,15 +42,41 @@ const pixels = async (color) => {
 };
 const statistics = (layer) => server.json("GET", `${base}/layers/${layer}/statistics`);
 
-try {
+let browser,
+  page,
+  server,
+  folder,
+  brush,
+  layers,
+  templates,
+  importer,
+  maker,
+  table,
+  search,
+  by_code,
+  prefixes;
+
+test.beforeAll(async () => {
+  browser = await Browser.open();
+  ({ page } = browser);
+  server = new StrataServer({ demo: true });
+  folder = mkdtempSync(join(tmpdir(), "strata-terms-"));
+  brush = page.locator("strata-brush-panel");
+  layers = page.locator("strata-layer-panel");
+  templates = page.locator("strata-template-dialog");
+  importer = page.locator("strata-terms-dialog");
+  maker = page.locator("strata-layer-dialog");
+  table = page.locator("strata-table-panel");
+  search = brush.getByRole("combobox");
   await server.start();
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
   await browser.drawn();
   const later = page.getByRole("button", { name: "Decide later" });
   if (await later.isVisible()) await later.click();
+});
 
-  say("a template makes its tables and layers, and the first layer is painted on next");
+test("a template makes its tables and layers, and the first layer is painted on next", async () => {
   await menu("More about layers", "From a template…");
   await templates.getByRole("listitem", { name: "Stone condition" }).waitFor();
   assert.equal(await templates.getByRole("button", { name: /^Make / }).count(), 4);
@@ -75,9 +88,10 @@ try {
     ({ slug }) => slug === "stone-condition",
   );
   const { terms } = await server.json("GET", `/tables/${made.table}/terms`);
-  const by_code = (code) => terms.find((each) => each.code === code);
+  by_code = (code) => terms.find((each) => each.code === code);
+});
 
-  say("the brush shows the list as a tree");
+test("the brush shows the list as a tree", async () => {
   await term("Flaking").waitFor();
   assert.equal(await term("Coming off").getAttribute("aria-expanded"), "true");
   assert.deepEqual(
@@ -86,8 +100,9 @@ try {
   );
   assert.equal(await term("Flaking").getAttribute("title"), by_code("flaking").definition);
   await shot("term-tree");
+});
 
-  say("a term is found by typing and taken by Enter");
+test("a term is found by typing and taken by Enter", async () => {
   await search.fill("flak");
   await search.press("Enter");
   await brush.locator(".now").getByText("Flaking").waitFor();
@@ -100,8 +115,9 @@ try {
   );
   assert.equal(await term("Flaking").getAttribute("aria-selected"), "true");
   await shot("term-found");
+});
 
-  say("what is painted has the term's key and its colour, and the legend names it");
+test("what is painted has the term's key and its colour, and the legend names it", async () => {
   const before = await pixels(by_code("flaking").color);
   await browser.drag([
     [0.45, 0.5],
@@ -120,8 +136,9 @@ try {
     "the term's colour on the pot",
   );
   await shot("term-painted");
+});
 
-  say("the arrow keys go through the tree, fold and unfold it");
+test("the arrow keys go through the tree, fold and unfold it", async () => {
   await search.press("Escape");
   await term("Cracks").waitFor();
   const active = () =>
@@ -149,8 +166,9 @@ try {
   assert.equal(await active(), "Powdering");
   await search.press("Enter");
   await brush.locator(".now").getByText("Powdering").waitFor();
+});
 
-  say("what nothing is called is told, and a click on a fold hides what is below");
+test("what nothing is called is told, and a click on a fold hides what is below", async () => {
   await search.fill("qwertz");
   await brush.getByText("No term is called that.").waitFor();
   await button("Show all terms").click();
@@ -159,8 +177,9 @@ try {
     async () => (await term("Hairline crack").count()) === 0,
     "the cracks to be folded",
   );
+});
 
-  say("the same template again is refused in plain words, and nothing is made");
+test("the same template again is refused in plain words, and nothing is made", async () => {
   await menu("More about layers", "From a template…");
   await button("Make Stone condition").click();
   await templates
@@ -175,15 +194,16 @@ try {
     ).length,
     2,
   );
+});
 
-  say("a SKOS file is looked at first, and is not written while one of its terms is wrong");
+test("a SKOS file is looked at first, and is not written while one of its terms is wrong", async () => {
   await menu("More about layers", "A list of terms from a file…");
   await choose_file("glaze.pdf", "no terms");
   await importer
     .getByRole("alert")
     .getByText(/no list of terms/)
     .waitFor();
-  const prefixes =
+  prefixes =
     "@prefix skos: <http://www.w3.org/2004/02/skos/core#> .\n@prefix g: <https://glaze.example/> .\n";
   await choose_file(
     "glaze_terms.ttl",
@@ -214,8 +234,9 @@ try {
   await term("Crazing").waitFor();
   assert.equal(await term("Crazing").getAttribute("aria-level"), "2");
   assert.deepEqual((await lists()).sort(), ["Stone condition terms", "glaze terms"]);
+});
 
-  say("more terms go into the list from its table, and the tree follows");
+test("more terms go into the list from its table, and the tree follows", async () => {
   await page.getByRole("button", { name: "Table of records" }).click();
   await table.getByText("3 records").waitFor();
   await menu("More about the table", "Import terms…");
@@ -229,10 +250,9 @@ try {
   await term("Net of cracks").waitFor();
   await term("Running").waitFor();
   await shot("terms-imported");
+});
 
-  say(
-    "a file that is dropped on the list's table is terms for it, and one in the dialog takes its place; one that says nothing new is not imported",
-  );
+test("a file that is dropped on the list's table is terms for it, and one in the dialog takes its place; one that says nothing new is not imported", async () => {
   await drop(table, "none.csv", "code,parent\nlone,nowhere\n");
   await importer.getByText("nowhere").waitFor();
   await drop(
@@ -244,8 +264,9 @@ try {
   await importer.getByText("The table holds all of that already.").waitFor();
   assert.ok(await button("Import").isDisabled());
   await button("Cancel").click();
+});
 
-  say("the list is saved as SKOS, as it may be imported elsewhere");
+test("the list is saved as SKOS, as it may be imported elsewhere", async () => {
   const [download] = await Promise.all([
     page.waitForEvent("download"),
     menu("More about the table", "Save the terms as SKOS (Turtle)"),
@@ -253,8 +274,9 @@ try {
   assert.equal(download.suggestedFilename(), "glaze-terms.ttl");
   await download.saveAs(join(folder, "saved.ttl"));
   assert.match(readFileSync(join(folder, "saved.ttl"), "utf8"), /Net of cracks/);
+});
 
-  say("a new layer may hold the terms of a list that is there");
+test("a new layer may hold the terms of a list that is there", async () => {
   await button("New layer").click();
   await page.getByRole("radio", { name: /Things with records/ }).click();
   await maker.getByLabel("Records of").selectOption({ label: "glaze terms (4 terms)" });
@@ -263,19 +285,17 @@ try {
   await button("Create layer").click();
   await layers.locator("li.selected").getByText("Glaze, second look").waitFor();
   await term("Running").waitFor();
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   browser.assert_no_complaints(["409", "422"]);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(
-    `failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`,
-  );
-  await shot("terms-failed");
-  throw error;
-} finally {
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
   rmSync(folder, { recursive: true, force: true });
-  await browser.close();
-  await server.remove();
-}
+  await browser?.close();
+  await server?.remove();
+});

@@ -3,11 +3,9 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
-const browser = await Browser.open();
-const { page } = browser;
-const server = new StrataServer({ demo: true });
 const shot = async (name) => {
   if (process.env.STRATA_TEST_OUTPUT)
     await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `titles_${name}.png`) });
@@ -16,7 +14,15 @@ const kTerms =
   "code,parent,label\nz-loss,,Loss\nq-worn,z-loss,Worn\na-broken,z-loss,Broken off\nb-deposit,,Deposit\na-salt,b-deposit,Salts\n";
 const kTree = ["Loss", "Worn", "Broken off", "Deposit", "Salts"];
 
-try {
+let browser, page, server;
+
+test.beforeAll(async () => {
+  browser = await Browser.open();
+  ({ page } = browser);
+  server = new StrataServer({ demo: true });
+});
+
+test("records are called by the column that their table chooses, and terms open when asked for", async () => {
   await server.start();
   const model = (await server.json("GET", "/models")).models[0];
   const send = (path, body, type) =>
@@ -140,10 +146,10 @@ try {
   browser.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  await shot("failed").catch(() => {});
-  throw error;
-} finally {
-  await browser.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  await browser?.close();
+  await server?.remove();
+});

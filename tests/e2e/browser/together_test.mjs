@@ -5,6 +5,8 @@ import assert from "node:assert/strict";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
+import { decode_png } from "../support/png.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-together";
@@ -23,12 +25,11 @@ const kCrowd = [
 const kColors = ["#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7b5ea7", "#5c7a29"];
 
 mkdirSync(kOutput, { recursive: true });
-const [anna, bea] = [await Browser.open(), await Browser.open()];
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 const shot = async (who, name) =>
   writeFileSync(join(kOutput, `together_${name}.png`), await who.settled());
+
+const pose_of = ({ view, projection, width, height }) =>
+  JSON.stringify([view, projection, width, height]);
 
 /** What a page and the server tell each other: `sent` and `heard` by op, newest only. */
 function listen(who) {
@@ -40,6 +41,12 @@ function listen(who) {
       ({ payload }) => {
         if (typeof payload !== "string") return;
         const message = JSON.parse(payload);
+        // The same camera, sent again when it comes to rest, need not be drawn again.
+        if (message.op === "camera")
+          message.drawn_from =
+            where.camera && pose_of(where.camera) === pose_of(message)
+              ? where.camera.drawn_from
+              : message.seq;
         where[message.op] = message;
       };
     socket.on("framesent", keep(who.sent));
@@ -66,13 +73,11 @@ const at_rest = (who) =>
       const canvas = await who.page
         .locator("strata-stage canvas")
         .evaluate(({ dataset }) => ({ ...dataset }));
-      return canvas.still === "true" && Number(canvas.cameraSeq) === who.sent.camera?.seq;
+      return canvas.still === "true" && Number(canvas.cameraSeq) >= who.sent.camera?.drawn_from;
     },
     "a still picture of the newest camera",
     100,
   );
-
-const cursor = anna.page.locator("strata-people-overlay .person");
 /** Where Bea points on Anna's page: CSS pixels of the stage. */
 const cursor_at = () =>
   cursor.evaluate((element) => {
@@ -103,7 +108,13 @@ async function choose(who, name) {
 }
 const bar = (who) => who.page.locator("strata-together-bar button");
 
-try {
+let anna, bea, server, cursor, person, box, at, point;
+
+test.beforeAll(async () => {
+  [anna, bea] = [await Browser.open(), await Browser.open()];
+  server = new StrataServer({ demo: true });
+
+  cursor = anna.page.locator("strata-people-overlay .person");
   await server.start();
   for (const { id } of (await server.json("GET", "/models/demo-pot/layers")).layers)
     // they would disturb the counting of pixels
@@ -115,10 +126,11 @@ try {
     resolution: 4096,
     palette,
   });
-  const person = await server.add_person("bea", "annotator");
+  person = await server.add_person("bea", "annotator");
   await server.json("PATCH", "/users/bea", { full_name: "Bea Ost" });
+});
 
-  say("who is here: oneself first, the other by full name");
+test("who is here: oneself first, the other by full name", async () => {
   for (const who of [anna, bea]) listen(who);
   await anna.sign_in(server, server.token);
   await bea.sign_in(server, person);
@@ -135,8 +147,9 @@ try {
     ["O", "owner (you)"],
     ["BO", "Bea Ost"],
   ]);
+});
 
-  say("a person with two windows is one");
+test("a person with two windows is one", async () => {
   const second = await bea.context.newPage();
   await second.goto(`${server.url}/models/demo-pot`);
   await wait_for(() => anna.heard.presence?.users.length === 3, "the second window");
@@ -148,8 +161,9 @@ try {
   );
   await anna.page.getByLabel(/2 people are here/).waitFor();
   await second.close();
+});
 
-  say("from the sixth on they are counted, and the menu lists all of them");
+test("from the sixth on they are counted, and the menu lists all of them", async () => {
   const crowd = await anna.context.newPage();
   await crowd.routeWebSocket(/\/live$/, (page) => {
     const server = page.connectToServer();
@@ -188,13 +202,14 @@ try {
   await crowd.screenshot({ path: join(kOutput, "together_crowd_390.png") });
   await crowd.close();
   await wait_for(() => anna.heard.presence.users.length === 2, "the second window to go");
+});
 
-  say("her pointer is where she points: in the same view at the same pixel");
+test("her pointer is where she points: in the same view at the same pixel", async () => {
   await Promise.all([at_rest(anna), at_rest(bea)]);
   assert.ok(same_view(anna.sent.camera, bea.sent.camera), "both see what everybody sees first");
-  const box = await bea.stage_box();
-  const at = { x: Math.round(box.width * 0.53), y: Math.round(box.height * 0.55) };
-  const point = (x, y) => bea.page.mouse.move(box.x + x, box.y + y);
+  box = await bea.stage_box();
+  at = { x: Math.round(box.width * 0.53), y: Math.round(box.height * 0.55) };
+  point = (x, y) => bea.page.mouse.move(box.x + x, box.y + y);
   await point(at.x, at.y);
   await cursor_comes_to(at, 1.5, "her pointer on Anna's page");
   assert.ok(!(await cursor_at()).classes.includes("hidden"), "what she points at is in front");
@@ -207,8 +222,9 @@ try {
     ),
     false,
   );
+});
 
-  say("from another side it is where the camera's matrices say, and hidden from behind");
+test("from another side it is where the camera's matrices say, and hidden from behind", async () => {
   await anna.page.keyboard.press("ArrowLeft");
   await anna.page.keyboard.press("ArrowUp");
   await at_rest(anna);
@@ -235,10 +251,9 @@ try {
     async () => !(await cursor_at()).classes.includes("hidden"),
     "her pointer to be seen again",
   );
+});
 
-  say(
-    "the brush in her hand is as large as where she paints, and her paint is there before she lets go",
-  );
+test("the brush in her hand is as large as where she paints, and her paint is there before she lets go", async () => {
   await bea.page.getByRole("button", { name: "Paint on Traces" }).click();
   await bea.page.keyboard.press("b");
   for (let i = 0; i < 6; ++i) await bea.page.keyboard.press("]");
@@ -268,8 +283,9 @@ try {
   await bea.page.mouse.up();
   await bea.saved();
   await bea.page.keyboard.press("v");
+});
 
-  say("following: the other's view, in their colour, wherever they turn");
+test("following: the other's view, in their colour, wherever they turn", async () => {
   await point(at.x, at.y);
   await open_people(anna);
   await shot(anna, "menu_1280");
@@ -282,13 +298,12 @@ try {
   await bea.page.mouse.move(5, 5); // a pointer in the picture would be a difference
   await cursor.waitFor({ state: "detached" });
   const [mine, hers] = await Promise.all(
-    [anna, bea].map((who) =>
-      who.page
+    [anna, bea].map(async (who) => {
+      const url = await who.page
         .locator("strata-stage canvas")
-        .evaluate((canvas) => [
-          ...canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data,
-        ]),
-    ),
+        .evaluate((canvas) => canvas.toDataURL("image/png"));
+      return decode_png(Buffer.from(url.split(",")[1], "base64")).data;
+    }),
   );
   assert.equal(mine.length, hers.length);
   let difference = 0;
@@ -308,8 +323,9 @@ try {
   );
   await bea.page.keyboard.press("Escape");
   await shot(anna, "following_1280");
+});
 
-  say("on a phone all that she sees is seen, from where she stands");
+test("on a phone all that she sees is seen, from where she stands", async () => {
   await anna.page.getByRole("button", { name: "Hide the panel" }).click();
   await anna.page.setViewportSize(kPhone);
   await wait_for(() => anna.sent.camera.height > anna.sent.camera.width, "the window of the phone");
@@ -345,8 +361,9 @@ try {
     () => same_view(anna.sent.camera, bea.sent.camera),
     "Anna's camera to be Bea's again",
   );
+});
 
-  say("a move of one's own stops it, and so does Escape");
+test("a move of one's own stops it, and so does Escape", async () => {
   await at_rest(anna);
   await anna.drag([
     [0.3, 0.3],
@@ -362,8 +379,9 @@ try {
   await wait_for(() => same_view(anna.sent.camera, bea.sent.camera), "to follow again");
   await anna.page.keyboard.press("Escape");
   await bar(anna).waitFor({ state: "detached" });
+});
 
-  say("somebody asks to look along: the others get a notice, and she sees who follows");
+test("somebody asks to look along: the others get a notice, and she sees who follows", async () => {
   await choose(bea, /Look with me/);
   await bar(bea).getByText("You asked the others to look with you").waitFor();
   await anna.page.getByText("Bea Ost asks you to look with them").waitFor();
@@ -375,8 +393,9 @@ try {
   await shot(bea, "leading_1280");
   await bea.page.keyboard.press("ArrowRight");
   await wait_for(() => same_view(anna.sent.camera, bea.sent.camera), "Anna to look along");
+});
 
-  say("she takes it back and asks again: who went their own way is asked again");
+test("she takes it back and asks again: who went their own way is asked again", async () => {
   await anna.page.keyboard.press("Escape");
   await bar(bea).getByText("You asked the others to look with you").waitFor();
   await bar(bea).click();
@@ -390,27 +409,25 @@ try {
   await anna.page.setViewportSize(kDesk);
   await choose(anna, /Follow Bea Ost/);
   await bar(bea).getByText("1 person looks with you").waitFor();
+});
 
-  say("she leaves: who followed her is told");
+test("she leaves: who followed her is told", async () => {
   await bea.page.locator("a.home").click();
   await anna.page.getByText("Bea Ost left: the view is yours again.").waitFor();
   await bar(anna).waitFor({ state: "detached" });
   await anna.page.getByLabel("Only you are here: owner (you)").waitFor();
   await shot(anna, "left_1280");
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   for (const who of [anna, bea]) who.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  for (const [name, who] of Object.entries({ anna, bea }))
-    await who.page
-      .screenshot({ path: join(kOutput, `together_failed_${name}.png`) })
-      .catch(() => {});
-  throw error;
-} finally {
-  await anna.close();
-  await bea.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  await anna?.close();
+  await bea?.close();
+  await server?.remove();
+});

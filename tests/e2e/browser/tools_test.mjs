@@ -4,20 +4,13 @@ import assert from "node:assert/strict";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { encode_png } from "../support/png.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
-const browser = await Browser.open();
-const { page } = browser;
-const server = new StrataServer({ demo: true });
 const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-tools";
 mkdirSync(kOutput, { recursive: true });
-let step = "start";
-const say = (text) => console.log((step = text));
-
-const picker = page.locator("strata-shape-picker");
 const shape = (name) => picker.getByRole("radio", { name, exact: true });
-const dialog = page.locator("strata-shape-dialog");
 const shot = async (name, of = browser) =>
   writeFileSync(join(kOutput, `tools-${name}.png`), await of.settled());
 
@@ -39,20 +32,28 @@ const leaf = drawing(
   (x, y) => Math.hypot(x - 0.5, y + 0.5) < 1.15 && Math.hypot(x + 0.5, y - 0.5) < 1.15,
 );
 
-try {
+let browser, page, server, picker, dialog, newest, paint, id;
+
+test.beforeAll(async () => {
+  browser = await Browser.open();
+  ({ page } = browser);
+  server = new StrataServer({ demo: true });
+
+  picker = page.locator("strata-shape-picker");
+  dialog = page.locator("strata-shape-dialog");
   await server.start();
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
   await browser.drawn();
   await page.keyboard.press("b");
-  const newest = async () => {
+  newest = async () => {
     const layers = (await server.json("GET", "/models/demo-pot/layers")).layers;
     const edits = await Promise.all(
       layers.map(({ id }) => server.json("GET", `/models/demo-pot/layers/${id}/edits?limit=1`)),
     );
     return edits.flatMap(({ edits }) => edits).sort((a, b) => b.sequence - a.sequence)[0];
   };
-  const paint = async (points) => {
+  paint = async (points) => {
     const known = (await newest()).sequence;
     await browser.drag(points);
     return wait_for(async () => {
@@ -60,11 +61,13 @@ try {
       return edit.sequence > known ? edit : null;
     }, "the stroke in the history");
   };
+});
 
-  say("the brush is round at first");
+test("the brush is round at first", async () => {
   assert.equal(await shape("Round").getAttribute("aria-checked"), "true");
+});
 
-  say("a picture becomes a shape: what of it is seen beforehand");
+test("a picture becomes a shape: what of it is seen beforehand", async () => {
   await picker
     .locator("input[type=file]")
     .setInputFiles({ name: "five_pointed_star.png", mimeType: "image/png", buffer: star });
@@ -88,21 +91,23 @@ try {
     async () => (await shape("Star").getAttribute("aria-checked")) === "true",
     "the new shape to be chosen",
   );
+});
 
-  say("the pointer shows the shape, and the stroke is of it");
+test("the pointer shows the shape, and the stroke is of it", async () => {
   await page.getByLabel("Width, px").fill("150");
   await page.keyboard.press("Tab");
   await browser.point(0.5, 0.5);
   const cursor = page.locator("strata-stage .shape-cursor");
   assert.ok(Math.abs((await cursor.boundingBox()).width - 150) < 1);
   await shot("cursor");
-  const [{ id }] = (await server.json("GET", "/tools")).tools;
+  [{ id }] = (await server.json("GET", "/tools")).tools;
   const dab = await paint([[0.5, 0.5]]);
   assert.equal(dab.shape, id);
   assert.equal(dab.max_angle_deg, undefined);
   await shot("painted");
+});
 
-  say("a file that is dropped becomes a shape, too");
+test("a file that is dropped becomes a shape, too", async () => {
   const transfer = await page.evaluateHandle(
     (bytes) => {
       const data = new DataTransfer();
@@ -115,8 +120,9 @@ try {
   await picker.dispatchEvent("drop", { dataTransfer: transfer });
   await dialog.getByRole("button", { name: "Add shape" }).click();
   await shape("leaf").waitFor();
+});
 
-  say("what is no picture is refused in plain words");
+test("what is no picture is refused in plain words", async () => {
   await picker
     .locator("input[type=file]")
     .setInputFiles({ name: "notes.png", mimeType: "image/png", buffer: Buffer.from("hello") });
@@ -124,8 +130,9 @@ try {
   assert.equal(await dialog.getByRole("button", { name: "Add shape" }).isDisabled(), true);
   await page.keyboard.press("Escape");
   await dialog.waitFor({ state: "detached" });
+});
 
-  say("keys choose among the shapes");
+test("keys choose among the shapes", async () => {
   await shape("leaf").focus();
   await page.keyboard.press("ArrowRight");
   assert.equal(await shape("Star").getAttribute("aria-checked"), "true");
@@ -133,8 +140,9 @@ try {
   assert.equal(await shape("Round").getAttribute("aria-checked"), "true");
   await page.keyboard.press("ArrowLeft");
   assert.equal(await shape("Star").getAttribute("aria-checked"), "true");
+});
 
-  say("a surface at a slant is skipped where that is wanted");
+test("a surface at a slant is skipped where that is wanted", async () => {
   const limit = page.getByLabel("Skip surfaces seen at a slant of more than");
   await limit.check();
   await page.getByLabel("Largest angle between").fill("35");
@@ -151,15 +159,17 @@ try {
   await page.getByLabel("Also what is hidden behind").uncheck();
   assert.equal(await limit.isChecked(), true);
   await limit.uncheck();
+});
 
-  say("a shape is renamed");
+test("a shape is renamed", async () => {
   await picker.getByRole("button", { name: "Options for Star" }).click();
   await picker.getByRole("menuitem", { name: "Rename" }).click();
   await page.getByRole("textbox", { name: "Name" }).fill("Five points");
   await page.keyboard.press("Enter");
   await shape("Five points").waitFor();
+});
 
-  say("somebody else deletes it: the brush is round, and what was painted stays");
+test("somebody else deletes it: the brush is round, and what was painted stays", async () => {
   const before = await newest();
   await server.request("DELETE", `/tools/${id}`);
   await page.getByText("The shape “Five points” was deleted").waitFor();
@@ -171,23 +181,26 @@ try {
   await page.keyboard.press("Control+z");
   await browser.saved();
   assert.ok((await newest()).sequence > before.sequence);
+});
 
-  say("one's own deletion asks first");
+test("one's own deletion asks first", async () => {
   await shape("leaf").click();
   await picker.getByRole("button", { name: "Options for leaf" }).click();
   await picker.getByRole("menuitem", { name: "Delete" }).click();
   await page.getByRole("button", { name: "Delete", exact: true }).click();
   await shape("leaf").waitFor({ state: "detached" });
   assert.deepEqual(await server.json("GET", "/tools"), { tools: [], total: 0 });
+});
 
-  say("the help sheet tells of it");
+test("the help sheet tells of it", async () => {
   await page.mouse.click((await browser.stage_box()).x + 10, (await browser.stage_box()).y + 10);
   await page.keyboard.press("?");
   await page.getByText("Skip surfaces seen at a slant", { exact: true }).waitFor();
   await shot("help");
   await page.keyboard.press("Escape");
+});
 
-  say("on a phone the shapes are chosen by touch");
+test("on a phone the shapes are chosen by touch", async () => {
   const phone = await Browser.open({
     viewport: { width: 390, height: 844 },
     deviceScaleFactor: 2,
@@ -228,11 +241,10 @@ try {
   browser.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`--- failed at: ${step}\n--- log of the server\n${server.log.slice(-50).join("\n")}`);
-  writeFileSync(join(kOutput, "tools-failed.png"), await page.screenshot());
-  throw error;
-} finally {
-  await browser.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  await browser?.close();
+  await server?.remove();
+});

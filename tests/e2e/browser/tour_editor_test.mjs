@@ -5,21 +5,13 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 // answers that the test wants
 const kExpected = ["status of 412", "status of 422", "status of 404"];
-
-const [ada, bea, phone] = [
-  await Browser.open(),
-  await Browser.open(),
-  await Browser.open({ ...kPhone, colorScheme: "dark" }),
-];
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 
 const shot = async ({ page }, name) => {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -93,11 +85,19 @@ async function keep_view(who, name, keys) {
 }
 let id;
 
-try {
+let ada, bea, phone, server, layers, again, link;
+
+test.beforeAll(async () => {
+  [ada, bea, phone] = [
+    await Browser.open(),
+    await Browser.open(),
+    await Browser.open({ ...kPhone, colorScheme: "dark" }),
+  ];
+  server = new StrataServer({ demo: true });
   await server.start();
   // or curators are asked for it
   id = (await server.json("PATCH", kBase, { scale_verified: true })).id;
-  const layers = (await server.json("GET", `${kBase}/layers`)).layers;
+  layers = (await server.json("GET", `${kBase}/layers`)).layers;
   const { project } = await server.json("GET", kBase);
   const columns = [
     { name: "Name", kind: "text", required: true },
@@ -112,8 +112,9 @@ try {
   await ada.sign_in(server, await server.add_person("ada", "curator"));
   await bea.sign_in(server, await server.add_person("bea", "annotator"));
   await phone.sign_in(server, await server.add_person("cleo", "curator"));
+});
 
-  say("a tour needs views, and says how they are had");
+test("a tour needs views, and says how they are had", async () => {
   await open_panel(ada);
   await list(ada)
     .getByText(/^None is made yet/)
@@ -128,8 +129,9 @@ try {
   await keep_view(ada, "West wall", ["4"]);
   await keep_view(ada, "From above", ["7"]);
   await keep_view(ada, "The handle", ["1", "ArrowLeft"]);
+});
 
-  say("it is made of views, and what it lacks is told at its field");
+test("it is made of views, and what it lacks is told at its field", async () => {
   await button(list(ada), "New tour…").click();
   await button(stops(ada), "Add a stop").waitFor();
   await save(ada);
@@ -165,8 +167,9 @@ try {
   await shot(ada, "refused");
   await fields(ada).getByLabel("Shown while it plays by itself").fill("12.5");
   await editor(ada).getByLabel("Without a touch it begins anew after").fill("90");
+});
 
-  say("layers and records are chosen in an order, with columns that are called otherwise");
+test("layers and records are chosen in an order, with columns that are called otherwise", async () => {
   await fields(ada)
     .getByRole("combobox", exact("Add a layer"))
     .selectOption({ label: layers[0].name });
@@ -202,8 +205,9 @@ try {
   assert.deepEqual(last.records, [
     { table: "pieces", keys: [2], columns: [{ column: "state", labels: { en: "Condition" } }] },
   ]);
+});
 
-  say("stops are put in another order, taken out and brought back");
+test("stops are put in another order, taken out and brought back", async () => {
   await row(ada, "Around the pot").locator("button.open").click();
   await stops(ada).locator("li").nth(2).waitFor();
   await of_stop(ada, "The handle", "Move up");
@@ -219,8 +223,9 @@ try {
   await shot(ada, "removed");
   await button(stops(ada), "Undo").click();
   assert.deepEqual(await titles(ada), ["1. From above", "2. West wall", "3. The handle"]);
+});
 
-  say("it is translated, and what lacks is marked");
+test("it is translated, and what lacks is marked", async () => {
   await editor(ada)
     .getByRole("combobox", exact("Add a language"))
     .selectOption({ label: "Spanish" });
@@ -259,8 +264,9 @@ try {
   await button(editor(ada), "Remove German").click();
   await button(question(ada), "Remove").click();
   await gone(button(editor(ada), "Remove German"));
+});
 
-  say("a stop is tried on the model, and the editor comes back as it was left");
+test("a stop is tried on the model, and the editor comes back as it was left", async () => {
   await button(fields(ada), "Try the stop").click();
   await trial(ada).getByText("Made apart, and set on when the wall was dry.").waitFor();
   await wait_for(
@@ -280,8 +286,9 @@ try {
   await ada.page.keyboard.press("Escape");
   await choose_stop(ada, "The handle");
   assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
+});
 
-  say("closing with changes asks, by Escape, too, and again");
+test("closing with changes asks, by Escape, too, and again", async () => {
   await ada.page.keyboard.press("Escape");
   await shot(ada, "leave");
   await button(question(ada), "Cancel").click();
@@ -290,10 +297,9 @@ try {
   await ada.page.keyboard.press("Escape"); // answers no
   await gone(question(ada));
   assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
+});
 
-  say(
-    "leaving the page asks as well while a stop is tried: by its links, back, signing out and loading it anew",
-  );
+test("leaving the page asks as well while a stop is tried: by its links, back, signing out and loading it anew", async () => {
   await button(fields(ada), "Try the stop").click();
   const ways = { home, back, sign_out: (who) => from_account(who, "Sign out") };
   for (const [name, leave] of Object.entries(ways)) {
@@ -320,8 +326,9 @@ try {
   await button(question(ada), "Cancel").click();
   await gone(question(ada));
   assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
+});
 
-  say("what somebody else saved meanwhile is told, and nothing is lost");
+test("what somebody else saved meanwhile is told, and nothing is lost", async () => {
   await server.json("PATCH", `${kBase}/tours/around-the-pot`, { name: "Twice around" });
   await save(ada);
   await refused(ada, /^Somebody changed this tour meanwhile/);
@@ -329,7 +336,7 @@ try {
   assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
   await save(ada);
   await gone(editor(ada));
-  const again = await tour("around-the-pot");
+  again = await tour("around-the-pot");
   assert.deepEqual(
     [again.name, again.languages, again.stops.map(({ view }) => view)],
     ["Around the pot", ["en", "es"], ["from-above", "west-wall", "the-handle"]],
@@ -338,8 +345,9 @@ try {
   assert.deepEqual(again.stops[2].records[0].columns, [
     { column: "state", labels: { en: "Condition", es: "Estado" } },
   ]);
+});
 
-  say("who says yes is where they wanted to be, and without changes nothing is asked");
+test("who says yes is where they wanted to be, and without changes nothing is asked", async () => {
   for (const leave of [home, back]) {
     await row(ada, "Around the pot").locator("button.open").click();
     await editor(ada).getByLabel("Name", { exact: true }).fill("Never saved");
@@ -358,8 +366,9 @@ try {
     await open_model(ada);
   }
   assert.equal((await tour("around-the-pot")).name, "Around the pot");
+});
 
-  say("what the server refuses is said at its field of the right stop");
+test("what the server refuses is said at its field of the right stop", async () => {
   await row(ada, "Around the pot").locator("button.open").click();
   await choose_stop(ada, "From above");
   await fields(ada).getByLabel("Title, English").fill("Above");
@@ -391,8 +400,9 @@ try {
   );
   assert.equal(await fields(ada).getByLabel("Title, English").inputValue(), "West wall");
   await ada.page.unroute(`**/tours/${again.id}`);
+});
 
-  say("a stop whose view is gone is marked, and says what to do");
+test("a stop whose view is gone is marked, and says what to do", async () => {
   const views = (await server.json("GET", `${kBase}/views`)).views;
   await server.request(
     "DELETE",
@@ -413,8 +423,9 @@ try {
     (await tour("around-the-pot")).stops.map(({ view }) => view),
     ["from-above", "from-above", "the-handle"],
   );
+});
 
-  say("a link for a kiosk is made, and shown once");
+test("a link for a kiosk is made, and shown once", async () => {
   await from_menu(ada, "Around the pot", "Kiosk links…");
   await kiosks(ada).getByText("There is no link for this tour yet.").waitFor();
   await button(kiosks(ada), "New link").click();
@@ -429,7 +440,7 @@ try {
   await kiosks(ada).getByLabel("Good for").fill("30");
   await button(kiosks(ada), "Make link").click();
   const link_field = kiosks(ada).getByLabel("Link for “Entrance hall”");
-  const link = await link_field.inputValue();
+  link = await link_field.inputValue();
   assert.ok(
     await link_field.evaluate((field) => field === field.getRootNode().activeElement),
     "the keyboard is where the form was, and the link chosen",
@@ -441,8 +452,9 @@ try {
   assert.equal(await kiosks(ada).locator("strata-copy-field").count(), 0);
   await ada.page.keyboard.press("Escape");
   await gone(kiosks(ada));
+});
 
-  say("who sees to kiosks finds all of them in their menu: seen, asked to reload, revoked");
+test("who sees to kiosks finds all of them in their menu: seen, asked to reload, revoked", async () => {
   const secret = link.split("/").pop();
   const as_kiosk = (path, how = {}) =>
     fetch(`${server.url}/api/v1${path}`, {
@@ -469,8 +481,9 @@ try {
   assert.equal(await entry.getByRole("button").count(), 0);
   await shot(ada, "kiosk_revoked");
   await ada.page.keyboard.press("Escape");
+});
 
-  say("on a phone a stop has the window to itself");
+test("on a phone a stop has the window to itself", async () => {
   await open_panel(phone);
   await row(phone, "Around the pot").scrollIntoViewIfNeeded();
   await shot(phone, "phone_list");
@@ -496,8 +509,9 @@ try {
   await kiosks(phone).getByText("revoked", { exact: true }).waitFor();
   await shot(phone, "phone_kiosks");
   await phone.page.keyboard.press("Escape");
+});
 
-  say("annotators are offered none of it");
+test("annotators are offered none of it", async () => {
   await open_panel(bea);
   await bea.page.locator("strata-view-list button.go").first().waitFor();
   assert.equal(await list(bea).count(), 0);
@@ -505,8 +519,9 @@ try {
   await bea.page.getByRole("menuitem", exact("Account…")).waitFor();
   assert.equal(await bea.page.getByRole("menuitem", exact("Kiosks…")).count(), 0);
   await bea.page.keyboard.press("Escape");
+});
 
-  say("a tour that was deleted meanwhile is made anew");
+test("a tour that was deleted meanwhile is made anew", async () => {
   await row(ada, "Around the pot").locator("button.open").click();
   await editor(ada).getByLabel("Name", { exact: true }).fill("Once more");
   await server.request("DELETE", `${kBase}/tours/around-the-pot`);
@@ -524,17 +539,16 @@ try {
     .getByText(/^None is made yet/)
     .waitFor();
   assert.deepEqual(await tours(), []);
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   for (const who of [ada, bea, phone]) who.assert_no_complaints(kExpected);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  for (const [name, who] of Object.entries({ ada, bea, phone }))
-    await shot(who, `failed_${name}`).catch(() => {});
-  throw error;
-} finally {
-  for (const who of [ada, bea, phone]) await who.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const who of [ada, bea, phone]) await who?.close();
+  await server?.remove();
+});

@@ -4,19 +4,13 @@ import assert from "node:assert/strict";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { encode_png } from "../support/png.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
-const browser = await Browser.open();
-const { page } = browser;
-const server = new StrataServer({ demo: true });
 const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-view";
 mkdirSync(kOutput, { recursive: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 const kCyan = [0, 200, 255]; // nothing on the pot has this hue
-
-const panel = page.locator("strata-view-panel");
 const radio = (name) => panel.getByRole("radio", { name, exact: true });
 const stage = async () => browser.picture(await browser.stage_box());
 const shot = async (name) =>
@@ -28,10 +22,17 @@ const brightness = ({ data, width, height }, from, to) => {
   return sum / ((to - from) * width * 0.13 * height);
 };
 
-try {
+let browser, page, server, panel, side, cyan, inside, uncut;
+
+test.beforeAll(async () => {
+  browser = await Browser.open();
+  ({ page } = browser);
+  server = new StrataServer({ demo: true });
+
+  panel = page.locator("strata-view-panel");
   await server.start();
-  const side = 64;
-  const cyan = { width: side, height: side, data: new Uint8Array(side * side * 4) };
+  side = 64;
+  cyan = { width: side, height: side, data: new Uint8Array(side * side * 4) };
   for (let at = 0; at < cyan.data.length; at += 4) cyan.data.set([...kCyan, 255], at);
 
   for (const { id } of (await server.json("GET", "/models/demo-pot/layers")).layers)
@@ -41,14 +42,16 @@ try {
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
   await browser.drawn();
+});
 
-  say("the panel is closed at first and opens by its heading");
+test("the panel is closed at first and opens by its heading", async () => {
   const heading = panel.getByRole("button", { name: "View" });
   assert.equal(await heading.getAttribute("aria-expanded"), "false");
   await heading.click();
   await radio("Museum").waitFor();
+});
 
-  say("a picture that is added is shown, and blends by its slider");
+test("a picture that is added is shown, and blends by its slider", async () => {
   await panel.locator("input[type=file]").setInputFiles({
     name: "UV light.png",
     mimeType: "image/png",
@@ -60,8 +63,9 @@ try {
   await panel.getByLabel("Opacity of UV light").fill("0");
   await wait_for(async () => (await browser.count(kCyan)) === 0, "the look to be clear", 150);
   await panel.getByRole("button", { name: "Hide UV light" }).click();
+});
 
-  say("raking light comes from where the pad is dragged to, and from where the keys move it");
+test("raking light comes from where the pad is dragged to, and from where the keys move it", async () => {
   await radio("Raking").click();
   const pad = panel.getByRole("slider", { name: "Direction of the light" });
   const box = await pad.boundingBox();
@@ -82,18 +86,19 @@ try {
   assert.notEqual(await pad.getAttribute("aria-valuetext"), said);
   await wait_for(() => lit_from("right"), "light from the right", 150);
   await radio("Museum").click();
+});
 
-  say("a section opens the pot, and the brush paints what is seen then");
+test("a section opens the pot, and the brush paints what is seen then", async () => {
   await radio("Y").click();
   await panel.getByLabel("Position of the cut").fill("0");
   await panel.getByRole("button", { name: "Keep the other side" }).click();
-  const inside = ({ data }) => {
+  inside = ({ data }) => {
     let count = 0;
     for (let at = 0; at < data.length; at += 4)
       if ([120, 92, 79].every((wanted, c) => Math.abs(data[at + c] - wanted) < 4)) ++count;
     return count;
   };
-  const uncut = inside(await stage()); // some of the clay has that colour, too
+  uncut = inside(await stage()); // some of the clay has that colour, too
   await panel.getByLabel("Position of the cut").fill("500");
   await wait_for(
     async () => inside(await stage()) > 3 * uncut + 3000,
@@ -113,29 +118,33 @@ try {
   await browser.saved();
   assert.ok((await edits()) > known);
   await page.keyboard.press("v");
+});
 
-  say("a box keeps what is inside, and sides do not pass each other");
+test("a box keeps what is inside, and sides do not pass each other", async () => {
   await radio("Box").click();
   await panel.getByLabel("Box to Z").fill("300");
   await panel.getByLabel("Box from Z").fill("900");
   assert.ok(Number(await panel.getByLabel("Box from Z").inputValue()) < 300);
   await panel.getByLabel("Box from Z").fill("0");
   await shot("box");
+});
 
-  say("keys step through lights and cuts");
+test("keys step through lights and cuts", async () => {
   await page.mouse.click((await browser.stage_box()).x + 10, (await browser.stage_box()).y + 10);
   await page.keyboard.press("k");
   assert.equal(await radio("Headlight").getAttribute("aria-checked"), "true");
+});
 
-  say("reset shows the model as others see it");
+test("reset shows the model as others see it", async () => {
   await page.keyboard.press("Control+z");
   await browser.saved();
   await panel.getByRole("button", { name: "Reset" }).click();
   assert.equal(await radio("Museum").getAttribute("aria-checked"), "true");
   assert.equal(await radio("Off").getAttribute("aria-checked"), "true");
   await wait_for(async () => inside(await stage()) < 2 * uncut + 1000, "the whole pot", 150);
+});
 
-  say("on a phone the panel is in the sheet");
+test("on a phone the panel is in the sheet", async () => {
   const phone = await Browser.open({
     viewport: { width: 390, height: 844 },
     deviceScaleFactor: 2,
@@ -160,11 +169,10 @@ try {
   browser.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`--- failed at: ${step}\n--- log of the server\n${server.log.slice(-50).join("\n")}`);
-  writeFileSync(join(kOutput, "view-failed.png"), await page.screenshot());
-  throw error;
-} finally {
-  await browser.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  await browser?.close();
+  await server?.remove();
+});

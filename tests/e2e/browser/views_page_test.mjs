@@ -4,20 +4,12 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const kExpected = ["status of 412"]; // answers that the test wants
-
-const [ada, bea, phone] = [
-  await Browser.open(),
-  await Browser.open(),
-  await Browser.open({ ...kPhone, colorScheme: "dark" }),
-];
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 
 const shot = async ({ page }, name) => {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -75,9 +67,17 @@ async function open_panel(who) {
 }
 let id;
 
-try {
+let ada, bea, phone, server, layers, kept, made, link;
+
+test.beforeAll(async () => {
+  [ada, bea, phone] = [
+    await Browser.open(),
+    await Browser.open(),
+    await Browser.open({ ...kPhone, colorScheme: "dark" }),
+  ];
+  server = new StrataServer({ demo: true });
   await server.start();
-  const layers = (await server.json("GET", `${kBase}/layers`)).layers;
+  layers = (await server.json("GET", `${kBase}/layers`)).layers;
   // or curators are asked for it
   id = (await server.json("PATCH", kBase, { scale_verified: true })).id;
   await ada.sign_in(server, await server.add_person("ada", "annotator"));
@@ -86,8 +86,9 @@ try {
   await ada.page
     .context()
     .grantPermissions(["clipboard-read", "clipboard-write"], { origin: server.url });
+});
 
-  say("what is seen is kept under a name, and others have it at once");
+test("what is seen is kept under a name, and others have it at once", async () => {
   await open_model(ada);
   await open_model(bea);
   await open_panel(ada);
@@ -103,7 +104,7 @@ try {
   await radio(ada, "X").click();
   await panel(ada).getByLabel("Position of the cut").fill("620");
   await ada.page.getByRole("button", { name: `Hide ${layers[0].name}` }).click();
-  const kept = await picture(ada);
+  kept = await picture(ada);
   await list(ada).getByRole("button", { name: "Keep this view…" }).click();
   await dialog(ada).getByRole("button", { name: "Keep", exact: true }).click();
   assert.equal(
@@ -121,7 +122,7 @@ try {
   await gone(dialog(ada));
   await go(bea, "West wall").waitFor();
   await is_current(ada, "West wall");
-  const [made] = await views();
+  [made] = await views();
   assert.deepEqual(
     [made.name, made.slug, made.user, made.light.mode, made.camera.section.length],
     ["West wall", "west-wall", "ada", "raking", 1],
@@ -130,10 +131,9 @@ try {
     made.layers.map(({ layer, visible }) => [layer, visible]).sort(),
     layers.map(({ id: layer, visible }, index) => [layer, index > 0 && visible]).sort(),
   );
+});
 
-  say(
-    "going elsewhere and back to it shows the same pixels, and leads back to what was seen before",
-  );
+test("going elsewhere and back to it shows the same pixels, and leads back to what was seen before", async () => {
   await surface(ada);
   for (const key of ["p", "Home", "ArrowLeft", "ArrowLeft"]) await ada.page.keyboard.press(key);
   await panel(ada).getByRole("button", { name: "Reset" }).click();
@@ -151,11 +151,12 @@ try {
   await becomes(ada, own, "the pixels that were seen before");
   assert.deepEqual([await is_chosen(ada, "Museum"), await is_chosen(ada, "Off")], [true, true]);
   assert.equal(await list(ada).getByRole("button", { name: "Back to what I saw" }).count(), 0);
+});
 
-  say("its link leads there in somebody else's browser");
+test("its link leads there in somebody else's browser", async () => {
   await from_menu(ada, "West wall", "Copy the link");
   await notice(ada, "The link is copied.").waitFor();
-  const link = await ada.page.evaluate(() => navigator.clipboard.readText());
+  link = await ada.page.evaluate(() => navigator.clipboard.readText());
   assert.equal(link, `${server.url}/models/${id}#view=west-wall`);
   await bea.page.goto(`${server.url}/`);
   await bea.page.goto(link);
@@ -172,8 +173,9 @@ try {
     async () => !bea.page.url().includes("#"),
     "the address to name no view that is not seen",
   );
+});
 
-  say("it gets another name, and its link goes on");
+test("it gets another name, and its link goes on", async () => {
   await from_menu(ada, "West wall", "Rename and describe…");
   assert.equal(await dialog(ada).getByLabel("Name").inputValue(), "West wall");
   await dialog(ada).getByLabel("Name").fill("North wall");
@@ -194,8 +196,9 @@ try {
   await gone(dialog(ada));
   await go(bea, "North wall").waitFor();
   assert.equal((await views())[0].slug, "west-wall");
+});
 
-  say("who did not make it is offered its link alone");
+test("who did not make it is offered its link alone", async () => {
   await row(bea, "North wall").getByRole("button", { name: "Options for North wall" }).click();
   assert.deepEqual(await row(bea, "North wall").getByRole("menuitem").allTextContents(), [
     "Copy the link",
@@ -203,8 +206,9 @@ try {
   ]);
   await shot(bea, "menu");
   await bea.page.keyboard.press("Escape");
+});
 
-  say("it shows something else instead, and that is taken back");
+test("it shows something else instead, and that is taken back", async () => {
   await from_menu(ada, "North wall", "Show this instead");
   await notice(ada, "“North wall” now shows what you see.").waitFor();
   assert.equal((await views())[0].light.mode, "museum");
@@ -213,8 +217,9 @@ try {
     .getByRole("button", { name: "Undo" })
     .click();
   await wait_for(async () => (await views())[0].light.mode === "raking", "what it showed before");
+});
 
-  say("a section that is none of the page's own is kept as it is, and can be turned off");
+test("a section that is none of the page's own is kept as it is, and can be turned off", async () => {
   const [view] = await views();
   const { id: _i, slug: _s, user: _u, time: _t, version: _v, ...content } = view;
   const oblique = {
@@ -237,8 +242,9 @@ try {
   await panel(ada).getByRole("button", { name: "Turn it off" }).click();
   await wait_for(async () => (await picture(ada)) !== cut, "the whole pot");
   assert.equal(await is_chosen(ada, "Off"), true);
+});
 
-  say("keys step through them");
+test("keys step through them", async () => {
   await surface(ada);
   await ada.page.keyboard.press("n");
   await is_current(ada, "North wall");
@@ -250,10 +256,9 @@ try {
     async () => (await go(ada, "Oblique").getAttribute("aria-current")) === "false",
     "the way back",
   );
+});
 
-  say(
-    "on a phone, in another window, a finger goes there; who only looks is not offered to keep or change",
-  );
+test("on a phone, in another window, a finger goes there; who only looks is not offered to keep or change", async () => {
   await open_model(phone);
   await phone.page.getByRole("button", { name: "Show the panel" }).click();
   await open_panel(phone);
@@ -265,8 +270,9 @@ try {
   await row(phone, "North wall").getByRole("button", { name: "Options for North wall" }).click();
   assert.equal(await row(phone, "North wall").getByRole("menuitem").count(), 2);
   await phone.page.keyboard.press("Escape");
+});
 
-  say("deleted it is gone for everybody, and its link says so");
+test("deleted it is gone for everybody, and its link says so", async () => {
   await from_menu(ada, "North wall", "Delete…");
   await shot(ada, "delete");
   await ada.page.getByRole("button", { name: "Cancel" }).click();
@@ -276,17 +282,16 @@ try {
   await bea.page.goto(`${server.url}/`);
   await bea.page.goto(link);
   await notice(bea, "This view is not here any more.").waitFor();
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   for (const who of [ada, bea, phone]) who.assert_no_complaints(kExpected);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  for (const [name, who] of Object.entries({ ada, bea, phone }))
-    await shot(who, `failed_${name}`).catch(() => {});
-  throw error;
-} finally {
-  for (const who of [ada, bea, phone]) await who.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const who of [ada, bea, phone]) await who?.close();
+  await server?.remove();
+});

@@ -3,17 +3,9 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { encode_png } from "../support/png.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
-
-const [carl, vera, phone] = [
-  await Browser.open(),
-  await Browser.open(),
-  await Browser.open({ viewport: { width: 390, height: 844 } }),
-];
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 
 async function shoot({ page }, name) {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -29,9 +21,17 @@ const kCurators = "Only curators of the project see this.";
 const kTeam = "Only annotators and curators of the project see this.";
 const photo = encode_png({ width: 64, height: 48, data: Buffer.alloc(64 * 48 * 4, 200) });
 
-try {
+let carl, vera, phone, server, model, dialog;
+
+test.beforeAll(async () => {
+  [carl, vera, phone] = [
+    await Browser.open(),
+    await Browser.open(),
+    await Browser.open({ viewport: { width: 390, height: 844 } }),
+  ];
+  server = new StrataServer({ demo: true });
   await server.start();
-  const model = (await server.json("GET", "/models")).models[0];
+  model = (await server.json("GET", "/models")).models[0];
   const layers = `/models/${model.id}/layers`;
   await server.json("POST", layers, {
     name: "Finds",
@@ -60,8 +60,9 @@ try {
     },
   );
   assert.equal(attached.status, 201);
+});
 
-  say("a curator and two viewers look at the model");
+test("a curator and two viewers look at the model", async () => {
   await carl.sign_in(server, await server.add_person("carl", "curator"));
   const veras = await server.add_person("vera", "viewer");
   for (const who of [vera, phone]) await who.sign_in(server, veras);
@@ -72,10 +73,11 @@ try {
   const later = carl.page.getByRole("button", { name: "Decide later" });
   if (await later.isVisible()) await later.click();
   await row_of(vera).click();
+});
 
-  say("the layer becomes the curators' own: it is gone for the others while they look");
+test("the layer becomes the curators' own: it is gone for the others while they look", async () => {
   await choose_for(carl, "Options for Finds", "Edit…");
-  const dialog = carl.page.locator("strata-layer-dialog");
+  dialog = carl.page.locator("strata-layer-dialog");
   await dialog.getByText("Everybody who sees the project sees this.").waitFor();
   await dialog.getByRole("radio", { name: "Curators" }).click();
   await dialog.getByText(kCurators).waitFor();
@@ -85,8 +87,9 @@ try {
   await wait_for(async () => (await row_of(vera).count()) === 0, "the layer to be gone for her");
   await shoot(carl, "layer_badge");
   await shoot(vera, "layer_gone");
+});
 
-  say("it is everybody's again");
+test("it is everybody's again", async () => {
   await choose_for(carl, "Options for Finds", "Edit…");
   await dialog.getByRole("radio", { name: "Everybody" }).click();
   await dialog.getByRole("button", { name: "Save", exact: true }).click();
@@ -95,8 +98,9 @@ try {
     async () => (await badge(carl.page.locator("strata-layer-panel"), kCurators).count()) === 0,
     "the badge to go",
   );
+});
 
-  say("a column of the team");
+test("a column of the team", async () => {
   for (const who of [carl, vera]) {
     await row_of(who).click();
     await who.page.keyboard.press("t");
@@ -116,8 +120,9 @@ try {
   await vera.page.locator("strata-table-panel").getByText("Ring").waitFor();
   await shoot(carl, "column_badge");
   await shoot(vera, "column_gone");
+});
 
-  say("a photo of the curators");
+test("a photo of the curators", async () => {
   await carl.page
     .locator("strata-table-panel")
     .getByRole("rowheader", { name: "1", exact: true })
@@ -133,8 +138,9 @@ try {
   );
   await shoot(carl, "photo");
   await carl.page.keyboard.press("Escape");
+});
 
-  say("who downloads the scan");
+test("who downloads the scan", async () => {
   await carl.page.getByRole("button", { name: "About this model" }).click();
   const about = carl.page.locator("strata-about-sheet");
   await about
@@ -157,12 +163,10 @@ try {
   for (const who of [carl, vera, phone]) who.assert_no_complaints(["/attachments/"]);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  for (const [name, who] of Object.entries({ carl, vera, phone }))
-    await shoot(who, `failed_${name}`).catch(() => {});
-  throw error;
-} finally {
-  for (const who of [carl, vera, phone]) await who.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const who of [carl, vera, phone]) await who?.close();
+  await server?.remove();
+});

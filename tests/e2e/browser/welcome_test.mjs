@@ -5,20 +5,13 @@ import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 import { active } from "../support/accessible.mjs";
 import { Browser } from "../support/browser.mjs";
+import { attach_log, test } from "../support/cases.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const kTablet = { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true };
 const output = process.env.STRATA_TEST_OUTPUT;
 if (output) mkdirSync(output, { recursive: true });
-
-const nora = await Browser.open({ tour: true }); // an annotator at a desk
-const vic = await Browser.open({ tour: true, ...kPhone }); // who may look
-const tablet = await Browser.open({ tour: true, ...kTablet });
-const everybody = { nora, vic, tablet };
-const server = new StrataServer({ demo: true });
-let step = "start";
-const say = (text) => console.log((step = text));
 
 async function shoot({ page }, name) {
   if (!output) return;
@@ -115,16 +108,23 @@ async function import_square(name, project) {
 }
 
 let model;
-try {
+
+let nora, vic, tablet, everybody, server;
+
+test.beforeAll(async () => {
+  nora = await Browser.open({ tour: true }); // an annotator at a desk
+  vic = await Browser.open({ tour: true, ...kPhone }); // who may look
+  tablet = await Browser.open({ tour: true, ...kTablet });
+  everybody = { nora, vic, tablet };
+  server = new StrataServer({ demo: true });
   await server.start();
   [model] = (await server.json("GET", "/models")).models;
   await nora.sign_in(server, await server.add_person("nora", "annotator"));
   await vic.sign_in(server, await server.add_person("vic", "viewer"));
   await tablet.sign_in(server, await server.add_person("tilda", "annotator"));
+});
 
-  say(
-    "an annotator opens a model for the first time: the tour offers itself and takes nothing away",
-  );
+test("an annotator opens a model for the first time: the tour offers itself and takes nothing away", async () => {
   await open_model(nora);
   await at_step(nora, "turn");
   assert.equal(await progress(nora), "1 of 6");
@@ -134,8 +134,9 @@ try {
   await nora.page.keyboard.press("v");
   await lies_well(nora, "turn");
   await shoot(nora, "desk_1_turn");
+});
 
-  say("by keyboard: Tab leads to the card, arrows go through it, and never past its ends");
+test("by keyboard: Tab leads to the card, arrows go through it, and never past its ends", async () => {
   await nora.page.keyboard.press("Tab");
   assert.match(await active(nora.page), /Skip the tour/);
   await nora.page.keyboard.press("ArrowLeft");
@@ -152,8 +153,9 @@ try {
   await at_step(nora, "share");
   await nora.page.keyboard.press("ArrowLeft");
   await at_step(nora, "values");
+});
 
-  say("it stays beside its thing in windows of any size; what is put away it leads to otherwise");
+test("it stays beside its thing in windows of any size; what is put away it leads to otherwise", async () => {
   await nora.page.keyboard.press("ArrowLeft");
   for (const size of [
     { width: 700, height: 500 },
@@ -181,8 +183,9 @@ try {
   await shoot(nora, "desk_layers_put_away");
   await nora.page.getByRole("button", { name: "Show the panel", exact: true }).click();
   await card_of(nora).getByText("This button brings them.").waitFor({ state: "detached" });
+});
 
-  say("a tour that was not ended is offered again; Escape ends it from anywhere, for good");
+test("a tour that was not ended is offered again; Escape ends it from anywhere, for good", async () => {
   await nora.page.reload();
   await at_step(nora, "turn");
   await nora.page.keyboard.press("Escape");
@@ -190,8 +193,9 @@ try {
   await nora.page.reload();
   await nora.drawn();
   await offers_nothing(nora);
+});
 
-  say("from the help it begins again, with the keyboard, and gives it back");
+test("from the help it begins again, with the keyboard, and gives it back", async () => {
   const help = nora.page.getByRole("button", { name: "Help", exact: true });
   await help.focus();
   await nora.page.keyboard.press("Enter");
@@ -210,8 +214,9 @@ try {
   await nora.page.keyboard.press("Enter");
   await is_gone(nora);
   assert.match(await active(nora.page), /Help/, "the keyboard was not given back");
+});
 
-  say("a viewer with a phone: by touch, without the steps that paint");
+test("a viewer with a phone: by touch, without the steps that paint", async () => {
   await open_model(vic);
   for (const [at, name] of ["turn", "layers", "values", "share"].entries()) {
     await at_step(vic, name);
@@ -224,8 +229,9 @@ try {
   await vic.page.reload();
   await vic.drawn();
   await offers_nothing(vic);
+});
 
-  say("a tablet: the fingers turn the model meanwhile, and the tour is skipped by one tap");
+test("a tablet: the fingers turn the model meanwhile, and the tour is skipped by one tap", async () => {
   await open_model(tablet);
   await at_step(tablet, "turn");
   await lies_well(tablet, "tablet");
@@ -241,13 +247,15 @@ try {
   await tablet.page.reload();
   await tablet.drawn();
   await offers_nothing(tablet);
+});
 
-  say("with one project home shows its models, as ever");
+test("with one project home shows its models, as ever", async () => {
   await nora.page.goto(server.url);
   await nora.page.getByRole("heading", { name: "Models", exact: true }).waitFor();
   await nora.page.getByRole("link", { name: "Open Demo pot" }).waitFor();
+});
 
-  say("with several a project is chosen first; the empty ones are last, and say so");
+test("with several a project is chosen first; the empty ones are last, and say so", async () => {
   await server.json("POST", "/projects", {
     name: "Villa Giulia",
     description: "Frescoes of the east wing, campaign of 2026.",
@@ -277,8 +285,9 @@ try {
   await shoot(vic, "gallery_phone");
   await tablet.page.evaluate(() => (document.documentElement.dataset.theme = "dark"));
   await shoot(tablet, "gallery_tablet_dark");
+});
 
-  say("a project is gone to by keyboard; its address leads there, and Back to the others");
+test("a project is gone to by keyboard; its address leads there, and Back to the others", async () => {
   await nora.page.getByRole("link", { name: /^Villa Giulia/ }).focus();
   await nora.page.keyboard.press("Enter");
   await nora.page.getByRole("heading", { name: "Villa Giulia", exact: true }).waitFor();
@@ -313,8 +322,9 @@ try {
   await vic.page.goto(`${server.url}/projects/villa-giulia`);
   await vic.page.getByRole("link", { name: "Open Lintel" }).waitFor();
   await shoot(vic, "project_phone");
+});
 
-  say("where nothing is, it says what to do: wait for a curator, import, ask for a role");
+test("where nothing is, it says what to do: wait for a curator, import, ask for a role", async () => {
   await vic.page.goto(`${server.url}/projects/archive`);
   await vic.page.getByText("Curators of the project do; ask one of them").waitFor();
   assert.equal(await vic.page.getByRole("button", { name: "Choose a file" }).count(), 0);
@@ -327,8 +337,9 @@ try {
   await tablet.page.getByRole("heading", { name: "No project yet" }).waitFor();
   await tablet.page.getByText("Ask whoever invited you for one.").waitFor();
   await shoot(tablet, "no_project_tablet");
+});
 
-  say("what a curator imports on the page of a project lies in it");
+test("what a curator imports on the page of a project lies in it", async () => {
   await nora.sign_in(server, await server.add_person("carl", "curator"));
   await nora.page.goto(`${server.url}/projects/archive`);
   await nora.page.getByRole("button", { name: "Choose a file" }).waitFor();
@@ -346,17 +357,16 @@ try {
   await nora.page.waitForURL(/\/models\/\d+$/);
   const made = (await server.json("GET", "/models")).models.find(({ name }) => name === "sill");
   assert.equal(made?.project, "archive");
+});
 
-  say("the end");
+test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   for (const who of Object.values(everybody)) who.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-} catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  for (const [name, who] of Object.entries(everybody))
-    await shoot(who, `failed_${name}`).catch(() => {});
-  throw error;
-} finally {
-  for (const who of Object.values(everybody)) await who.close();
-  await server.remove();
-}
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  for (const who of Object.values(everybody)) await who?.close();
+  await server?.remove();
+});

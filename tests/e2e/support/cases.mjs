@@ -31,18 +31,16 @@ export const test = playwright.test.extend({
     { scope: "worker" },
   ],
   page: ({ desk }, use) => use(desk.page),
-  log_of_failure: [
-    async ({ server }, use, info) => {
-      await use();
-      if (info.status !== info.expectedStatus)
-        await info.attach("log of the server", {
-          body: server.end_of_log(),
-          contentType: "text/plain",
-        });
-    },
-    { auto: true },
-  ],
 });
+
+/** After each case: what the server wrote, beside the trace and the picture of a failure. */
+export async function attach_log(info, server) {
+  if (server && info.status !== info.expectedStatus)
+    await info.attach("log of the server", {
+      body: server.end_of_log(),
+      contentType: "text/plain",
+    });
+}
 
 /** The last case of a file. */
 export function ends_well({ complaints = [], words = [] } = {}) {

@@ -148,7 +148,7 @@ class StrataServer:
                 self.data,
                 "--listen",
                 "127.0.0.1:0",
-                *OFTEN,
+                *([] if OFTEN[0] in self.options else OFTEN),
                 *self.options,
             ],
             stdout=subprocess.PIPE,
