@@ -69,26 +69,26 @@ Result<StrokeBatch> brush_of(const Stroke& stroke, const Layer& layer, const Mod
   return batch;
 }
 
-Result<room::FillEdit> fill_of(const protocol::EditFill& asked, const Layer& layer) {
+Result<room::FillEdit> fill_of(const protocol::EditFill& body, const Layer& layer) {
   using Mode = protocol::EditFillMode;
-  auto bits = STRATA_TRY(value_bits(layer, asked.value, asked.erase));
+  auto bits = STRATA_TRY(value_bits(layer, body.value, body.erase));
   room::FillEdit fill;
-  fill.erase = asked.erase;
+  fill.erase = body.erase;
   fill.value_bits = bits;
-  if (asked.mode == Mode::where) {
-    if (!asked.where)
+  if (body.mode == Mode::where) {
+    if (!body.where)
       return fail(ErrorCode::invalid, "Member missing",
                   "Mode `where` needs a condition, not a place.", "where");
-    auto condition = STRATA_TRY(query::parse_condition(*asked.where, "where"));
+    auto condition = STRATA_TRY(query::parse_condition(*body.where, "where"));
     if (condition.op != Expression::Op::truth || condition.number == 0)
       fill.region = room::FillEdit::Where{std::move(condition)};
     return fill;
   }
-  if (!asked.at)
+  if (!body.at)
     return fail(ErrorCode::invalid, "Member missing", "This mode needs a place where it begins.",
                 "at");
-  room::Place place = place_of(*asked.at);
-  if (asked.mode == Mode::island)
+  room::Place place = place_of(*body.at);
+  if (body.mode == Mode::island)
     fill.region = room::FillEdit::Island{std::move(place)};
   else
     fill.region = room::FillEdit::Connected{std::move(place)};

@@ -19,25 +19,25 @@ Result<Table> table_of_project(store::Store& store, std::int64_t project_id,
 }
 
 Result<Column> new_column(store::Store& store, std::int64_t project_id,
-                          const protocol::ColumnCreate& asked, const std::string& target_field) {
+                          const protocol::ColumnCreate& body, const std::string& target_field) {
   Column column;
-  column.name = asked.name;
-  if (asked.slug) column.slug = make_slug(*asked.slug);
-  if (asked.labels) column.labels = *asked.labels;
-  column.kind = *parse_column_kind(protocol::name(asked.kind));
-  column.unit = asked.unit;
-  column.required = asked.required;
-  column.unique = asked.unique;
-  if (asked.default_value) column.default_value = *asked.default_value;
-  column.comment = asked.comment;
-  if (asked.choices) column.choices = *asked.choices;
-  if (asked.target) {
-    auto table = STRATA_TRY(table_of_project(store, project_id, *asked.target, target_field));
+  column.name = body.name;
+  if (body.slug) column.slug = make_slug(*body.slug);
+  if (body.labels) column.labels = *body.labels;
+  column.kind = *parse_column_kind(protocol::name(body.kind));
+  column.unit = body.unit;
+  column.required = body.required;
+  column.unique = body.unique;
+  if (body.default_value) column.default_value = *body.default_value;
+  column.comment = body.comment;
+  if (body.choices) column.choices = *body.choices;
+  if (body.target) {
+    auto table = STRATA_TRY(table_of_project(store, project_id, *body.target, target_field));
     column.target = table.id;
   }
-  column.minimum = asked.minimum;
-  column.maximum = asked.maximum;
-  column.visibility = asked.visibility.value_or(Visibility::everyone);
+  column.minimum = body.minimum;
+  column.maximum = body.maximum;
+  column.visibility = body.visibility.value_or(Visibility::everyone);
   return column;
 }
 

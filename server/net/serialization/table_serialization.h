@@ -16,7 +16,7 @@ Result<Table> table_of_project(store::Store& store, std::int64_t project_id,
                                const protocol::TableRef& ref, const std::string& field);
 
 Result<Column> new_column(store::Store& store, std::int64_t project_id,
-                          const protocol::ColumnCreate& asked,
+                          const protocol::ColumnCreate& body,
                           const std::string& target_field = "target");
 Result<std::vector<Column>> new_columns(store::Store& store, std::int64_t project_id,
                                         const std::vector<protocol::ColumnCreate>& asked);

@@ -11,7 +11,7 @@
 
 namespace strata::net {
 
-Result<room::Highlight> highlight_of(const protocol::Highlight& asked, const Layer& layer,
+Result<room::Highlight> highlight_of(const protocol::Highlight& body, const Layer& layer,
                                      const std::string& field) {
   if (!layer.table)
     return fail(
@@ -19,13 +19,13 @@ Result<room::Highlight> highlight_of(const protocol::Highlight& asked, const Lay
         "'" + layer.name + "' holds numbers: only records of database layers can be highlighted.",
         field);
   room::Highlight highlight;
-  highlight.isolate = asked.isolate;
-  if (asked.filter) {
+  highlight.isolate = body.isolate;
+  if (body.filter) {
     auto filter = STRATA_TRY(query::parse_condition(
-        *asked.filter, field.empty() ? "filter" : field + ".filter", query::Names::columns));
+        *body.filter, field.empty() ? "filter" : field + ".filter", query::Names::columns));
     highlight.records = std::move(filter);
   } else {
-    std::vector<std::uint32_t> keys(asked.keys->begin(), asked.keys->end());
+    std::vector<std::uint32_t> keys(body.keys->begin(), body.keys->end());
     std::ranges::sort(keys);
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
     highlight.records = std::move(keys);

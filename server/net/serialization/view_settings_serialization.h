@@ -26,7 +26,7 @@ Result<room::ViewSettings> view_settings(
 Result<Background> background_of(const std::optional<protocol::Background>& asked);
 
 // Of a layer of records, for `field`; the filter's columns are found when it is first drawn.
-Result<room::Highlight> highlight_of(const protocol::Highlight& asked, const Layer& layer,
+Result<room::Highlight> highlight_of(const protocol::Highlight& body, const Layer& layer,
                                      const std::string& field);
 
 }  // namespace strata::net

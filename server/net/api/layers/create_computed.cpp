@@ -13,16 +13,16 @@
 namespace strata::net {
 namespace {
 
-jobs::ShapeRecipe recipe_of(const protocol::ShapeRecipe& asked) {
+jobs::ShapeRecipe recipe_of(const protocol::ShapeRecipe& body) {
   jobs::ShapeRecipe recipe;
-  recipe.kind = *jobs::parse_shape_kind(name(asked.kind));  // the schema has the same names
-  recipe.radius_mm = asked.radius_mm;
-  recipe.distance_mm = asked.distance_mm;
-  recipe.rays = asked.rays;
-  recipe.absolute = asked.absolute;
-  recipe.model = asked.model.value_or("");
-  recipe.property = asked.property.value_or("");
-  recipe.source = asked.source.value_or("");
+  recipe.kind = *jobs::parse_shape_kind(name(body.kind));  // the schema has the same names
+  recipe.radius_mm = body.radius_mm;
+  recipe.distance_mm = body.distance_mm;
+  recipe.rays = body.rays;
+  recipe.absolute = body.absolute;
+  recipe.model = body.model.value_or("");
+  recipe.property = body.property.value_or("");
+  recipe.source = body.source.value_or("");
   return recipe;
 }
 
@@ -30,13 +30,13 @@ jobs::ShapeRecipe recipe_of(const protocol::ShapeRecipe& asked) {
 
 Result<Response> create_shape_layer(const RouteContext& context, JobIdempotency& book,
                                     const Request& request, const std::shared_ptr<room::Room>& room,
-                                    const protocol::LayerCreate& asked, Layer layer) {
+                                    const protocol::LayerCreate& body, Layer layer) {
   auto recipe =
-      STRATA_TRY(app::check_recipe(context.store, recipe_of(*asked.compute), room->model()));
+      STRATA_TRY(app::check_recipe(context.store, recipe_of(*body.compute), room->model()));
   return start_layer_job(
       context, book, request, room,
       [&store = context.store, room, layer = std::move(layer), recipe = std::move(recipe),
-       has_palette = asked.palette.has_value(), user = request.user()](
+       has_palette = body.palette.has_value(), user = request.user()](
           app::NewLayers& layers, Progress& progress) -> Result<nlohmann::json> {
         STRATA_TRY(
             app::add_shape_layer(store, *room, layers, layer, recipe, has_palette, user, progress));

@@ -9,7 +9,7 @@ namespace strata::net {
 // what the request says of it, which precedes what follows from the recipe.
 Result<Response> create_shape_layer(const RouteContext& context, JobIdempotency& book,
                                     const Request& request, const std::shared_ptr<room::Room>& room,
-                                    const protocol::LayerCreate& asked, Layer layer);
+                                    const protocol::LayerCreate& body, Layer layer);
 
 // POST …/layers with `expression`: makes the layer and computes it; nothing is left of one that
 // cannot be computed. 201, or 202 with a job where the expression reads the shape of the surface.

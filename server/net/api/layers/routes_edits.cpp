@@ -94,19 +94,19 @@ room::EditRequest bare_edit(const Request& request, const Target& target, std::s
 }
 
 Result<room::EditRequest> review_edit(const Request& request, const Target& target) {
-  const auto asked = STRATA_TRY(body_of<protocol::Review>(request));
-  const auto decision = *parse_decision(name(asked.decision));
-  if (decision == Decision::reopen && !asked.edits)
+  const auto body = STRATA_TRY(body_of<protocol::Review>(request));
+  const auto decision = *parse_decision(name(body.decision));
+  if (decision == Decision::reopen && !body.edits)
     return fail(ErrorCode::invalid, "Edits missing",
                 "Name the edits whose review is to be taken back.", "edits");
   auto edit = bare_edit(request, target, std::string(name(decision)));
   edit.id = edit_id(request, target.layer, "review");  // one key is for one decision, whichever
-  if (asked.edits) edit.record["edits"] = *asked.edits;
-  if (asked.user) edit.record["user"] = *asked.user;
-  if (asked.reason) edit.record["reason"] = *asked.reason;
+  if (body.edits) edit.record["edits"] = *body.edits;
+  if (body.user) edit.record["user"] = *body.user;
+  if (body.reason) edit.record["reason"] = *body.reason;
   edit.edit = room::ReviewEdit{decision,
-                               {asked.edits.value_or(std::vector<std::int64_t>{}), asked.user},
-                               asked.reason.value_or("")};
+                               {body.edits.value_or(std::vector<std::int64_t>{}), body.user},
+                               body.reason.value_or("")};
   return edit;
 }
 
@@ -139,8 +139,8 @@ void add_edit_routes(Router& router, const RouteContext& context) {
          editing(
              context,
              [&context](const Request& request, const Target& target) -> Result<room::EditRequest> {
-               auto asked = STRATA_TRY(body_of<protocol::Edit>(request));
-               return edit_request(asked, target.layer, target.room->model(),
+               auto body = STRATA_TRY(body_of<protocol::Edit>(request));
+               return edit_request(body, target.layer, target.room->model(),
                                    edit_id(request, target.layer, "edit"), request.author(),
                                    [&](const std::string& ref) { return context.tools.find(ref); });
              }));
@@ -169,15 +169,15 @@ void add_edit_routes(Router& router, const RouteContext& context) {
   change(layer + "/restore",
          editing(context,
                  [](const Request& request, const Target& target) -> Result<room::EditRequest> {
-                   auto asked = STRATA_TRY(body_of<protocol::Restore>(request));
-                   if (asked.sequence > target.room->edits().sequence())
+                   auto body = STRATA_TRY(body_of<protocol::Restore>(request));
+                   if (body.sequence > target.room->edits().sequence())
                      return fail(ErrorCode::invalid, "Not yet there",
                                  "The newest sequence of this model is " +
                                      std::to_string(target.room->edits().sequence()) + ".",
                                  "sequence");
                    auto edit = bare_edit(request, target, "restore");
-                   edit.record["sequence"] = asked.sequence;
-                   edit.edit = room::RestoreEdit{asked.sequence};
+                   edit.record["sequence"] = body.sequence;
+                   edit.edit = room::RestoreEdit{body.sequence};
                    return edit;
                  }));
 }

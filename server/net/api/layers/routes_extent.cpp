@@ -20,11 +20,11 @@ namespace {
 // Where the records lie that a person highlights, with what is painted and with their lines and
 // points: to fly there, and to tell how much surface they have.
 Result<Response> extent(const RouteContext& context, const Request& request) {
-  auto asked = STRATA_TRY(body_of<protocol::Highlight>(request));
+  auto body = STRATA_TRY(body_of<protocol::Highlight>(request));
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   auto layer = STRATA_TRY((*room)->layers().find(request.param("layer")));
-  auto highlight = STRATA_TRY(highlight_of(asked, layer, ""));
+  auto highlight = STRATA_TRY(highlight_of(body, layer, ""));
   auto keys =
       room::highlighted_keys(context.store, *layer.table, request.role(), highlight, "filter");
   if (!keys) return tl::unexpected(keys.error());

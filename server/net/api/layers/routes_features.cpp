@@ -31,10 +31,10 @@ Result<Response> read_features(const RouteContext& context, const Request& reque
   const auto format = STRATA_TRY(feature_format(request));
   const auto axis = STRATA_TRY(map_axis(request));
   const auto language = STRATA_TRY(asked_language(request));
-  const auto asked = STRATA_TRY(LayerQuery::from(context, request));
-  auto set = STRATA_TRY(app::layer_features(context.store, {asked.room,
-                                                            asked.layer,
-                                                            asked.at,
+  const auto query = STRATA_TRY(LayerQuery::from(context, request));
+  auto set = STRATA_TRY(app::layer_features(context.store, {query.room,
+                                                            query.layer,
+                                                            query.at,
                                                             {axis.u, axis.v, 3 - axis.u - axis.v},
                                                             request.role(),
                                                             language}));
@@ -42,7 +42,7 @@ Result<Response> read_features(const RouteContext& context, const Request& reque
       format == FeatureFormat::geojson
           ? feature_json(std::move(set))
           : file_response(STRATA_TRY(app::geopackage(set, context.options.upload_dir)));
-  add_sequences(response, asked.sequence, asked.room->edits().durable_sequence());
+  add_sequences(response, query.sequence, query.room->edits().durable_sequence());
   response.with("Vary", "Accept");
   return response;
 }

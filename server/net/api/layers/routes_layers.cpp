@@ -55,9 +55,9 @@ Result<Palette> palette_of(const std::optional<nlohmann::json>& asked, ValueType
 }
 
 // A condition is told by one value, where it holds.
-bool computes_numbers(const protocol::LayerCreate& asked) {
-  if (!asked.expression) return asked.compute.has_value();
-  const auto expression = app::parse_formula(*asked.expression);
+bool computes_numbers(const protocol::LayerCreate& body) {
+  if (!body.expression) return body.compute.has_value();
+  const auto expression = app::parse_formula(*body.expression);
   return !expression || !expression->is_condition();
 }
 
@@ -76,90 +76,89 @@ int order_at_bottom(const std::vector<Layer>& others) {
   return bottom - 1;
 }
 
-Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model,
+Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
                         const std::vector<Layer>& others) {
-  if ((asked.compute || asked.expression) && asked.kind != LayerKind::numeric)
+  if ((body.compute || body.expression) && body.kind != LayerKind::numeric)
     return fail(ErrorCode::invalid, "Kind not usable", "What is computed is numeric.", "kind");
-  if (asked.compute && asked.expression)
+  if (body.compute && body.expression)
     return fail(ErrorCode::invalid, "Two ways to compute", "Give either `compute` or `expression`.",
                 "expression");
-  if (asked.recompute && !asked.expression)
+  if (body.recompute && !body.expression)
     return fail(ErrorCode::invalid, "No expression",
                 "`recompute` is for layers with an `expression`.", "recompute");
   Layer layer;
   layer.model_id = model.id;
-  layer.name = asked.name;
-  auto slug = STRATA_TRY(slug_of(asked.slug, asked.name));
+  layer.name = body.name;
+  auto slug = STRATA_TRY(slug_of(body.slug, body.name));
   layer.slug = slug;
-  layer.kind = asked.kind;
-  layer.type = asked.type.value_or(computes_numbers(asked) ? ValueType::f32 : ValueType::u8);
+  layer.kind = body.kind;
+  layer.type = body.type.value_or(computes_numbers(body) ? ValueType::f32 : ValueType::u8);
   const bool is_key =
       layer.type == ValueType::u8 || layer.type == ValueType::u16 || layer.type == ValueType::u32;
   if (layer.kind == LayerKind::database && !is_key)
     return fail(ErrorCode::invalid, "Type not usable",
                 "A database layer holds keys: its type is u8, u16 or u32.", "type");
-  if ((asked.table || asked.columns) && layer.kind != LayerKind::database)
+  if ((body.table || body.columns) && layer.kind != LayerKind::database)
     return fail(ErrorCode::invalid, "Table on a numeric layer",
-                "Only database layers have a table.", asked.table ? "table" : "columns");
-  if (asked.table && asked.columns)
+                "Only database layers have a table.", body.table ? "table" : "columns");
+  if (body.table && body.columns)
     return fail(ErrorCode::invalid, "Table and columns",
                 "Name a table, or give the columns of a new one.", "columns");
   layer.resolution =
-      asked.resolution.value_or(std::max(model.default_resolution, model.atlas.lowest_resolution));
+      body.resolution.value_or(std::max(model.default_resolution, model.atlas.lowest_resolution));
   if (layer.resolution < model.atlas.lowest_resolution)
     return fail(ErrorCode::invalid, "Resolution too low",
                 "Layers of this model have at least " +
                     std::to_string(model.atlas.lowest_resolution) + " texels a side.",
                 "resolution");
-  layer.unit = asked.unit;
-  layer.description = asked.description;
-  layer.labels = asked.labels.value_or(Labels());
-  layer.descriptions = asked.descriptions.value_or(Labels());
-  const bool is_computed = asked.compute || asked.expression;
-  if (is_computed && asked.locked == false)
+  layer.unit = body.unit;
+  layer.description = body.description;
+  layer.labels = body.labels.value_or(Labels());
+  layer.descriptions = body.descriptions.value_or(Labels());
+  const bool is_computed = body.compute || body.expression;
+  if (is_computed && body.locked == false)
     return fail(
         ErrorCode::invalid, "Locked at first",
         "A computed layer is locked when it is made. Unlock it afterwards to edit it by hand.",
         "locked");
-  const bool is_condition = asked.expression && !computes_numbers(asked);
+  const bool is_condition = body.expression && !computes_numbers(body);
   auto palette =
-      STRATA_TRY(is_condition && !asked.palette
-                     ? Result<Palette>(palette_of_condition(asked.name))
-                     : palette_of(asked.palette, layer.type, layer.kind == LayerKind::database));
+      STRATA_TRY(is_condition && !body.palette
+                     ? Result<Palette>(palette_of_condition(body.name))
+                     : palette_of(body.palette, layer.type, layer.kind == LayerKind::database));
   layer.palette = std::move(palette);
-  layer.opacity = asked.opacity;
+  layer.opacity = body.opacity;
   // It must not cover what others look at.
-  layer.visible = asked.visible.value_or(!is_computed);
-  layer.locked = asked.locked.value_or(is_computed);
-  layer.review = asked.review;
-  layer.visibility = asked.visibility.value_or(Visibility::everyone);
+  layer.visible = body.visible.value_or(!is_computed);
+  layer.locked = body.locked.value_or(is_computed);
+  layer.review = body.review;
+  layer.visibility = body.visibility.value_or(Visibility::everyone);
   layer.order =
-      asked.order.value_or(is_computed ? order_at_bottom(others) : app::order_on_top(others));
+      body.order.value_or(is_computed ? order_at_bottom(others) : app::order_on_top(others));
   return layer;
 }
 
 Result<Response> create_layer(const RouteContext& context, JobIdempotency& book,
                               const Request& request) {
-  auto asked = STRATA_TRY(body_of<protocol::LayerCreate>(request));
+  auto body = STRATA_TRY(body_of<protocol::LayerCreate>(request));
   auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
   const Model model = room->model();
-  auto layer = STRATA_TRY(new_layer(asked, model, room->layers().all()));
-  if (asked.table) {
-    auto table = table_of_project(context.store, model.project_id, *asked.table, "table");
+  auto layer = STRATA_TRY(new_layer(body, model, room->layers().all()));
+  if (body.table) {
+    auto table = table_of_project(context.store, model.project_id, *body.table, "table");
     if (!table) return tl::unexpected(table.error());
     layer.table = table->id;
-    if (!asked.palette && term_columns(*table)) layer.palette = terms_palette({});  // theirs
+    if (!body.palette && term_columns(*table)) layer.palette = terms_palette({});  // theirs
   }
   Column name;
   name.name = "Name";
   Result<std::vector<Column>> columns = std::vector{name};
-  if (asked.columns) columns = new_columns(context.store, model.project_id, *asked.columns);
+  if (body.columns) columns = new_columns(context.store, model.project_id, *body.columns);
   if (!columns) return tl::unexpected(columns.error());
-  if (asked.compute)
-    return create_shape_layer(context, book, request, room, asked, std::move(layer));
-  if (asked.expression) {
-    auto formula = app::read_formula(*room, *asked.expression, is_automatic(asked.recompute),
-                                     layer.visibility);
+  if (body.compute) return create_shape_layer(context, book, request, room, body, std::move(layer));
+  if (body.expression) {
+    auto formula =
+        app::read_formula(*room, *body.expression, is_automatic(body.recompute), layer.visibility);
     if (!formula) return tl::unexpected(formula.error());
     layer.formula = std::move(*formula);
     layer.origin = LayerOrigin::expression;
@@ -172,7 +171,7 @@ Result<Response> create_layer(const RouteContext& context, JobIdempotency& book,
   };
   if (layer.formula)
     return create_formula_layer(context, book, request, room, std::move(layer),
-                                asked.palette.has_value(), answer);
+                                body.palette.has_value(), answer);
   auto created = room->layers().create(
       std::move(layer), idempotent_response<Layer>(request, answer), std::move(*columns));
   if (!created) return tl::unexpected(created.error());
@@ -181,27 +180,27 @@ Result<Response> create_layer(const RouteContext& context, JobIdempotency& book,
 
 // An expression makes a numeric layer a computed one; an empty one makes it a layer like others,
 // with the values that it has. `before`: who saw the layer, which must see nothing more through it.
-Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& asked,
+Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& body,
                          Visibility before, Layer& layer) {
   const bool is_seen_by_more = layer.formula && layer.visibility < before;
-  if (!asked.expression && !asked.recompute && !is_seen_by_more) return {};
+  if (!body.expression && !body.recompute && !is_seen_by_more) return {};
   if (layer.kind != LayerKind::numeric)
     return fail(ErrorCode::invalid, "Kind not usable", "What is computed is numeric.",
                 "expression");
-  if (asked.expression && asked.expression->empty()) {
+  if (body.expression && body.expression->empty()) {
     if (!layer.formula) return {};
     layer.formula.reset();
-    layer.locked = asked.locked.value_or(false);
+    layer.locked = body.locked.value_or(false);
     layer.edited_by_hand = true;
     return {};
   }
-  if (!asked.expression && !layer.formula)
+  if (!body.expression && !layer.formula)
     return fail(ErrorCode::invalid, "No expression",
                 "`recompute` is for layers with an `expression`.", "recompute");
   const bool automatic =
-      asked.recompute ? is_automatic(asked.recompute) : layer.formula && layer.formula->automatic;
+      body.recompute ? is_automatic(body.recompute) : layer.formula && layer.formula->automatic;
   auto formula =
-      app::read_formula(room, asked.expression ? *asked.expression : layer.formula->expression,
+      app::read_formula(room, body.expression ? *body.expression : layer.formula->expression,
                         automatic, layer.visibility, layer.id);
   if (!formula) return tl::unexpected(formula.error());
   // Another expression: what was painted is going to be overwritten.
@@ -234,7 +233,7 @@ Result<Response> compute(const RouteContext& context, const Request& request) {
 }
 
 Result<Response> change_layer(const RouteContext& context, const Request& request) {
-  auto asked = STRATA_TRY(body_of<protocol::LayerPatch>(request));
+  auto body = STRATA_TRY(body_of<protocol::LayerPatch>(request));
   auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
   // As it is stored: what is open may be a moment behind.
   auto layer =
@@ -244,36 +243,36 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
   const auto answer = [](const Layer& now) {
     return json_response(to_json(now)).with("ETag", etag_of(now.version));
   };
-  if (asked.type) {
+  if (body.type) {
     protocol::LayerPatch alone;
-    alone.type = asked.type;
-    if (!(asked == alone))
+    alone.type = body.type;
+    if (!(body == alone))
       return fail(ErrorCode::invalid, "Type with other changes",
                   "Change the type of a layer in a call of its own.", "type");
     auto widened =
-        room->layers().widen(*layer, *asked.type, idempotent_response<Layer>(request, answer));
+        room->layers().widen(*layer, *body.type, idempotent_response<Layer>(request, answer));
     return widened ? Result<Response>(answer(*widened)) : tl::unexpected(widened.error());
   }
-  if (asked.name) layer->name = *asked.name;
-  if (asked.unit) layer->unit = *asked.unit;
-  if (asked.description) layer->description = *asked.description;
-  if (asked.labels) layer->labels = *asked.labels;
-  if (asked.descriptions) layer->descriptions = *asked.descriptions;
-  if (asked.palette) {
-    auto palette = STRATA_TRY(palette_from_json(*asked.palette));
+  if (body.name) layer->name = *body.name;
+  if (body.unit) layer->unit = *body.unit;
+  if (body.description) layer->description = *body.description;
+  if (body.labels) layer->labels = *body.labels;
+  if (body.descriptions) layer->descriptions = *body.descriptions;
+  if (body.palette) {
+    auto palette = STRATA_TRY(palette_from_json(*body.palette));
     layer->palette = std::move(palette);
     layer->palette_of_terms = false;
   }
-  if (asked.opacity) layer->opacity = *asked.opacity;
-  if (asked.visible) layer->visible = *asked.visible;
-  if (asked.locked == false && is_as_computed(*layer)) layer->edited_by_hand = true;
-  if (asked.locked) layer->locked = *asked.locked;
-  if (asked.review) layer->review = *asked.review;
+  if (body.opacity) layer->opacity = *body.opacity;
+  if (body.visible) layer->visible = *body.visible;
+  if (body.locked == false && is_as_computed(*layer)) layer->edited_by_hand = true;
+  if (body.locked) layer->locked = *body.locked;
+  if (body.review) layer->review = *body.review;
   const Visibility before = layer->visibility;
-  if (asked.visibility) layer->visibility = *asked.visibility;
-  if (asked.order) layer->order = *asked.order;
+  if (body.visibility) layer->visibility = *body.visibility;
+  if (body.order) layer->order = *body.order;
   const bool was_painted = !layer->formula;
-  STRATA_TRY(set_formula(*room, asked, before, *layer));
+  STRATA_TRY(set_formula(*room, body, before, *layer));
   if (was_painted && layer->formula) {
     const auto queue = context.store.journal().review_queue(layer->id, {}, 0, 0);
     if (!queue) return tl::unexpected(queue.error());

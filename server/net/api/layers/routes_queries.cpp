@@ -65,12 +65,12 @@ Result<Response> position(const RouteContext& context, const Request& request) {
 }
 
 Result<Response> positions(const RouteContext& context, const Request& request) {
-  auto asked =
+  auto body =
       STRATA_TRY(body_of<protocol::PositionsRequest>(request, context.options.max_positions_bytes));
   auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
-  const auto layers = STRATA_TRY(asked_layers(*room, asked.layers));
-  const std::vector<glm::dvec3> points(asked.points.begin(), asked.points.end());
-  const auto at = STRATA_TRY(find_sequence(context, *room, asked.at));
+  const auto layers = STRATA_TRY(asked_layers(*room, body.layers));
+  const std::vector<glm::dvec3> points(body.points.begin(), body.points.end());
+  const auto at = STRATA_TRY(find_sequence(context, *room, body.at));
   const auto sequence = at.value_or(room->edits().sequence());
   auto answers = room->queries().positions(points, slugs_of(layers), at);
   if (!answers) return tl::unexpected(answers.error());
@@ -89,17 +89,17 @@ Result<Response> positions(const RouteContext& context, const Request& request) 
 }
 
 Result<Response> profile(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::ProfileRequest>(request));
+  const auto body = STRATA_TRY(body_of<protocol::ProfileRequest>(request));
   const auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
-  const auto layers = STRATA_TRY(asked_layers(**room, asked.layers));
+  const auto layers = STRATA_TRY(asked_layers(**room, body.layers));
   const Unit unit = (*room)->model().unit;
   room::ProfileLine line;
-  if (asked.places)
-    line = room::PlacesInSteps{*asked.places, in_model_units(*asked.step_mm, unit)};
+  if (body.places)
+    line = room::PlacesInSteps{*body.places, in_model_units(*body.step_mm, unit)};
   else
-    line = room::SeenLine{*asked.camera, *asked.path};
-  const auto at = STRATA_TRY(find_sequence(context, **room, asked.at));
+    line = room::SeenLine{*body.camera, *body.path};
+  const auto at = STRATA_TRY(find_sequence(context, **room, body.at));
   const auto sequence = at.value_or((*room)->edits().sequence());
   const auto found = (*room)->queries().profile(line, slugs_of(layers), at);
   if (!found) return tl::unexpected(found.error());
@@ -112,12 +112,12 @@ Result<Response> profile(const RouteContext& context, const Request& request) {
 }
 
 Result<Response> pick(const RouteContext& context, const Request& request) {
-  auto asked = STRATA_TRY(body_of<protocol::PickRequest>(request));
+  auto body = STRATA_TRY(body_of<protocol::PickRequest>(request));
   auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
-  const auto at = STRATA_TRY(find_sequence(context, *room, asked.at));
+  const auto at = STRATA_TRY(find_sequence(context, *room, body.at));
   const auto sequence = at.value_or(room->edits().sequence());
   auto point =
-      room->queries().pick(asked.camera, asked.x, asked.y, slugs_of(room->layers().all()), at);
+      room->queries().pick(body.camera, body.x, body.y, slugs_of(room->layers().all()), at);
   if (!point) return tl::unexpected(point.error());
   Response response = json_response(protocol::to_json(to_protocol(*point)));
   add_sequences(response, sequence, room->edits().durable_sequence());

@@ -59,11 +59,11 @@ Result<std::vector<Layer>> chosen_layers(store::Store& store, const Model& sourc
   return layers;
 }
 
-Result<jobs::TransferRequest> transfer_request(store::Store& store, const protocol::Transfer& asked,
+Result<jobs::TransferRequest> transfer_request(store::Store& store, const protocol::Transfer& body,
                                                const Model& target, const Principal& who) {
-  auto source = store.models().find(asked.from);
+  auto source = store.models().find(body.from);
   if (source ? !who.sees(source->project_id) : source.error().code == ErrorCode::not_found)
-    return fail(ErrorCode::invalid, "No such model", "There is no model \"" + asked.from + "\".",
+    return fail(ErrorCode::invalid, "No such model", "There is no model \"" + body.from + "\".",
                 "from");
   if (!source) return tl::unexpected(source.error());
   if (source->id == target.id)
@@ -75,10 +75,10 @@ Result<jobs::TransferRequest> transfer_request(store::Store& store, const protoc
                     "; bring both into one coordinate system before importing them.",
                 "from");
   auto layers =
-      chosen_layers(store, *source, who.roles.in(source->project_id), target, asked.layers);
+      chosen_layers(store, *source, who.roles.in(source->project_id), target, body.layers);
   if (!layers) return tl::unexpected(layers.error());
-  return jobs::TransferRequest{std::move(*source), std::move(*layers), asked.tolerance_mm,
-                               asked.max_angle};
+  return jobs::TransferRequest{std::move(*source), std::move(*layers), body.tolerance_mm,
+                               body.max_angle};
 }
 
 // The layer as it is on the source, for the target.
@@ -133,10 +133,10 @@ Result<nlohmann::json> transfer(const RouteContext& context, room::Room& room,
 
 Result<Response> start_transfer(const RouteContext& context, JobIdempotency& book,
                                 const Request& request) {
-  auto asked = STRATA_TRY(body_of<protocol::Transfer>(request));
+  auto body = STRATA_TRY(body_of<protocol::Transfer>(request));
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
-  auto wish = transfer_request(context.store, asked, (*room)->model(), *request.principal);
+  auto wish = transfer_request(context.store, body, (*room)->model(), *request.principal);
   if (!wish) return tl::unexpected(wish.error());
   return start_layer_job(context, book, request, *room,
                          [&context, room = *room, wish = std::move(*wish), user = request.user()](

@@ -80,17 +80,17 @@ Result<Response> statistics(const RouteContext& context, const Request& request)
 }
 
 // The edit that paints where the condition holds.
-Result<room::EditRequest> painting(const Request& request, const protocol::SelectRequest& asked,
+Result<room::EditRequest> painting(const Request& request, const protocol::SelectRequest& body,
                                    const room::Room& room) {
   if (request.principal->role < Role::annotator)
     return fail(ErrorCode::forbidden, "Not allowed",
                 "`into` paints, which needs the role annotator.", "into");
-  if (!asked.where || asked.within || asked.at)
+  if (!body.where || body.within || body.at)
     return fail(
         ErrorCode::invalid, "Cannot be painted",
         "`into` paints where a condition holds now: give `where`, and neither `within` nor `at`.",
         "into");
-  const auto layer = room.layers().find(protocol::to_ref(asked.into->layer));
+  const auto layer = room.layers().find(protocol::to_ref(body.into->layer));
   if (!layer) {
     Error problem = layer.error();
     problem.field = "into.layer";
@@ -98,9 +98,9 @@ Result<room::EditRequest> painting(const Request& request, const protocol::Selec
   }
   protocol::EditFill fill;
   fill.mode = protocol::EditFillMode::where;
-  fill.where = asked.where;
-  fill.value = asked.into->value;
-  fill.erase = asked.into->erase;
+  fill.where = body.where;
+  fill.value = body.into->value;
+  fill.erase = body.into->erase;
   return edit_request(fill, *layer, room.model(), edit_id(request, *layer, "select"),
                       request.author());
 }
@@ -204,7 +204,7 @@ app::Sheet sheet_of(const query::CrossTable& table, const Layer& rows, const Lay
 }
 
 Result<Response> cross_table(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::CrossTableRequest>(request));
+  const auto body = STRATA_TRY(body_of<protocol::CrossTableRequest>(request));
   // Without `f` scripts get keys; what is asked for as a sheet is for people.
   const bool as_csv = !request.query.contains("f") &&
                       request.header("accept").find("text/csv") != std::string_view::npos;
@@ -213,10 +213,9 @@ Result<Response> cross_table(const RouteContext& context, const Request& request
   const auto separator = STRATA_TRY(csv_separator(request));
   const auto language = STRATA_TRY(asked_language(request));
   const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
-  const auto rows = STRATA_TRY(find_layers(*room, {protocol::to_ref(asked.rows)}, "rows"));
-  const auto columns = STRATA_TRY(find_layers(*room, {protocol::to_ref(asked.columns)}, "columns"));
-  const auto selection =
-      STRATA_TRY(selection_of(context, *room, asked.where, asked.within, asked.at));
+  const auto rows = STRATA_TRY(find_layers(*room, {protocol::to_ref(body.rows)}, "rows"));
+  const auto columns = STRATA_TRY(find_layers(*room, {protocol::to_ref(body.columns)}, "columns"));
+  const auto selection = STRATA_TRY(selection_of(context, *room, body.where, body.within, body.at));
   const auto sequence = selection.at.value_or(room->edits().sequence());
   const auto table =
       room->queries().cross_table(rows.front().slug, columns.front().slug, selection);

@@ -62,17 +62,17 @@ std::uint64_t raster_bytes(const Layer& layer) {
 Result<Response> read_texels(const RouteContext& context, ByteBudget& budget,
                              const Request& request) {
   auto format = STRATA_TRY(format_of(request));
-  const auto asked = STRATA_TRY(LayerQuery::from(context, request));
-  auto held = STRATA_TRY(budget.take(raster_bytes(asked.layer)));
-  auto snapshot = asked.room->queries().tiles(asked.layer.slug, asked.at);
+  const auto query = STRATA_TRY(LayerQuery::from(context, request));
+  auto held = STRATA_TRY(budget.take(raster_bytes(query.layer)));
+  auto snapshot = query.room->queries().tiles(query.layer.slug, query.at);
   if (!snapshot) return tl::unexpected(snapshot.error());
-  auto bytes = format->encode(asked.layer, snapshot->tiles);
+  auto bytes = format->encode(query.layer, snapshot->tiles);
   if (!bytes) return tl::unexpected(bytes.error());
   Response response = bytes_response(std::move(*bytes), format->media_type);
   response.held = std::move(held);
-  name_download(response, asked.layer.slug + "." + format->extension);
-  add_sequences(response, asked.at.value_or(snapshot->sequence),
-                asked.room->edits().durable_sequence());
+  name_download(response, query.layer.slug + "." + format->extension);
+  add_sequences(response, query.at.value_or(snapshot->sequence),
+                query.room->edits().durable_sequence());
   return response;
 }
 

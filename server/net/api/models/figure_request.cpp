@@ -32,21 +32,21 @@ static_assert(static_cast<int>(protocol::FigureDirection::right) ==
 
 // What is shown, and the camera that it comes with, if any.
 Result<std::optional<Camera>> read_shown(const RouteContext& context, const Request& request,
-                                         const protocol::FigureRequest& asked,
+                                         const protocol::FigureRequest& body,
                                          FigureRequest& figure) {
   const room::Room& room = *figure.room;
-  if (!asked.view) {
-    if (asked.camera) STRATA_TRY(validate(*asked.camera));
-    auto shown = STRATA_TRY(shown_settings(room, asked));
+  if (!body.view) {
+    if (body.camera) STRATA_TRY(validate(*body.camera));
+    auto shown = STRATA_TRY(shown_settings(room, body));
     figure.shown.shown = std::move(shown);
-    return asked.camera;
+    return body.camera;
   }
-  if (asked.camera || asked.layers || asked.looks || asked.light)
+  if (body.camera || body.layers || body.looks || body.light)
     return fail(
         ErrorCode::invalid, "View and more",
         "A figure of a view shows what the view does: leave out camera, layers, looks and light.",
         "view");
-  const auto view = context.store.views().find(room.model().id, *asked.view);
+  const auto view = context.store.views().find(room.model().id, *body.view);
   if (!view) {
     return at_field(view.error(), "view");
   }
@@ -63,34 +63,34 @@ glm::dvec3 middle_of(const Camera& camera, const Model& model) {
   return ray.origin + glm::dot(to_model, ray.direction) * ray.direction;
 }
 
-Result<void> read_direction(const protocol::FigureRequest& asked,
+Result<void> read_direction(const protocol::FigureRequest& body,
                             const std::optional<Camera>& camera, FigureRequest& figure) {
   const Model model = figure.room->model();
-  if (asked.direction && asked.normal)
+  if (body.direction && body.normal)
     return fail(ErrorCode::invalid, "Two directions", "Give a direction or a normal.", "normal");
   if (camera) figure.section = camera->section;
-  if (asked.normal) {
-    if (!(glm::length(*asked.normal) > 1e-12))
+  if (body.normal) {
+    if (!(glm::length(*body.normal) > 1e-12))
       return fail(ErrorCode::invalid, "No direction",
                   "A normal has a length: [0, 0, 1] is surface that faces along z.", "normal");
-    figure.plane = figure::plane_square_to(*asked.normal, model.up);
+    figure.plane = figure::plane_square_to(*body.normal, model.up);
     figure.from = "face";
-  } else if (asked.direction || !camera) {
-    const auto direction = asked.direction.value_or(protocol::FigureDirection::top);
+  } else if (body.direction || !camera) {
+    const auto direction = body.direction.value_or(protocol::FigureDirection::top);
     figure.plane = figure::plane_from(static_cast<figure::Direction>(direction), model.up);
     figure.from = protocol::name(direction);
   } else {
     figure.plane = figure::plane_of(*camera);
-    figure.from = asked.view.value_or("view");
+    figure.from = body.view.value_or("view");
     figure.center = middle_of(*camera, model);
   }
-  if (asked.center) figure.center = asked.center;
+  if (body.center) figure.center = body.center;
   return {};
 }
 
-Result<void> read_labels(const RouteContext& context, const protocol::FigureLabels& asked,
+Result<void> read_labels(const RouteContext& context, const protocol::FigureLabels& body,
                          FigureRequest& figure) {
-  const auto layer = figure.room->layers().find(protocol::to_ref(asked.layer));
+  const auto layer = figure.room->layers().find(protocol::to_ref(body.layer));
   if (!layer) {
     return at_field(layer.error(), "labels.layer");
   }
@@ -100,10 +100,10 @@ Result<void> read_labels(const RouteContext& context, const protocol::FigureLabe
                 "labels.layer");
   const auto table = context.store.tables().find(std::to_string(*layer->table), figure.role);
   if (!table) return tl::unexpected(table.error());
-  const Column* column = find_column(table->columns, asked.column);
+  const Column* column = find_column(table->columns, body.column);
   if (!column || holds_lists(column->kind))
     return fail(ErrorCode::invalid, "No such column",
-                "The table '" + table->slug + "' has no column '" + asked.column +
+                "The table '" + table->slug + "' has no column '" + body.column +
                     "' that holds one text or number.",
                 "labels.column");
   figure.labels = {*layer, *column};
@@ -113,15 +113,15 @@ Result<void> read_labels(const RouteContext& context, const protocol::FigureLabe
 }  // namespace
 
 Result<FigureRequest> read_figure_request(const RouteContext& context, const Request& request) {
-  auto asked = STRATA_TRY(body_of<protocol::FigureRequest>(request));
+  auto body = STRATA_TRY(body_of<protocol::FigureRequest>(request));
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   FigureRequest figure;
   figure.room = std::move(*room);
   figure.role = request.role();
-  const auto camera = STRATA_TRY(read_shown(context, request, asked, figure));
-  STRATA_TRY(read_direction(asked, camera, figure));
-  const auto at = STRATA_TRY(find_sequence(context, *figure.room, asked.at));
+  const auto camera = STRATA_TRY(read_shown(context, request, body, figure));
+  STRATA_TRY(read_direction(body, camera, figure));
+  const auto at = STRATA_TRY(find_sequence(context, *figure.room, body.at));
   // Which layers it shows is settled before what of them waits: one that others see only later is
   // not on it, unmarked.
   for (Layer& layer : figure.room->layers().all())
@@ -139,18 +139,18 @@ Result<FigureRequest> read_figure_request(const RouteContext& context, const Req
   }
   figure.shown.shown.background = {kPaper, kPaper};
   STRATA_TRY(validate(figure.shown.shown.light));
-  if (asked.labels) STRATA_TRY(read_labels(context, *asked.labels, figure));
-  figure.scale = asked.scale;
-  figure.paper = static_cast<figure::Paper>(asked.paper);
-  if (asked.orientation)
-    figure.landscape = *asked.orientation == protocol::FigureRequestOrientation::landscape;
-  figure.dpi = asked.dpi;
-  figure.format = static_cast<figure::Format>(asked.format.value_or(protocol::FigureFormat::pdf));
+  if (body.labels) STRATA_TRY(read_labels(context, *body.labels, figure));
+  figure.scale = body.scale;
+  figure.paper = static_cast<figure::Paper>(body.paper);
+  if (body.orientation)
+    figure.landscape = *body.orientation == protocol::FigureRequestOrientation::landscape;
+  figure.dpi = body.dpi;
+  figure.format = static_cast<figure::Format>(body.format.value_or(protocol::FigureFormat::pdf));
   const Model model = figure.room->model();
-  figure.captions = {asked.title.value_or(model.name), asked.caption.value_or(""),
-                     asked.credit.value_or(model.credit), asked.continued};
-  figure.legend = asked.legend;
-  figure.waiting_label = asked.provisional;
+  figure.captions = {body.title.value_or(model.name), body.caption.value_or(""),
+                     body.credit.value_or(model.credit), body.continued};
+  figure.legend = body.legend;
+  figure.waiting_label = body.provisional;
   const auto language = STRATA_TRY(asked_language(request));
   figure.language = language;
   return figure;

@@ -149,29 +149,29 @@ Result<Comment::Place> place_on(room::Room& room, const glm::dvec3& world) {
 
 // What the comment is about, as asked for.
 Result<void> put_subject(const RouteContext& context, const room::Room& room,
-                         const protocol::CommentCreate& asked, Comment& comment) {
-  if (!asked.layer) {
-    if (asked.record)
+                         const protocol::CommentCreate& body, Comment& comment) {
+  if (!body.layer) {
+    if (body.record)
       return fail(ErrorCode::invalid, "Record of no layer",
                   "`record` is a key of a `layer`; name it, too.", "layer");
     return {};
   }
-  const auto layers = STRATA_TRY(find_layers(room, {protocol::to_ref(*asked.layer)}, "layer"));
+  const auto layers = STRATA_TRY(find_layers(room, {protocol::to_ref(*body.layer)}, "layer"));
   const Layer& layer = layers.front();
   comment.layer_id = layer.id;
-  if (!asked.record) return {};
+  if (!body.record) return {};
   if (!layer.table)
     return fail(ErrorCode::invalid, "No records",
                 "The layer `" + layer.slug + "` is numeric: it has no records.", "record");
   const auto missing =
-      STRATA_TRY(context.store.records().missing(*layer.table, std::vector{*asked.record}));
+      STRATA_TRY(context.store.records().missing(*layer.table, std::vector{*body.record}));
   if (!missing.empty())
     return fail(
         ErrorCode::invalid, "No such record",
-        "The table of `" + layer.slug + "` has no record " + std::to_string(*asked.record) + ".",
+        "The table of `" + layer.slug + "` has no record " + std::to_string(*body.record) + ".",
         "record");
   comment.table_id = *layer.table;
-  comment.record = *asked.record;
+  comment.record = *body.record;
   return {};
 }
 
@@ -191,33 +191,33 @@ Result<Response> write(const RouteContext& context, const Request& request,
 }
 
 Result<Response> create_comment(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::CommentCreate>(request));
+  const auto body = STRATA_TRY(body_of<protocol::CommentCreate>(request));
   const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
-  const auto place = STRATA_TRY(place_on(*room, asked.position));
+  const auto place = STRATA_TRY(place_on(*room, body.position));
   Comment comment;
   comment.model_id = room->model().id;
   comment.place = place;
-  STRATA_TRY(put_subject(context, *room, asked, comment));
-  comment.text = asked.text;
+  STRATA_TRY(put_subject(context, *room, body, comment));
+  comment.text = body.text;
   comment.user = request.user();
   return write(context, request, comment);
 }
 
 Result<Response> create_reply(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::ReplyCreate>(request));
+  const auto body = STRATA_TRY(body_of<protocol::ReplyCreate>(request));
   const auto thread = STRATA_TRY(stored_comment(context, request));
   Comment comment;
   comment.thread = thread.id;
-  comment.text = asked.text;
+  comment.text = body.text;
   comment.user = request.user();
   return write(context, request, comment);
 }
 
 Result<Response> change_comment(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::CommentPatch>(request));
+  const auto body = STRATA_TRY(body_of<protocol::CommentPatch>(request));
   auto comment = STRATA_TRY(stored_comment(context, request));
   STRATA_TRY(check_if_match(request, comment.version));
-  if (asked.text) {
+  if (body.text) {
     if (comment.user != request.user())
       return fail(ErrorCode::forbidden, "Not yours",
                   "Only " + comment.user + " changes the text of this comment. Reply to it.",
@@ -225,15 +225,15 @@ Result<Response> change_comment(const RouteContext& context, const Request& requ
     if (comment.deleted)
       return fail(ErrorCode::conflict, "Deleted already",
                   "The comment was deleted; it stands there for its replies.", "text");
-    comment.text = *asked.text;
+    comment.text = *body.text;
   }
-  if (asked.state) {
+  if (body.state) {
     if (comment.thread)
       return fail(ErrorCode::invalid, "State of a reply",
                   "The state is that of the thread: change comment " +
                       std::to_string(*comment.thread) + ".",
                   "state");
-    if (*asked.state == protocol::CommentState::open)
+    if (*body.state == protocol::CommentState::open)
       comment.resolved.reset();
     else if (!comment.resolved)
       comment.resolved = Comment::Resolution{request.user(), {}};

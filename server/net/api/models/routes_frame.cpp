@@ -14,14 +14,14 @@ namespace strata::net {
 namespace {
 
 Result<Response> frame(const RouteContext& context, const Request& request) {
-  auto asked = STRATA_TRY(body_of<protocol::FrameRequest>(request));
+  auto body = STRATA_TRY(body_of<protocol::FrameRequest>(request));
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   room::PictureRequest wanted;
-  if (asked.layers) {
+  if (body.layers) {
     wanted.layers.emplace();
-    for (std::size_t i = 0; i < asked.layers->size(); ++i) {
-      auto layer = (*room)->layers().find(protocol::to_ref((*asked.layers)[i]));
+    for (std::size_t i = 0; i < body.layers->size(); ++i) {
+      auto layer = (*room)->layers().find(protocol::to_ref((*body.layers)[i]));
       if (!layer) {
         Error problem = layer.error();
         problem.field = "layers[" + std::to_string(i) + "]";
@@ -30,9 +30,9 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
       wanted.layers->push_back(layer->slug);
     }
   }
-  if (asked.highlights) {
-    for (std::size_t i = 0; i < asked.highlights->size(); ++i) {
-      const auto& wished = (*asked.highlights)[i];
+  if (body.highlights) {
+    for (std::size_t i = 0; i < body.highlights->size(); ++i) {
+      const auto& wished = (*body.highlights)[i];
       const std::string field = "highlights[" + std::to_string(i) + "]";
       auto layer = (*room)->layers().find(protocol::to_ref(wished.layer));
       if (!layer) {
@@ -46,18 +46,18 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
     }
   }
   const auto sequence = (*room)->edits().sequence();
-  const auto at = STRATA_TRY(find_sequence(context, **room, asked.at));
+  const auto at = STRATA_TRY(find_sequence(context, **room, body.at));
   wanted.at = at;
-  if (asked.looks) {
-    auto images = STRATA_TRY(surface_image_views(**room, *asked.looks));
+  if (body.looks) {
+    auto images = STRATA_TRY(surface_image_views(**room, *body.looks));
     wanted.shown.images = std::move(images);
   }
-  if (asked.light) wanted.shown.light = *asked.light;
+  if (body.light) wanted.shown.light = *body.light;
   STRATA_TRY(validate(wanted.shown.light));
-  const auto background = STRATA_TRY(background_of(asked.background));
+  const auto background = STRATA_TRY(background_of(body.background));
   wanted.shown.background = background;
-  auto response = STRATA_TRY(picture_response(**room, wanted, asked.camera,
-                                              asked.format == protocol::FrameRequestFormat::png));
+  auto response = STRATA_TRY(picture_response(**room, wanted, body.camera,
+                                              body.format == protocol::FrameRequestFormat::png));
   add_sequences(response, wanted.at.value_or(sequence), (*room)->edits().durable_sequence());
   return response;
 }

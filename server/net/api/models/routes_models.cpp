@@ -88,12 +88,12 @@ Result<void> apply_patch(const protocol::ModelPatch& patch, Model& model) {
 }
 
 Result<Response> change_model(const RouteContext& context, const Request& request) {
-  auto asked = STRATA_TRY(body_of<protocol::ModelPatch>(request));
+  auto body = STRATA_TRY(body_of<protocol::ModelPatch>(request));
   // Through the room: those who look at the model are told.
   auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
   Model model = room->model();
   STRATA_TRY(check_if_match(request, model.version));
-  STRATA_TRY(apply_patch(asked, model));
+  STRATA_TRY(apply_patch(body, model));
   auto slug = project_slug(context, model.project_id);
   if (!slug) return tl::unexpected(slug.error());
   const auto answer = [slug = *slug](const Model& now) {

@@ -27,16 +27,16 @@ Result<Response> get_view(const RouteContext& context, const Request& request) {
 }
 
 Result<Response> put_view(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::PersonalView>(request));
-  for (std::size_t i = 0; i < asked.layers.size(); ++i)
-    if (asked.layers[i].highlight)
+  const auto body = STRATA_TRY(body_of<protocol::PersonalView>(request));
+  for (std::size_t i = 0; i < body.layers.size(); ++i)
+    if (body.layers[i].highlight)
       return fail(ErrorCode::invalid, "Not kept",
                   "Records that stand out belong to a named view; here they are not kept.",
                   "layers[" + std::to_string(i) + "].highlight");
   const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
-  const auto settings = STRATA_TRY(view_settings(*room, asked.layers, {}, {}));
+  const auto settings = STRATA_TRY(view_settings(*room, body.layers, {}, {}));
   if (auto kept = context.store.personal_views().keep(request.user(), room->model().id,
-                                                      kept_layers(asked.layers, settings));
+                                                      kept_layers(body.layers, settings));
       !kept)
     return tl::unexpected(kept.error());
   return get_view(context, request);

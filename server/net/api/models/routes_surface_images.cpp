@@ -98,15 +98,15 @@ Result<Response> create_surface_image(const RouteContext& context, const Request
 }
 
 Result<Response> change_surface_image(const RouteContext& context, const Request& request) {
-  auto asked = STRATA_TRY(body_of<protocol::LookPatch>(request));
+  auto body = STRATA_TRY(body_of<protocol::LookPatch>(request));
   auto image = STRATA_TRY(stored_surface_image(context, request));
   auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
   STRATA_TRY(check_if_match(request, image.version));
-  if (asked.name) image.name = *asked.name;
-  if (asked.description) image.description = *asked.description;
-  if (asked.opacity) image.opacity = *asked.opacity;
-  if (asked.visible) image.visible = *asked.visible;
-  if (asked.order) image.order = *asked.order;
+  if (body.name) image.name = *body.name;
+  if (body.description) image.description = *body.description;
+  if (body.opacity) image.opacity = *body.opacity;
+  if (body.visible) image.visible = *body.visible;
+  if (body.order) image.order = *body.order;
   const auto answer = [](const SurfaceImage& now) {
     return json_response(to_json(now)).with("ETag", etag_of(now.version));
   };

@@ -65,15 +65,15 @@ Result<Response> get_tour(const RouteContext& context, const Request& request) {
 }
 
 Result<Response> create_tour(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::TourCreate>(request));
+  const auto body = STRATA_TRY(body_of<protocol::TourCreate>(request));
   const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
-  auto stops = STRATA_TRY(kept_stops(context, model, request.role(), asked.stops));
+  auto stops = STRATA_TRY(kept_stops(context, model, request.role(), body.stops));
   NamedPart tour;
   tour.model_id = model.id;
-  tour.name = asked.name;
-  tour.text = asked.text.value_or("");
+  tour.name = body.name;
+  tour.text = body.text.value_or("");
   tour.content = {
-      {"languages", asked.languages}, {"idle_s", asked.idle_s}, {"stops", std::move(stops)}};
+      {"languages", body.languages}, {"idle_s", body.idle_s}, {"stops", std::move(stops)}};
   tour.user = request.user();
   STRATA_TRY(check_languages(tour.content, true));
   const auto told = STRATA_TRY(to_json(context, tour, request.role(), tour.user));
@@ -87,18 +87,18 @@ Result<Response> create_tour(const RouteContext& context, const Request& request
 }
 
 Result<Response> change_tour(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::TourPatch>(request));
+  const auto body = STRATA_TRY(body_of<protocol::TourPatch>(request));
   auto found = STRATA_TRY(find_to_change(context, request));
   NamedPart& tour = found.tour;
-  if (asked.name) tour.name = *asked.name;
-  if (asked.text) tour.text = *asked.text;
-  if (asked.languages) tour.content["languages"] = *asked.languages;
-  if (asked.idle_s) tour.content["idle_s"] = *asked.idle_s;
-  if (asked.stops) {
-    auto stops = STRATA_TRY(kept_stops(context, found.model, request.role(), *asked.stops));
+  if (body.name) tour.name = *body.name;
+  if (body.text) tour.text = *body.text;
+  if (body.languages) tour.content["languages"] = *body.languages;
+  if (body.idle_s) tour.content["idle_s"] = *body.idle_s;
+  if (body.stops) {
+    auto stops = STRATA_TRY(kept_stops(context, found.model, request.role(), *body.stops));
     tour.content["stops"] = std::move(stops);
   }
-  STRATA_TRY(check_languages(tour.content, asked.stops.has_value()));
+  STRATA_TRY(check_languages(tour.content, body.stops.has_value()));
   const auto told = STRATA_TRY(to_json(context, tour, request.role(), tour.user));
   const auto answer = [&](const NamedPart& now) { return answer_of(told, now, 200); };
   const auto changed = STRATA_TRY(

@@ -129,13 +129,13 @@ Result<Response> view_picture(const RouteContext& context, const Request& reques
 }
 
 Result<Response> create_view(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::ViewCreate>(request));
+  const auto body = STRATA_TRY(body_of<protocol::ViewCreate>(request));
   const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
-  auto content = STRATA_TRY(content_of(*room, asked, asked.camera));
+  auto content = STRATA_TRY(content_of(*room, body, body.camera));
   NamedPart view;
   view.model_id = room->model().id;
-  view.name = asked.name;
-  view.text = asked.text.value_or("");
+  view.name = body.name;
+  view.text = body.text.value_or("");
   view.content = std::move(content);
   view.user = request.user();
   const auto answer = [&](const NamedPart& made) {
@@ -150,13 +150,13 @@ Result<Response> create_view(const RouteContext& context, const Request& request
 }
 
 Result<Response> change_view(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::ViewPatch>(request));
+  const auto body = STRATA_TRY(body_of<protocol::ViewPatch>(request));
   auto found = STRATA_TRY(find_own_view(context, request));
   NamedPart& view = found.view;
-  if (asked.name) view.name = *asked.name;
-  if (asked.text) view.text = *asked.text;
-  if (asked.camera) {
-    auto content = content_of(*found.room, asked, *asked.camera);
+  if (body.name) view.name = *body.name;
+  if (body.text) view.text = *body.text;
+  if (body.camera) {
+    auto content = content_of(*found.room, body, *body.camera);
     if (!content) return tl::unexpected(content.error());
     view.content = std::move(*content);
   }

@@ -68,12 +68,12 @@ namespace {
 using store::TokenKind;
 
 Result<Response> sign_in(const RouteContext& context, LoginThrottle& gate, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::Login>(request));
-  const std::string user = asked.user.value_or(""), address = address_of(request);
+  const auto body = STRATA_TRY(body_of<protocol::Login>(request));
+  const std::string user = body.user.value_or(""), address = address_of(request);
   STRATA_TRY(gate.pass(address, user));
   const auto session =
-      asked.token ? context.auth.session_for_token(*asked.token, agent_of(request))
-                  : context.auth.session_for_password(user, *asked.password, agent_of(request));
+      body.token ? context.auth.session_for_token(*body.token, agent_of(request))
+                 : context.auth.session_for_password(user, *body.password, agent_of(request));
   if (!session) return tl::unexpected(session.error());
   gate.was_right(address, user);
   return signed_in(context, request, *session);
@@ -91,30 +91,30 @@ Result<Response> sign_out(const RouteContext& context, const Request& request) {
 }
 
 Result<Response> change_me(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::MePatch>(request));
+  const auto body = STRATA_TRY(body_of<protocol::MePatch>(request));
   const auto person = STRATA_TRY(context.store.accounts().find(request.user()));
   STRATA_TRY(context.store.accounts().update(
-      person.id, {.full_name = asked.full_name, .role = {}, .disabled = {}}));
+      person.id, {.full_name = body.full_name, .role = {}, .disabled = {}}));
   return who_is_signed_in(context, request.user(), request.principal->role);
 }
 
 Result<Response> change_password(const RouteContext& context, LoginThrottle& gate,
                                  const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::PasswordChange>(request));
-  STRATA_TRY(store::check_password(asked.password, request.user(), "password"));
+  const auto body = STRATA_TRY(body_of<protocol::PasswordChange>(request));
+  STRATA_TRY(store::check_password(body.password, request.user(), "password"));
   const auto hash = STRATA_TRY(context.store.accounts().password_of(request.user()));
   if (!hash.empty()) {
     // Whoever sits at somebody else's browser guesses no faster than from anywhere.
     STRATA_TRY(gate.pass(address_of(request), request.user()));
     const auto fits =
-        asked.current ? store::password_fits(hash, *asked.current) : Result<bool>(false);
+        body.current ? store::password_fits(hash, *body.current) : Result<bool>(false);
     if (!fits) return tl::unexpected(fits.error());
     if (!*fits)
       return fail(ErrorCode::invalid, "Password does not fit",
                   "This is not the password that you have now.", "current");
     gate.was_right(address_of(request), request.user());
   }
-  const auto chosen = STRATA_TRY(store::hash_password(asked.password));
+  const auto chosen = STRATA_TRY(store::hash_password(body.password));
   STRATA_TRY(
       context.store.accounts().set_password(request.user(), chosen, request.principal->secret));
   context.auth.forget();
@@ -184,13 +184,13 @@ Result<Response> end_others(const RouteContext& context, const Request& request)
 }
 
 Result<Response> create_token(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::ScriptTokenCreate>(request));
+  const auto body = STRATA_TRY(body_of<protocol::ScriptTokenCreate>(request));
   Role own = request.principal->roles.highest();
   Role role = own;
   std::optional<std::int64_t> only;
-  if (asked.project) {
-    STRATA_TRY(check_seen(context, request, *asked.project, "project"));
-    auto project = context.store.projects().find(*asked.project);
+  if (body.project) {
+    STRATA_TRY(check_seen(context, request, *body.project, "project"));
+    auto project = context.store.projects().find(*body.project);
     if (!project) {
       project.error().field = "project";
       return tl::unexpected(project.error());
@@ -199,7 +199,7 @@ Result<Response> create_token(const RouteContext& context, const Request& reques
     own = request.principal->roles.in(*only);
     role = std::min(own, Role::curator);
   }
-  if (asked.role) role = static_cast<Role>(static_cast<int>(*asked.role));
+  if (body.role) role = static_cast<Role>(static_cast<int>(*body.role));
   if (role > own)
     return fail(ErrorCode::forbidden, "Not allowed",
                 "Your highest role " + std::string(only ? "there " : "") + "is " +
@@ -207,7 +207,7 @@ Result<Response> create_token(const RouteContext& context, const Request& reques
                 "role");
   const auto made =
       context.store.tokens().create(TokenKind::script, request.user(), role,
-                                    std::chrono::hours(24 * asked.days), asked.name, {}, only);
+                                    std::chrono::hours(24 * body.days), body.name, {}, only);
   if (!made) return tl::unexpected(made.error());
   return json_response({{"secret", made->secret}, {"token", token_json(made->token)}}, 201)
       .with("Cache-Control", "no-store");

@@ -47,9 +47,9 @@ Result<Response> list_groups(const RouteContext& context, const Request& request
 }
 
 Result<Response> create_group(const RouteContext& context, const Request& request) {
-  auto asked = STRATA_TRY(body_of<protocol::GroupCreate>(request));
-  const auto made = STRATA_TRY(context.store.groups().create(
-      asked.name, asked.members.value_or(std::vector<std::string>())));
+  auto body = STRATA_TRY(body_of<protocol::GroupCreate>(request));
+  const auto made = STRATA_TRY(
+      context.store.groups().create(body.name, body.members.value_or(std::vector<std::string>())));
   return json_response(to_json(made), 201)
       .with("Location", "/api/v1/groups/" + std::to_string(made.group.id));
 }
@@ -61,10 +61,10 @@ Result<Response> show_group(const RouteContext& context, const Request& request)
 }
 
 Result<Response> change_group(const RouteContext& context, const Request& request) {
-  auto asked = STRATA_TRY(body_of<protocol::GroupPatch>(request));
+  auto body = STRATA_TRY(body_of<protocol::GroupPatch>(request));
   const auto id = STRATA_TRY(id_of(request, "group"));
-  const store::GroupChange change{asked.name, asked.add.value_or(std::vector<std::string>()),
-                                  asked.remove.value_or(std::vector<std::string>())};
+  const store::GroupChange change{body.name, body.add.value_or(std::vector<std::string>()),
+                                  body.remove.value_or(std::vector<std::string>())};
   const auto changed = STRATA_TRY(context.store.groups().change(id, change, request.user()));
   roles_changed(context, changed.people);
   return json_response(to_json(changed.now));
@@ -78,10 +78,10 @@ Result<Response> delete_group(const RouteContext& context, const Request& reques
 }
 
 Result<Response> put_role(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::MemberPut>(request));
+  const auto body = STRATA_TRY(body_of<protocol::MemberPut>(request));
   const auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
   const auto id = STRATA_TRY(id_of(request, "group"));
-  const Role role = parse_role(protocol::name(asked.role)).value_or(Role::viewer);
+  const Role role = parse_role(protocol::name(body.role)).value_or(Role::viewer);
   const auto put = STRATA_TRY(context.store.groups().put(project.id, id, role, request.user()));
   roles_changed(context, put.people);
   return json_response(net::to_json(put.now));

@@ -69,13 +69,13 @@ Result<Response> list_kiosks(const RouteContext& context, const Request& request
 }
 
 Result<Response> create_kiosk(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::KioskCreate>(request));
+  const auto body = STRATA_TRY(body_of<protocol::KioskCreate>(request));
   const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
   const auto tour = STRATA_TRY(context.store.tours().find(model.id, request.param("tour")));
   std::optional<std::chrono::seconds> lifetime;
-  if (asked.days) lifetime = std::chrono::hours(24 * *asked.days);
+  if (body.days) lifetime = std::chrono::hours(24 * *body.days);
   const auto made =
-      STRATA_TRY(context.store.kiosks().create(tour.id, asked.name, request.user(), lifetime));
+      STRATA_TRY(context.store.kiosks().create(tour.id, body.name, request.user(), lifetime));
   return json_response({{"path", "/kiosk/" + made.secret}, {"kiosk", to_json(made.kiosk)}}, 201)
       .with("Location", "/api/v1/kiosks/" + std::to_string(made.kiosk.id))
       .with("Cache-Control", "no-store");
@@ -108,10 +108,10 @@ Result<Response> self(const RouteContext& context, const Kiosk& kiosk, bool want
 }
 
 Result<Response> sign_in(const RouteContext& context, LoginThrottle& gate, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::KioskLogin>(request));
+  const auto body = STRATA_TRY(body_of<protocol::KioskLogin>(request));
   const std::string address = address_of(request);
   STRATA_TRY(gate.pass(address, {}));
-  const auto kiosk = STRATA_TRY(context.store.kiosks().find(asked.link));
+  const auto kiosk = STRATA_TRY(context.store.kiosks().find(body.link));
   if (!kiosk)
     return fail(ErrorCode::unauthenticated, "Link not valid",
                 "This link is unknown, expired or revoked. A curator makes a new one.", "link");
@@ -120,7 +120,7 @@ Result<Response> sign_in(const RouteContext& context, LoginThrottle& gate, const
   auto response = self(context, *kiosk, false);
   if (response)
     response->with("Set-Cookie",
-                   Authenticator::set_kiosk_cookie(asked.link, needs_secure_cookie(request)));
+                   Authenticator::set_kiosk_cookie(body.link, needs_secure_cookie(request)));
   return response;
 }
 

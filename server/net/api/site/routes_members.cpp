@@ -79,9 +79,9 @@ Result<Response> list_people(const RouteContext& context, const Request& request
 }
 
 Result<Response> put_member(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::MemberPut>(request));
+  const auto body = STRATA_TRY(body_of<protocol::MemberPut>(request));
   const auto project = STRATA_TRY(project_of(context, request));
-  const Role role = parse_role(protocol::name(asked.role)).value_or(Role::viewer);
+  const Role role = parse_role(protocol::name(body.role)).value_or(Role::viewer);
   const auto member =
       context.store.members().put(project.id, request.param("user"), role, request.user());
   if (!member) return tl::unexpected(member.error());

@@ -79,11 +79,11 @@ Result<Response> with_invitation(const RouteContext& context, const Person& pers
 }
 
 Result<Response> invite(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::PersonCreate>(request));
-  const auto role = STRATA_TRY(usable_role(request, asked.role, Role::viewer));
+  const auto body = STRATA_TRY(body_of<protocol::PersonCreate>(request));
+  const auto role = STRATA_TRY(usable_role(request, body.role, Role::viewer));
   const auto person = STRATA_TRY(context.store.accounts().create(
-      asked.user, asked.full_name.value_or(""), role,
-      asked.groups.value_or(std::vector<std::int64_t>()), request.user()));
+      body.user, body.full_name.value_or(""), role,
+      body.groups.value_or(std::vector<std::int64_t>()), request.user()));
   auto response = with_invitation(context, person, 201);
   if (response) response->with("Location", "/api/v1/users/" + percent_encode(person.name));
   return response;
@@ -106,11 +106,11 @@ Result<Person> somebody_else(const RouteContext& context, const Request& request
 }
 
 Result<Response> change_person(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::PersonPatch>(request));
+  const auto body = STRATA_TRY(body_of<protocol::PersonPatch>(request));
   const auto person = STRATA_TRY(somebody_else(context, request));
-  const auto role = STRATA_TRY(usable_role(request, asked.role, person.role));
-  const store::PersonChange change{asked.full_name, asked.role ? std::optional(role) : std::nullopt,
-                                   asked.disabled};
+  const auto role = STRATA_TRY(usable_role(request, body.role, person.role));
+  const store::PersonChange change{body.full_name, body.role ? std::optional(role) : std::nullopt,
+                                   body.disabled};
   const auto changed = STRATA_TRY(context.store.accounts().update(person.id, change));
   context.auth.forget();
   if (changed.role != person.role || changed.disabled != person.disabled)
@@ -143,18 +143,18 @@ Result<Person> invited_by(const RouteContext& context, const std::string& invita
 }
 
 Result<Response> show_invitation(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::InvitationShow>(request));
-  const auto person = STRATA_TRY(invited_by(context, asked.invitation));
+  const auto body = STRATA_TRY(body_of<protocol::InvitationShow>(request));
+  const auto person = STRATA_TRY(invited_by(context, body.invitation));
   return json_response(to_json(person)).with("Cache-Control", "no-store");
 }
 
 Result<Response> accept_invitation(const RouteContext& context, const Request& request) {
-  const auto asked = STRATA_TRY(body_of<protocol::InvitationAccept>(request));
-  const auto person = STRATA_TRY(invited_by(context, asked.invitation));
-  STRATA_TRY(store::check_password(asked.password, person.name, "password"));
-  const auto hash = STRATA_TRY(store::hash_password(asked.password));
+  const auto body = STRATA_TRY(body_of<protocol::InvitationAccept>(request));
+  const auto person = STRATA_TRY(invited_by(context, body.invitation));
+  STRATA_TRY(store::check_password(body.password, person.name, "password"));
+  const auto hash = STRATA_TRY(store::hash_password(body.password));
   const auto session = STRATA_TRY(context.store.accounts().accept_invitation(
-      asked.invitation, hash, asked.full_name, kSessionLifetime, agent_of(request)));
+      body.invitation, hash, body.full_name, kSessionLifetime, agent_of(request)));
   if (!session)
     return fail(ErrorCode::unauthenticated, "Link not valid", "This invitation was used meanwhile.",
                 "invitation");

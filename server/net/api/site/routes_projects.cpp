@@ -48,12 +48,12 @@ Result<Response> list_projects(const RouteContext& context, const Request& reque
 }
 
 Result<Response> create_project(const RouteContext& context, const Request& request) {
-  auto asked = STRATA_TRY(body_of<protocol::ProjectCreate>(request));
-  auto slug = STRATA_TRY(slug_of(asked.slug, asked.name));
+  auto body = STRATA_TRY(body_of<protocol::ProjectCreate>(request));
+  auto slug = STRATA_TRY(slug_of(body.slug, body.name));
   Project project;
-  project.name = asked.name;
+  project.name = body.name;
   project.slug = slug;
-  project.description = asked.description;
+  project.description = body.description;
   const auto answer = [](const Project& made) {
     return json_response(to_json(made), 201)
         .with("Location", "/api/v1/projects/" + made.slug)
@@ -68,14 +68,14 @@ Result<Response> create_project(const RouteContext& context, const Request& requ
 Result<Response> change_project(const RouteContext& context, const Request& request) {
   auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
   STRATA_TRY(check_if_match(request, project.version));
-  auto asked = STRATA_TRY(body_of<protocol::ProjectPatch>(request));
+  auto body = STRATA_TRY(body_of<protocol::ProjectPatch>(request));
   // Curators say how work goes on in their project, not what it is called.
-  if ((asked.name || asked.description) && request.role() < Role::administrator)
+  if ((body.name || body.description) && request.role() < Role::administrator)
     return fail(ErrorCode::forbidden, "Not allowed", "Administrators name and describe projects.",
-                asked.name ? "name" : "description");
-  if (asked.require_if_match) project.require_if_match = *asked.require_if_match;
-  if (asked.name) project.name = *asked.name;
-  if (asked.description) project.description = *asked.description;
+                body.name ? "name" : "description");
+  if (body.require_if_match) project.require_if_match = *body.require_if_match;
+  if (body.name) project.name = *body.name;
+  if (body.description) project.description = *body.description;
   const auto answer = [](const Project& now) {
     return json_response(to_json(now)).with("ETag", etag_of(now.version));
   };

@@ -136,24 +136,24 @@ Result<std::vector<Layer>> make_layers(const RouteContext& context, const Reques
 }
 
 Result<Response> use_template(const RouteContext& context, const Request& request) {
-  auto asked = STRATA_TRY(body_of<protocol::TemplateUse>(request));
+  auto body = STRATA_TRY(body_of<protocol::TemplateUse>(request));
   auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
   const protocol::Template* of = context.templates.find(request.param("template"));
   if (!of)
     return fail(ErrorCode::not_found, "Not found",
                 "There is no template `" + request.param("template").substr(0, 100) + "`.");
-  auto tables = STRATA_TRY(app::new_tables(*of, project.id, asked.language));
+  auto tables = STRATA_TRY(app::new_tables(*of, project.id, body.language));
   std::shared_ptr<room::Room> room;
   std::vector<WishedLayer> wished;
-  if (asked.model) {
-    auto opened = context.rooms.open(*asked.model, request.role());
+  if (body.model) {
+    auto opened = context.rooms.open(*body.model, request.role());
     if (!opened && opened.error().code != ErrorCode::not_found)
       return tl::unexpected(opened.error());
     if (!opened || (*opened)->model().project_id != project.id)
       return fail(ErrorCode::invalid, "No such model",
-                  "The project has no model `" + *asked.model + "`.", "model");
+                  "The project has no model `" + *body.model + "`.", "model");
     room = std::move(*opened);
-    auto layers = STRATA_TRY(wished_layers(*of, *room, asked.language));
+    auto layers = STRATA_TRY(wished_layers(*of, *room, body.language));
     wished = std::move(layers);
   }
   // The answer is kept with what is made last.

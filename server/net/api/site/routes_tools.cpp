@@ -94,9 +94,9 @@ Result<Tool> present_tool(const RouteContext& context, const Request& request) {
 }
 
 Result<Response> rename_tool(const RouteContext& context, const Request& request) {
-  auto asked = STRATA_TRY(body_of<protocol::ToolPatch>(request));
+  auto body = STRATA_TRY(body_of<protocol::ToolPatch>(request));
   auto tool = STRATA_TRY(present_tool(context, request));
-  tool.name = asked.name;
+  tool.name = body.name;
   const auto answer = [](const Tool& now) {
     return json_response(to_json(now)).with("ETag", etag_of(now.version));
   };

@@ -64,14 +64,14 @@ Result<Names> attached_names(const RouteContext& context, const Author& who, con
 }
 
 Result<Response> match(const RouteContext& context, const Request& request) {
-  auto asked =
+  auto body =
       STRATA_TRY(body_of<protocol::AttachmentMatch>(request, context.options.max_json_bytes));
-  auto pattern = STRATA_TRY(NamePattern::parse(asked.pattern, "pattern"));
+  auto pattern = STRATA_TRY(NamePattern::parse(body.pattern, "pattern"));
   auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
-  const Column* column = find_column(table.columns, asked.column);
-  if (!column && asked.column != kKey)
+  const Column* column = find_column(table.columns, body.column);
+  if (!column && body.column != kKey)
     return fail(ErrorCode::invalid, "No such column",
-                table.name + " has no column `" + asked.column + "`.", "column");
+                table.name + " has no column `" + body.column + "`.", "column");
   const std::string word = column ? column->slug : kKey;
   if (!pattern.has(word))
     return fail(ErrorCode::invalid, "Column not in the pattern",
@@ -91,7 +91,7 @@ Result<Response> match(const RouteContext& context, const Request& request) {
   nlohmann::json matched = nlohmann::json::array(), unmatched = nlohmann::json::array(),
                  duplicate = nlohmann::json::array();
   std::set<std::pair<std::int64_t, std::string>> met;
-  for (const std::string& sent : asked.names) {
+  for (const std::string& sent : body.names) {
     const std::string name = base_filename(sent);
     const auto is_known = [&](std::string_view text) { return !values.find(text).empty(); };
     const auto reading = pattern.read(name, word, is_known);
@@ -117,7 +117,7 @@ Result<Response> match(const RouteContext& context, const Request& request) {
   return json_response({{"matched", std::move(matched)},
                         {"unmatched", std::move(unmatched)},
                         {"duplicate", std::move(duplicate)},
-                        {"total", asked.names.size()}});
+                        {"total", body.names.size()}});
 }
 
 }  // namespace

@@ -295,10 +295,10 @@ Result<Response> change_attachment(const RouteContext& context, const Request& r
   if (request.role() < Role::curator && request.user() != attachment.user)
     return fail(ErrorCode::forbidden, "Not allowed",
                 "Who sees a file is said by curators and by who attached it.");
-  auto asked = STRATA_TRY(body_of<protocol::AttachmentPatch>(request));
+  auto body = STRATA_TRY(body_of<protocol::AttachmentPatch>(request));
   const auto answer = [](const Attachment& now) { return json_response(to_json(now)); };
   auto now = STRATA_TRY(context.store.attachments().show(
-      id, asked.visibility, idempotent_response<Attachment>(request, answer)));
+      id, body.visibility, idempotent_response<Attachment>(request, answer)));
   if (auto table = context.store.tables().find(std::to_string(now.table_id), Role::owner))
     tell_table(context.live_sockets, protocol::TableEventEvent::changed, *table, request.user());
   return answer(now);

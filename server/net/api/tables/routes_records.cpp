@@ -243,18 +243,18 @@ Error first_problem(const TableChange& change, bool is_list) {
 
 Result<Response> create_from_json(const RouteContext& context, const Request& request,
                                   const app::RecordPlace& place) {
-  auto asked = STRATA_TRY(body_of<protocol::RecordsCreate>(request, kMaxRecordsBytes));
-  if (asked.records && (asked.key || asked.values))
+  auto body = STRATA_TRY(body_of<protocol::RecordsCreate>(request, kMaxRecordsBytes));
+  if (body.records && (body.key || body.values))
     return fail(ErrorCode::invalid, "One or several",
                 "Give either `records`, or `key` and `values` of one.", "records");
   store::WriteRecords write;
   write.may_change = false;
-  const bool is_list = asked.records.has_value();
+  const bool is_list = body.records.has_value();
   std::vector<protocol::RecordInput> inputs;
   if (is_list)
-    inputs = std::move(*asked.records);
+    inputs = std::move(*body.records);
   else
-    inputs.push_back({asked.key, asked.values});
+    inputs.push_back({body.key, body.values});
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const std::string field = is_list ? "records[" + std::to_string(i) + "].values" : "values";
     auto values =
@@ -364,13 +364,13 @@ Result<Response> create_records(const RouteContext& context, const Request& requ
 
 Result<Response> change_record(const RouteContext& context, const Request& request) {
   auto key = STRATA_TRY(record_key(request));
-  auto asked = STRATA_TRY(body_of<protocol::RecordPatch>(request));
+  auto body = STRATA_TRY(body_of<protocol::RecordPatch>(request));
   auto place = STRATA_TRY(record_place(context, request));
   auto version = STRATA_TRY(wished_record_version(context, request, place.table, key));
-  auto values = STRATA_TRY(values_by_column(place.table, asked.values, "values"));
+  auto values = STRATA_TRY(values_by_column(place.table, body.values, "values"));
   store::WriteRecords write;
   write.may_create = false;
-  write.records.push_back({key, std::move(values), version ? version : asked.version});
+  write.records.push_back({key, std::move(values), version ? version : body.version});
   const auto answer = [role = request.role()](const TableChange& change) {
     const Record& record = change.records.front();
     return json_response(to_json(record, seen_by(change.table, role).columns))

@@ -49,17 +49,17 @@ Result<Response> list_tables(const RouteContext& context, const Request& request
 }
 
 Result<Response> create_table(const RouteContext& context, const Request& request) {
-  auto asked = STRATA_TRY(body_of<protocol::TableCreate>(request));
+  auto body = STRATA_TRY(body_of<protocol::TableCreate>(request));
   auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
-  auto slug = STRATA_TRY(slug_of(asked.slug, asked.name));
+  auto slug = STRATA_TRY(slug_of(body.slug, body.name));
   Table table;
   table.project_id = project.id;
-  table.name = asked.name;
+  table.name = body.name;
   table.slug = slug;
-  if (asked.labels) table.labels = *asked.labels;
-  table.description = asked.description;
-  if (asked.columns) {
-    auto columns = STRATA_TRY(new_columns(context.store, project.id, *asked.columns));
+  if (body.labels) table.labels = *body.labels;
+  table.description = body.description;
+  if (body.columns) {
+    auto columns = STRATA_TRY(new_columns(context.store, project.id, *body.columns));
     table.columns = std::move(columns);
   }
   const auto answer = [](const Table& made) {
@@ -76,16 +76,16 @@ Result<Response> create_table(const RouteContext& context, const Request& reques
 Result<Response> change_table(const RouteContext& context, const Request& request) {
   auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   STRATA_TRY(check_if_match(request, table.version));
-  auto asked = STRATA_TRY(body_of<protocol::TablePatch>(request));
-  if (asked.name) table.name = *asked.name;
-  if (asked.labels) table.labels = *asked.labels;
-  if (asked.description) table.description = *asked.description;
-  if (asked.title_column) {
+  auto body = STRATA_TRY(body_of<protocol::TablePatch>(request));
+  if (body.name) table.name = *body.name;
+  if (body.labels) table.labels = *body.labels;
+  if (body.description) table.description = *body.description;
+  if (body.title_column) {
     const Column* title =
-        asked.title_column->empty() ? nullptr : find_column(table.columns, *asked.title_column);
-    if (!title && !asked.title_column->empty())
+        body.title_column->empty() ? nullptr : find_column(table.columns, *body.title_column);
+    if (!title && !body.title_column->empty())
       return fail(ErrorCode::invalid, "No such column",
-                  table.name + " has no column `" + *asked.title_column + "`.", "title_column");
+                  table.name + " has no column `" + *body.title_column + "`.", "title_column");
     table.title_column = title ? std::optional(title->id) : std::nullopt;
   }
   const auto answer = [](const Table& now) {
@@ -144,10 +144,10 @@ Result<Response> list_columns(const RouteContext& context, const Request& reques
 }
 
 Result<Response> create_column(const RouteContext& context, const Request& request) {
-  auto asked = STRATA_TRY(body_of<protocol::ColumnCreate>(request));
+  auto body = STRATA_TRY(body_of<protocol::ColumnCreate>(request));
   auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   STRATA_TRY(check_if_match(request, table.version));
-  auto column = STRATA_TRY(new_column(context.store, table.project_id, asked));
+  auto column = STRATA_TRY(new_column(context.store, table.project_id, body));
   for (const Column& other : table.columns) column.order = std::max(column.order, other.order + 1);
   const auto answer = [](const TableChange& change) {
     const std::int64_t id = change.record.at("column").get<std::int64_t>();
@@ -219,17 +219,17 @@ Result<Response> change_column(const RouteContext& context, const Request& reque
   auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   auto found = STRATA_TRY(column_of(table, request));
   STRATA_TRY(check_if_match(request, table.version));
-  auto asked = STRATA_TRY(body_of<protocol::ColumnPatch>(request));
-  if (asked.visibility) {
+  auto body = STRATA_TRY(body_of<protocol::ColumnPatch>(request));
+  if (body.visibility) {
     protocol::ColumnPatch alone;
-    alone.visibility = asked.visibility;
-    if (!(asked == alone))
+    alone.visibility = body.visibility;
+    if (!(body == alone))
       return fail(ErrorCode::invalid, "Visibility with other changes",
                   "Say who sees a column in a call of its own.", "visibility");
-    return show_column(context, request, table, *found, *asked.visibility);
+    return show_column(context, request, table, *found, *body.visibility);
   }
   Column column = *found;
-  STRATA_TRY(change(context, request, asked, table, column));
+  STRATA_TRY(change(context, request, body, table, column));
   const auto answer = [id = column.id](const TableChange& done) {
     const auto now = done.record.is_object() ? done.record.value("column", id) : id;
     return json_response(column_json(done, now)).with("ETag", etag_of(done.table.version));
