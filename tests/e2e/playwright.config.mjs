@@ -1,7 +1,7 @@
 // How @playwright/test runs the cases of the files in browser/ that are written for it
-// (support/cases.mjs). CTest names one file, and with STRATA_TEST_REPORT where its report goes;
+// (support/js/cases.mjs). CTest names one file, and with STRATA_TEST_REPORT where its report goes;
 // traces and pictures of failures lie beside it.
-import { kLong_ms } from "./support/strata-server.mjs";
+import { kLong_ms } from "./support/js/strata-server.mjs";
 
 const report = process.env.STRATA_TEST_REPORT;
 

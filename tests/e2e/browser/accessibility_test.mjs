@@ -6,11 +6,11 @@
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
-import { Browser } from "../support/browser.mjs";
-import { active, findings, overflows, walk } from "../support/accessible.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
-import { texts_of } from "../support/texts.mjs";
-import { bea_at, make_site, screens_of } from "../support/screens.mjs";
+import { Browser } from "../support/js/browser.mjs";
+import { active, findings, overflows, walk } from "../support/js/accessible.mjs";
+import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+import { bea_at, make_site, screens_of } from "../support/js/screens.mjs";
 
 const kSizes = [
   [390, 844],

@@ -2,9 +2,9 @@
 // page shows while they are drawn, what they paint, and that they are taken back.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { Browser, rgb } from "../support/browser.mjs";
-import { attach_log, test } from "../support/cases.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { Browser, rgb } from "../support/js/browser.mjs";
+import { attach_log, test } from "../support/js/cases.mjs";
+import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 
 const kMagenta = "#ff00ffff"; // nothing on the pot has this hue
 

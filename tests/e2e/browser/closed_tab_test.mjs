@@ -1,9 +1,9 @@
 // A tab is closed, or dies, while what was painted is not saved: closing it warns, and the next
 // page of the same person sends it, once.
 import assert from "node:assert/strict";
-import { Browser, kOfLostServer } from "../support/browser.mjs";
-import { attach_log, test } from "../support/cases.mjs";
-import { kLong_ms, StrataServer, wait_for } from "../support/strata-server.mjs";
+import { Browser, kOfLostServer } from "../support/js/browser.mjs";
+import { attach_log, test } from "../support/js/cases.mjs";
+import { kLong_ms, StrataServer, wait_for } from "../support/js/strata-server.mjs";
 
 /** Ids of the batches of strokes that the browser keeps, or of other messages, in their order. */
 const kept = (wanted = "stroke.extend") =>

@@ -3,9 +3,9 @@
 import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
 import { join } from "node:path";
-import { Browser, kOfLostServer, rgb } from "../support/browser.mjs";
-import { attach_log, test } from "../support/cases.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { Browser, kOfLostServer, rgb } from "../support/js/browser.mjs";
+import { attach_log, test } from "../support/js/cases.mjs";
+import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 
 const kScan = join(process.env.STRATA_TEST_DATA ?? "", "statue_nefertiti_70k.ply");
 const has_scan = existsSync(kScan);

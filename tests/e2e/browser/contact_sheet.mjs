@@ -6,12 +6,12 @@ import { mkdirSync, statSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { parseArgs } from "node:util";
-import { Browser } from "../support/browser.mjs";
-import { kiosk_screens_of } from "../support/kiosk-screens.mjs";
-import { make_kiosk_site } from "../support/kiosk-site.mjs";
-import { make_site, screens_of } from "../support/screens.mjs";
-import { StrataServer } from "../support/strata-server.mjs";
-import { texts_of } from "../support/texts.mjs";
+import { Browser } from "../support/js/browser.mjs";
+import { kiosk_screens_of } from "../support/js/kiosk-screens.mjs";
+import { make_kiosk_site } from "../support/js/kiosk-site.mjs";
+import { make_site, screens_of } from "../support/js/screens.mjs";
+import { StrataServer } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
 
 const kSizes = { phone: [390, 844], tablet: [820, 1180], desk: [1440, 900], wall: [3840, 2160] };
 const kDesk = { width: 1280, height: 800 }; // from which screens are reached

@@ -4,11 +4,11 @@
 import assert from "node:assert/strict";
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { Browser, has_hue, require_browser } from "../support/browser.mjs";
-import { kRoot } from "../support/modules.mjs";
-import { decode_png, encode_png } from "../support/png.mjs";
-import { pot_camera } from "../support/pot-camera.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { Browser, has_hue, require_browser } from "../support/js/browser.mjs";
+import { kRoot } from "../support/js/modules.mjs";
+import { decode_png, encode_png } from "../support/js/png.mjs";
+import { pot_camera } from "../support/js/pot-camera.mjs";
+import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 
 const kGolden = join(kRoot, "tests", "golden");
 const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-golden";

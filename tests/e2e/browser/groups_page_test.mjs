@@ -3,9 +3,9 @@
 // their open pages.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { Browser, kOfLostServer } from "../support/browser.mjs";
-import { attach_log, test } from "../support/cases.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { Browser, kOfLostServer } from "../support/js/browser.mjs";
+import { attach_log, test } from "../support/js/cases.mjs";
+import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 
 // What the browser says of answers that the test wants, and of sockets that the server ends.
 const kExpected = [

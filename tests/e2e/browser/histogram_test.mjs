@@ -2,9 +2,9 @@
 // everyone's then.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { attach_log, ends_well, test } from "../support/cases.mjs";
-import { wait_for } from "../support/strata-server.mjs";
-import { texts_of } from "../support/texts.mjs";
+import { attach_log, ends_well, test } from "../support/js/cases.mjs";
+import { wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
 
 const w = texts_of("en");
 const base = "/models/demo-pot";

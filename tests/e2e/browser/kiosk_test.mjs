@@ -8,11 +8,11 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { findings } from "../support/accessible.mjs";
-import { Browser, kOfLostServer } from "../support/browser.mjs";
-import { attach_log, test } from "../support/cases.mjs";
-import { kModel, kTour, make_kiosk_site } from "../support/kiosk-site.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { findings } from "../support/js/accessible.mjs";
+import { Browser, kOfLostServer } from "../support/js/browser.mjs";
+import { attach_log, test } from "../support/js/cases.mjs";
+import { kModel, kTour, make_kiosk_site } from "../support/js/kiosk-site.mjs";
+import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 
 const kRounds = Number(process.env.STRATA_KIOSK_ROUNDS ?? 4);
 const kAlone_min = Number(process.env.STRATA_KIOSK_ALONE_MIN ?? 1);

@@ -2,9 +2,9 @@
 // data, and what is loaded for it.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { Browser, kOfLostServer } from "../support/browser.mjs";
-import { attach_log, test } from "../support/cases.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { Browser, kOfLostServer } from "../support/js/browser.mjs";
+import { attach_log, test } from "../support/js/cases.mjs";
+import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 
 const language_of = ({ page }) => page.evaluate(() => document.documentElement.lang);
 const heading = ({ page }, name) => page.getByRole("heading", { name, exact: true }).waitFor();

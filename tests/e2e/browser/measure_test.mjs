@@ -4,9 +4,9 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { Browser, rgb } from "../support/browser.mjs";
-import { attach_log, test } from "../support/cases.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { Browser, rgb } from "../support/js/browser.mjs";
+import { attach_log, test } from "../support/js/cases.mjs";
+import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 
 const shot = async (name, of = page) => {
   if (process.env.STRATA_TEST_OUTPUT)

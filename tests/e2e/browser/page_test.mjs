@@ -3,9 +3,9 @@
 // is not overwritten.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { Browser, has_hue, kOfLostServer, rgb } from "../support/browser.mjs";
-import { attach_log, test } from "../support/cases.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { Browser, has_hue, kOfLostServer, rgb } from "../support/js/browser.mjs";
+import { attach_log, test } from "../support/js/cases.mjs";
+import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 
 const kMagenta = "#ff00ffff"; // nothing on the pot has this hue
 const kEdge_px = 3; // of the footprint's edge: half a texel, and JPEG's blocks of colour

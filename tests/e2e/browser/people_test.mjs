@@ -2,9 +2,9 @@
 // offered, and how people go.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { Browser, kOfLostServer } from "../support/browser.mjs";
-import { attach_log, test } from "../support/cases.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { Browser, kOfLostServer } from "../support/js/browser.mjs";
+import { attach_log, test } from "../support/js/cases.mjs";
+import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 
 const kOwnersPassword = "four words of mine";
 const kAdasPassword = "engines weave algebra";

@@ -3,9 +3,9 @@
 // marked once it is edited by hand; and a person has one colour and one name everywhere.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { Browser, rgb } from "../support/browser.mjs";
-import { attach_log, test } from "../support/cases.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { Browser, rgb } from "../support/js/browser.mjs";
+import { attach_log, test } from "../support/js/cases.mjs";
+import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 
 async function shoot({ page }, name) {
   if (process.env.STRATA_TEST_OUTPUT)

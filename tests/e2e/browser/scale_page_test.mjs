@@ -4,10 +4,10 @@
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
-import { Browser } from "../support/browser.mjs";
-import { attach_log, test } from "../support/cases.mjs";
-import { kRoot } from "../support/modules.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { Browser } from "../support/js/browser.mjs";
+import { attach_log, test } from "../support/js/cases.mjs";
+import { kRoot } from "../support/js/modules.mjs";
+import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 
 const kScan = join(kRoot, "..", "shared", "data", "vessel_lekythos_gigamesh_15k.ply");
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };

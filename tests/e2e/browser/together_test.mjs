@@ -4,10 +4,10 @@
 import assert from "node:assert/strict";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { Browser, rgb } from "../support/browser.mjs";
-import { attach_log, test } from "../support/cases.mjs";
-import { decode_png } from "../support/png.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { Browser, rgb } from "../support/js/browser.mjs";
+import { attach_log, test } from "../support/js/cases.mjs";
+import { decode_png } from "../support/js/png.mjs";
+import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 
 const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-together";
 const kMagenta = "#ff00ff"; // nothing on the pot has this hue

@@ -2,10 +2,10 @@
 // looks on loses them, and gets them back, at once.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { Browser } from "../support/browser.mjs";
-import { attach_log, test } from "../support/cases.mjs";
-import { encode_png } from "../support/png.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { Browser } from "../support/js/browser.mjs";
+import { attach_log, test } from "../support/js/cases.mjs";
+import { encode_png } from "../support/js/png.mjs";
+import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 
 async function shoot({ page }, name) {
   if (process.env.STRATA_TEST_OUTPUT)

@@ -7,7 +7,7 @@ import threading
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
 PAGE = os.path.join(ROOT, "docs", "security.md")
 BEGIN, END = (
-    "<!-- attempts: written by tests/e2e/security_attempts_test.py --update-docs -->",
+    "<!-- attempts: written by tests/e2e/faults/security_attempts_test.py --update-docs -->",
     "<!-- end of attempts -->",
 )
 HEAD = "| attempt | answer | measured | what keeps it |\n|---|---|---|---|\n"

@@ -3,9 +3,9 @@
 // camera goes to them.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { Browser, rgb } from "../support/browser.mjs";
-import { attach_log, test } from "../support/cases.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { Browser, rgb } from "../../support/js/browser.mjs";
+import { attach_log, test } from "../../support/js/cases.mjs";
+import { StrataServer, wait_for } from "../../support/js/strata-server.mjs";
 
 const kSherds = 14;
 const kEnough = 1500; // pixels of a sherd or more

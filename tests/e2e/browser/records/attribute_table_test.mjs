@@ -3,9 +3,9 @@
 // compared with what the server has.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { Browser } from "../support/browser.mjs";
-import { attach_log, test } from "../support/cases.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { Browser } from "../../support/js/browser.mjs";
+import { attach_log, test } from "../../support/js/cases.mjs";
+import { StrataServer, wait_for } from "../../support/js/strata-server.mjs";
 
 const kMany = 10_000;
 

@@ -3,9 +3,9 @@
 // them away, and the form of a record takes one out and leads to drawing more.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { Browser, rgb } from "../support/browser.mjs";
-import { attach_log, test } from "../support/cases.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { Browser, rgb } from "../../support/js/browser.mjs";
+import { attach_log, test } from "../../support/js/cases.mjs";
+import { StrataServer, wait_for } from "../../support/js/strata-server.mjs";
 
 const kCrack = "#ff00ff";
 const kSample = "#00e0ff";

@@ -5,9 +5,9 @@ import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { Browser, rgb } from "../support/browser.mjs";
-import { attach_log, test } from "../support/cases.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { Browser, rgb } from "../../support/js/browser.mjs";
+import { attach_log, test } from "../../support/js/cases.mjs";
+import { StrataServer, wait_for } from "../../support/js/strata-server.mjs";
 
 const base = "/models/demo-pot";
 const button = (name) => page.getByRole("button", { name, exact: true });

@@ -14,7 +14,7 @@ from support.meshes import folded_grid
 from support.process_memory import resident_mb
 from support.strata_server import wait_for
 
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
 M, L = "/models/grid", "/models/grid/layers/marks"
 VIEWERS = 16
 

@@ -13,7 +13,7 @@ from support.live_client import LiveClient
 from support.meshes import folded_grid
 from support.strata_server import StrataServer, _end_with_parent, wait_for
 
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
 PASSWORD = "a heron and six otters"
 
 

@@ -3,7 +3,7 @@ import { createRequire } from "node:module";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
-export const kRoot = dirname(dirname(dirname(dirname(fileURLToPath(import.meta.url)))));
+export const kRoot = dirname(dirname(dirname(dirname(dirname(fileURLToPath(import.meta.url))))));
 
 /** Ends the test: a loud skip by hand, a failure in CI. */
 export function missing(what) {

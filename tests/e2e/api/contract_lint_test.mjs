@@ -2,7 +2,7 @@
 // others must see what the server enforces.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { kRoot, load_module } from "./support/modules.mjs";
+import { kRoot, load_module } from "../support/js/modules.mjs";
 
 const { createConfig, lint } = load_module("@redocly/openapi-core");
 

@@ -2,9 +2,9 @@
 // question, and loses nothing that was written.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { Browser } from "../support/browser.mjs";
-import { attach_log, test } from "../support/cases.mjs";
-import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { Browser } from "../../support/js/browser.mjs";
+import { attach_log, test } from "../../support/js/cases.mjs";
+import { StrataServer, wait_for } from "../../support/js/strata-server.mjs";
 
 const kExpected = ["status of 412"]; // what the browser says of a change that came too late
 

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { existsSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
-import { kRoot, missing } from "./support/modules.mjs";
+import { kRoot, missing } from "../support/js/modules.mjs";
 
 const kMost = 200_000;
 const dist = join(kRoot, "web-client", "dist");

@@ -8,7 +8,7 @@ import tempfile
 import pytest
 from support.meshes import bumpy_ball
 
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
 
 
 def tour_of_readme():

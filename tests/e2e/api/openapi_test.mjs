@@ -3,12 +3,12 @@
 // that call, and what the contract forbids must not be carried out. STRATA_SEED repeats a run's
 // calls, STRATA_OPERATION (an operationId) keeps to one operation.
 import http from "node:http";
-import { fc } from "./support/arbitraries.mjs";
-import { calls_of } from "./support/calls.mjs";
-import { Contract } from "./support/contract.mjs";
-import { Site } from "./support/site.mjs";
-import { kLong_ms, StrataServer } from "./support/strata-server.mjs";
-import { kSpare } from "./support/vocabulary.mjs";
+import { fc } from "../support/js/arbitraries.mjs";
+import { calls_of } from "../support/js/calls.mjs";
+import { Contract } from "../support/js/contract.mjs";
+import { Site } from "../support/js/site.mjs";
+import { kLong_ms, StrataServer } from "../support/js/strata-server.mjs";
+import { kSpare } from "../support/js/vocabulary.mjs";
 
 // each operation is called early and late, and beside different ones; many more fill what has a
 // limit (looks of a model)
