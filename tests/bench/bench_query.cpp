@@ -7,9 +7,9 @@
 
 #include "bench/bench_commands.h"
 #include "bench/bench_mesh.h"
-#include "bench/frame_client.h"
 #include "bench/harness.h"
 #include "bench/http_client.h"
+#include "bench/stream/frame_client.h"
 #include "expression/expression_parser.h"
 #include "jobs/import_job.h"
 #include "jobs/job_queue.h"

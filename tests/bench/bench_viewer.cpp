@@ -10,9 +10,9 @@
 
 #include "bench/bench_commands.h"
 #include "bench/bench_mesh.h"
-#include "bench/frame_client.h"
 #include "bench/harness.h"
-#include "bench/wander.h"
+#include "bench/stream/frame_client.h"
+#include "bench/stream/wander.h"
 #include "jobs/import_job.h"
 #include "room/edit.h"
 #include "room/edits.h"

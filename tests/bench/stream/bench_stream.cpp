@@ -11,10 +11,10 @@
 
 #include "bench/bench_commands.h"
 #include "bench/bench_mesh.h"
-#include "bench/crowd.h"
 #include "bench/harness.h"
-#include "bench/paraview_peer.h"
-#include "bench/stream_site.h"
+#include "bench/stream/crowd.h"
+#include "bench/stream/paraview_peer.h"
+#include "bench/stream/stream_site.h"
 
 namespace strata::bench {
 namespace {

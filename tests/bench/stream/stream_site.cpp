@@ -1,4 +1,4 @@
-#include "bench/stream_site.h"
+#include "bench/stream/stream_site.h"
 
 #include <chrono>
 #include <cstdio>

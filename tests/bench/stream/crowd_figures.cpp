@@ -1,4 +1,4 @@
-#include "bench/crowd_figures.h"
+#include "bench/stream/crowd_figures.h"
 
 #include <algorithm>
 #include <map>

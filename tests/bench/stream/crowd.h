@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "bench/crowd_figures.h"
-#include "bench/hands.h"
-#include "bench/link.h"
+#include "bench/stream/crowd_figures.h"
+#include "bench/stream/hands.h"
+#include "bench/stream/link.h"
 
 namespace strata::bench {
 

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "bench/crowd_case.h"
-#include "bench/live_client.h"
-#include "bench/server_process.h"
+#include "bench/stream/crowd_case.h"
+#include "bench/stream/live_client.h"
+#include "bench/stream/server_process.h"
 
 namespace strata::bench {
 

@@ -1,4 +1,4 @@
-#include "bench/crowd_case.h"
+#include "bench/stream/crowd_case.h"
 
 namespace strata::bench {
 

@@ -1,4 +1,4 @@
-#include "bench/hands.h"
+#include "bench/stream/hands.h"
 
 #include <algorithm>
 #include <boost/asio/steady_timer.hpp>
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "bench/harness.h"
-#include "bench/wander.h"
+#include "bench/stream/wander.h"
 
 namespace strata::bench {
 namespace {

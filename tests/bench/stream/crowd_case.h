@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/link.h"
+#include "bench/stream/link.h"
 
 namespace strata::bench {
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "bench/hands.h"
-#include "bench/server_process.h"
+#include "bench/stream/hands.h"
+#include "bench/stream/server_process.h"
 
 namespace strata::bench {
 

@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <string>
 
-#include "bench/live_client.h"
+#include "bench/stream/live_client.h"
 #include "domain/scene/camera.h"
 
 namespace strata::bench {

@@ -1,4 +1,4 @@
-#include "bench/server_process.h"
+#include "bench/stream/server_process.h"
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-#include "bench/live_client.h"
+#include "bench/stream/live_client.h"
 
 #include <algorithm>
 #include <boost/asio/as_tuple.hpp>

@@ -1,4 +1,4 @@
-#include "bench/crowd.h"
+#include "bench/stream/crowd.h"
 
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-#include "bench/paraview_peer.h"
+#include "bench/stream/paraview_peer.h"
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-#include "bench/link.h"
+#include "bench/stream/link.h"
 
 #include <algorithm>
 #include <boost/asio/as_tuple.hpp>
