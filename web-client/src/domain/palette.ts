@@ -1,7 +1,7 @@
 // Colours of values, as the server's palette gives them: for legends and swatches.
 
 import type { CellValue } from "../core/protocol.gen";
-import type { Layer, Palette, PalettePoint } from "../core/types";
+import type { Layer, Palette, PalettePoint, ValueType } from "../core/types";
 
 export interface Rgba {
   r: number;
@@ -111,6 +111,13 @@ function colorOfNumber(palette: Palette, value: number): string | null {
 }
 
 export type LayerPurpose = "presence" | "classes" | "measurement" | "records";
+/** What each texel of such a layer holds. */
+export const kTypeOfPurpose: Readonly<Record<LayerPurpose, ValueType>> = {
+  presence: "u8",
+  classes: "u8",
+  measurement: "f32",
+  records: "u32",
+};
 
 /** What a layer is for, in the words of the create-layer dialog. */
 export function purposeOf(layer: Pick<Layer, "kind" | "palette">): LayerPurpose {

@@ -5,8 +5,7 @@ import { html, LitElement, nothing, type PropertyValues, type TemplateResult } f
 import { customElement, property, query, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
 import { ApiError } from "../net/api-error";
-import { type Api, kAsItIs } from "../net/api";
-import { labelOf } from "../domain/cells";
+import type { Api } from "../net/api";
 import type { Project, TourEntry } from "../core/protocol.gen";
 import type { Column, Me, Model, Role } from "../core/types";
 import { kPaintingTools, type ToolName } from "../tools/tool";
@@ -19,7 +18,7 @@ import "../features/comments/comment-panel";
 import "../features/comments/comment-pins";
 import "../features/activity/activity-panel";
 import "../features/review/review-panel";
-import { ask, modalIsOpen } from "../ui/dialog";
+import { modalIsOpen } from "../ui/dialog";
 import { icon, logo } from "../ui/icons";
 import { handleKey } from "./keyboard";
 import { isForField } from "../ui/keyboard";
@@ -63,15 +62,14 @@ import type { StrataOnboarding } from "../features/onboarding/onboarding";
 import type { TourRequest } from "../session/requests";
 import "../features/painting/value-readout";
 import { wantsLessMotion } from "../session/view-control";
+import { dropColumn } from "../features/tables/drop-column";
 import type { ViewRequest } from "../session/requests";
+import { Splitter } from "./splitter";
+import { lostBanner, savingStatus } from "./connection-status";
 import "../features/appearance/view-panel";
 
 const kNarrow = 820; // pixels of a window where the panel lies over the model
-// pixels where words have their usual size; it grows with them
-const kPanelWidth = { least: 270, first: 330, most: 620 };
-const kPanelKey = "strata.panel_width";
-const kTableHeight = { least: 120, first: 280 };
-const kTableKey = "strata.table_height";
+const kMaxPanelWidth = 620;
 const kNotFound = { heading: texts.model.not_found_title, lead: texts.model.not_found_lead };
 
 @customElement("strata-model-page")
@@ -85,12 +83,29 @@ export class StrataModelPage extends LitElement {
   // beside dialogs: while a stop is tried, views may be kept
   @state() private _tourEditor: { tour: TourEntry | null } | null = null;
   @state() private _missing: { heading: string; lead: string } | null = null;
-  @state() private _panelWidth = Number(localStorage.getItem(kPanelKey)) || kPanelWidth.first;
-  @state() private _tableHeight = Number(localStorage.getItem(kTableKey)) || kTableHeight.first;
   @state() private _panelShown = window.innerWidth > kNarrow;
   @query("strata-stage") private _stage!: StrataStage | null;
   @query("strata-tour") private _tour!: StrataOnboarding | null;
   @query(".options") private _options!: HTMLElement | null;
+  // in pixels where words have their usual size; it grows with them
+  private readonly _panelSplitter = new Splitter(this, {
+    label: texts.model.resize_panel,
+    key: "strata.panel_width",
+    first: 330,
+    least: 270,
+    most: () => Math.min(kMaxPanelWidth, (window.innerWidth * 0.6) / growth()),
+    largest: kMaxPanelWidth,
+    sizeAt: ({ clientX }) => (window.innerWidth - clientX) / growth(),
+  });
+  private readonly _tableSplitter = new Splitter(this, {
+    label: texts.tables.resize,
+    key: "strata.table_height",
+    first: 280,
+    least: 120,
+    most: () => window.innerHeight * 0.75,
+    isAcross: true,
+    sizeAt: ({ clientY }) => window.innerHeight - clientY,
+  });
   private _session: OpenModelSession | null = null;
   private _askedScale = false;
   private _measures = false;
@@ -136,7 +151,7 @@ export class StrataModelPage extends LitElement {
     const session = this._session;
     if (session) this.bringOptions(session.tools.active);
     const narrow = matchMedia(`(max-width: ${kNarrow}px)`).matches;
-    if (session?.tables.view) this.liftNotices(narrow ? "52dvh" : `${this._tableHeight}px`);
+    if (session?.tables.view) this.liftNotices(narrow ? "52dvh" : `${this._tableSplitter.size}px`);
     // its sheet lies over the tools
     else
       this.liftNotices(
@@ -271,7 +286,7 @@ export class StrataModelPage extends LitElement {
     if (!session) return html``;
     return html`<div
         class="page ${this._panelShown ? "" : "without-panel"} ${session.tables.view ? "with-table" : ""}"
-        ${styled({ "--panel": growing(this._panelWidth), "--table": `${this._tableHeight}px` })}
+        ${styled({ "--panel": growing(this._panelSplitter.size), "--table": `${this._tableSplitter.size}px` })}
         @click=${{ handleEvent: giveBackKeyboard, capture: true }}
       >
         <strata-tour .session=${session} .held=${this._dialog !== null || this._tourEditor !== null}></strata-tour>
@@ -285,7 +300,7 @@ export class StrataModelPage extends LitElement {
           <strata-together-bar .session=${session}></strata-together-bar>
           <strata-comment-pins .session=${session}></strata-comment-pins>
           ${session.comments.card === null ? nothing : html`<strata-comment-card .session=${session}></strata-comment-card>`}
-          ${this.banner(session)}
+          ${lostBanner(session)}
           <div class="readings">
             ${
               session.tables.card
@@ -340,7 +355,7 @@ export class StrataModelPage extends LitElement {
       }
       <span class="grow"></span>
       <strata-people-menu .session=${session}></strata-people-menu>
-      ${this.saving(session)}
+      ${savingStatus(session)}
       <button
         class="icon quiet"
         data-tour="share"
@@ -368,57 +383,13 @@ export class StrataModelPage extends LitElement {
     </header>`;
   }
 
-  private saving(session: OpenModelSession): TemplateResult {
-    const { waiting, failing } = session.saving;
-    const lost = session.connectionState !== "open";
-    const state = waiting === 0 ? "saved" : failing || lost ? "not-saved" : "saving";
-    const words =
-      state === "saved"
-        ? texts.saving.saved
-        : state === "saving"
-          ? texts.saving.saving
-          : texts.saving.not_saved(waiting);
-    return html`<div
-      class="saving ${state}"
-      role="status"
-      data-state=${state}
-      title=${state === "not-saved" ? texts.saving.not_saved_hint : words}
-    >
-      ${icon(state === "saved" ? "check" : state === "saving" ? "cloud" : "warning")}<span>${words}</span>
-    </div>`;
-  }
-
-  private banner(session: OpenModelSession): TemplateResult {
-    const reconnects = session.connectionState === "connecting" && session.view.framesDrawn > 0;
-    if (session.connectionState !== "lost" && !reconnects) {
-      return html``;
-    }
-    const { waiting } = session.saving;
-    return html`<div class="banner" role="alert">
-      ${icon("warning")}
-      <span class="grow">${texts.connection.lost} ${waiting > 0 ? texts.connection.kept(waiting) : ""}</span>
-      <button @click=${() => session.checkConnection()}>${texts.connection.retry}</button>
-    </div>`;
-  }
-
   private panel(session: OpenModelSession): TemplateResult {
     const paints = kPaintingTools.includes(session.tools.active);
     const request = (event: CustomEvent<LayerPanelRequest | WhereRequest>): void => {
       this._dialog = event.detail;
     };
     return html`<aside aria-label=${texts.model.panel}>
-      <div
-        class="splitter"
-        role="separator"
-        aria-orientation="vertical"
-        aria-label=${texts.model.resize_panel}
-        aria-valuenow=${this._panelWidth}
-        aria-valuemin=${kPanelWidth.least}
-        aria-valuemax=${kPanelWidth.most}
-        tabindex="0"
-        @pointerdown=${(event: PointerEvent) => followDrag(event, (at) => this.setPanelWidth((window.innerWidth - at.clientX) / growth()))}
-        @keydown=${this.onSplitterKey}
-      ></div>
+      ${this._panelSplitter.render()}
       <div class="scroll">
         ${session.tools.active === "measure" ? html`<section class="options"><strata-measure-panel .session=${session}></strata-measure-panel></section>` : nothing}
         ${paints ? html`<section class="options"><strata-brush-panel .session=${session} @request=${request}></strata-brush-panel></section>` : nothing}
@@ -444,24 +415,14 @@ export class StrataModelPage extends LitElement {
 
   private table(session: OpenModelSession, view: TableView): TemplateResult {
     return html`<section class="table" aria-label=${texts.tables.panel}>
-      <div
-        class="splitter across"
-        role="separator"
-        aria-orientation="horizontal"
-        aria-label=${texts.tables.resize}
-        aria-valuenow=${this._tableHeight}
-        aria-valuemin=${kTableHeight.least}
-        tabindex="0"
-        @pointerdown=${(event: PointerEvent) => followDrag(event, (at) => this.setTableHeight(window.innerHeight - at.clientY))}
-        @keydown=${this.onTableSplitterKey}
-      ></div>
+      ${this._tableSplitter.render()}
       ${keyed(
         view,
         html`<strata-table-panel
           .session=${session}
           .view=${view}
           @request=${(event: CustomEvent<TablePanelRequest>) => (this._dialog = event.detail)}
-          @drop-column=${(event: CustomEvent<Column>) => void dropColumn(session, view, event.detail)}
+          @drop-column=${(event: CustomEvent<Column>) => void dropColumn(session, view.tableId, event.detail)}
         ></strata-table-panel>`,
       )}
     </section>`;
@@ -518,70 +479,6 @@ export class StrataModelPage extends LitElement {
   private readonly onBlur = (): void => {
     if (this._stage) this._stage.orbitHeld = false;
   };
-
-  private onSplitterKey(event: KeyboardEvent): void {
-    const step = { ArrowLeft: 20, ArrowRight: -20 }[event.key];
-    if (!step) return;
-    event.preventDefault();
-    this.setPanelWidth(this._panelWidth + step);
-  }
-
-  private onTableSplitterKey(event: KeyboardEvent): void {
-    const step = { ArrowUp: 20, ArrowDown: -20 }[event.key];
-    if (!step) return;
-    event.preventDefault();
-    this.setTableHeight(this._tableHeight + step);
-  }
-
-  private setTableHeight(height: number): void {
-    this._tableHeight = Math.round(
-      Math.min(window.innerHeight * 0.75, Math.max(kTableHeight.least, height)),
-    );
-    localStorage.setItem(kTableKey, String(this._tableHeight));
-  }
-
-  private setPanelWidth(width: number): void {
-    const most = Math.min(kPanelWidth.most, (window.innerWidth * 0.6) / growth());
-    this._panelWidth = Math.round(Math.min(most, Math.max(kPanelWidth.least, width)));
-    localStorage.setItem(kPanelKey, String(this._panelWidth));
-  }
-}
-
-function followDrag(event: PointerEvent, move: (at: PointerEvent) => void): void {
-  const splitter = event.currentTarget as HTMLElement;
-  splitter.setPointerCapture(event.pointerId);
-  splitter.addEventListener("pointermove", move);
-  splitter.addEventListener(
-    "lostpointercapture",
-    () => splitter.removeEventListener("pointermove", move),
-    { once: true },
-  );
-}
-
-async function dropColumn(
-  session: OpenModelSession,
-  view: TableView,
-  column: Column,
-): Promise<void> {
-  const words = texts.tables;
-  if (
-    !(await ask({
-      heading: words.drop_title(labelOf(column)),
-      lead: words.drop_lead,
-      yes: words.drop,
-      danger: true,
-    }))
-  )
-    return;
-  try {
-    await session.api.send("DELETE /tables/{table}/columns/{column}", {
-      path: { table: view.tableId, column: column.id },
-      header: kAsItIs,
-    });
-    await session.tables.reload(view.tableId);
-  } catch (error) {
-    notices.error(error);
-  }
 }
 
 /**

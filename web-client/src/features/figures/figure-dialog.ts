@@ -6,7 +6,6 @@ import { html, LitElement, nothing, type PropertyValues, type TemplateResult } f
 import { customElement, property, state } from "lit/decorators.js";
 import { ApiError } from "../../net/api-error";
 import type { CameraMessage } from "../../math/camera";
-import { holdsFiles, labelColumn, labelOf } from "../../domain/cells";
 import {
   figureChoices,
   figureRequest,
@@ -25,9 +24,8 @@ import {
   type FigureWords,
 } from "../../domain/figures";
 import { readNumber } from "../../core/locale";
-import { holdsMarks } from "../../domain/marks";
-import type { FigureLabels, FigureRequest, View } from "../../core/protocol.gen";
-import type { Column, Layer, ProblemBody } from "../../core/types";
+import type { FigureRequest, View } from "../../core/protocol.gen";
+import type { ProblemBody } from "../../core/types";
 import "../../ui/dialog";
 import "./face-hint";
 import "./figure-preview";
@@ -38,6 +36,9 @@ import { Kept } from "../../core/kept";
 import { hasKeyboard } from "../../ui/keyboard";
 import { isBusy, type LayerJob } from "../../session/layer-jobs";
 import type { ModelSession } from "../../session/model-session";
+import { fieldProblem, typingProblem, type FieldProblem } from "./figure-problems";
+import { wordFields } from "./figure-words";
+import { labelFields, labelsOf, type LabelChoice } from "./figure-labels";
 import { numberInput } from "../../ui/number-input";
 import { radioGroup } from "../../ui/radio-group";
 import { styled } from "../../ui/styled";
@@ -46,32 +47,6 @@ import { texts } from "../../texts";
 
 const words = texts.figures;
 const kFrom: readonly FigureFrom[] = ["camera", ...kDirections, "face"];
-const kWords: readonly { name: keyof FigureWords; most: number }[] = [
-  { name: "title", most: 200 },
-  { name: "caption", most: 2000 },
-  { name: "credit", most: 1000 },
-];
-/** Which of the dialog's fields a part of the request is chosen in. */
-const kFieldOf: Readonly<Record<string, string>> = {
-  direction: "from",
-  normal: "from",
-  center: "from",
-  camera: "from",
-  view: "from",
-};
-const kFields: readonly string[] = [
-  "from",
-  "scale",
-  "paper",
-  "orientation",
-  "dpi",
-  "format",
-  "title",
-  "caption",
-  "credit",
-  "labels",
-];
-
 @customElement("strata-figure-dialog")
 export class StrataFigureDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
@@ -80,7 +55,7 @@ export class StrataFigureDialog extends LitElement {
   @state() private _choices: FigureChoices = figureChoices(null);
   @state() private _scaleTyped: string | null = null; // null: one of the list
   @state() private _dpiTyped: string | null = null;
-  @state() private _problem: { field: string; text: string } | null = null;
+  @state() private _problem: FieldProblem | null = null;
   @state() private _asking = false; // for a face: the dialog is aside
   @state() private _sending = false;
   private readonly _kept = new Kept<unknown>(() => localStorage, "strata.figure", null);
@@ -140,7 +115,7 @@ export class StrataFigureDialog extends LitElement {
     const shown = view
       ? { view: String(view.id) }
       : { ...session.views.content(), ...(this._camera ? { camera: this._camera } : {}) };
-    const request = figureRequest(shown, this._choices, written, face, this.labelsNow);
+    const request = figureRequest(shown, this._choices, written, face, labelsOf(this.session));
     return (
       request && {
         ...request,
@@ -148,14 +123,6 @@ export class StrataFigureDialog extends LitElement {
         continued: texts.figures.continued,
       }
     );
-  }
-
-  /** Null: none, or none yet. */
-  private get labelsNow(): FigureLabels | null {
-    const { layer: id, column } = this.session.figures.draft.labels ?? {};
-    const layer = this.session.layers.all.find((each) => each.id === id);
-    const chosen = column || (layer && this.columns(layer)[0]?.slug);
-    return layer && chosen ? { layer: layer.id, column: chosen } : null;
   }
 
   // ── what is seen
@@ -168,7 +135,7 @@ export class StrataFigureDialog extends LitElement {
       <div class="editor">
         <form id="figure" class="fields" novalidate @submit=${this.onSubmit}>
           ${this.direction()} ${this.scale()} ${this.sheet()} ${this.resolution()} ${this.format()} ${this.written()}
-          ${this.labels()}
+          ${this.legend()}
         </form>
         <div class="sheet">
           ${this.warning()}
@@ -311,72 +278,27 @@ export class StrataFigureDialog extends LitElement {
   }
 
   private written(): TemplateResult {
-    const { model, figures } = this.session;
-    const written = figures.draft.words;
-    const usual = {
-      title: model?.name ?? "",
-      caption: words.caption_hint,
-      credit: model?.credit || words.credit_hint,
-    };
-    return html`${kWords.map(({ name, most }) => {
-      const type = (event: Event): void =>
-        this.write({ ...written, [name]: valueFor(event) }, name);
-      return html`<div class="group full">
-        <label class="field">
-          <span>${words.written[name]}</span>
-          ${
-            name === "caption"
-              ? html`<textarea name=${name} maxlength=${most} placeholder=${usual[name]} .value=${written[name]} aria-invalid=${this.isWrong(name)} aria-describedby=${this.toldAt(name)} @input=${type}></textarea>`
-              : html`<input type="text" name=${name} maxlength=${most} autocomplete="off" placeholder=${usual[name]} .value=${written[name]} aria-invalid=${this.isWrong(name)} aria-describedby=${this.toldAt(name)} @input=${type} />`
-          }
-        </label>
-        ${this.problemOf(name)}
-      </div>`;
-    })}`;
+    return wordFields(this.session, {
+      wrong: (field) => this.isWrong(field),
+      told: (field) => this.toldAt(field),
+      problem: (field) => this.problemOf(field),
+      write: (written, name) => this.write(written, name),
+    });
   }
 
-  private labels(): TemplateResult {
-    const { layers, figures } = this.session;
-    const { labels } = figures.draft;
-    // as in the list of layers
-    const choices = layers.all.filter(({ table }) => table !== undefined).reverse();
-    const layer = choices.find(({ id }) => id === labels?.layer) ?? null;
+  private legend(): TemplateResult {
     return html`<div class="full group">
         <label class="check">
           <input type="checkbox" name="legend" .checked=${this._choices.legend} @change=${(event: Event) => this.choose({ legend: (event.target as HTMLInputElement).checked })} />
           ${words.legend}
         </label>
       </div>
-      ${
-        choices.length === 0
-          ? nothing
-          : html`<div class="group ${layer ? "" : "full"}">
-              <label class="field">
-                <span>${words.labels}</span>
-                <select name="labels" aria-invalid=${this.isWrong("labels")} aria-describedby=${this.toldAt("labels")} @change=${(event: Event) => this.label(valueFor(event) === "" ? null : { layer: Number(valueFor(event)), column: "" })}>
-                  <option value="" ?selected=${layer === null}>${words.no_labels}</option>
-                  ${choices.map((each) => html`<option value=${each.id} ?selected=${each === layer}>${each.name}</option>`)}
-                </select>
-              </label>
-            </div>
-            ${layer ? this.labelColumn(layer) : nothing}
-            ${this.problemOf("labels")}`
-      }`;
-  }
-
-  private labelColumn(layer: Layer): TemplateResult {
-    const columns = this.columns(layer);
-    const chosen = this.labelsNow?.column;
-    const gone = chosen !== undefined && !columns.some(({ slug }) => slug === chosen);
-    if (this.session.tables.find(layer.table!) && columns.length === 0)
-      return html`<p class="hint">${words.no_columns}</p>`;
-    return html`<label class="field">
-      <span>${words.column}</span>
-      <select name="column" aria-invalid=${this.isWrong("labels")} aria-describedby=${this.toldAt("labels")} @change=${(event: Event) => this.label({ layer: layer.id, column: valueFor(event) })}>
-        ${columns.map((column) => html`<option value=${column.slug} ?selected=${column.slug === chosen}>${labelOf(column)}</option>`)}
-        ${gone ? html`<option value=${chosen} selected>${chosen}</option>` : nothing}
-      </select>
-    </label>`;
+      ${labelFields(this.session, {
+        wrong: this.isWrong("labels"),
+        told: this.toldAt("labels"),
+        problem: this.problemOf("labels"),
+        choose: (labels) => this.label(labels),
+      })}`;
   }
 
   private warning(): TemplateResult | typeof nothing {
@@ -475,17 +397,8 @@ export class StrataFigureDialog extends LitElement {
     this.requestUpdate();
   }
 
-  /** What can be written beside a place. */
-  private columns(layer: Layer): Column[] {
-    const table = this.session.tables.find(layer.table!);
-    if (!table) return [];
-    const title = labelColumn(table); // what records are called comes first
-    const words = table.columns.filter((column) => !holdsFiles(column) && !holdsMarks(column));
-    return words.sort((a, b) => Number(b === title) - Number(a === title));
-  }
-
   /** Without a column: the first that there is. */
-  private label(labels: { layer: number; column: string } | null): void {
+  private label(labels: LabelChoice | null): void {
     this.session.figures.draft.labels = labels;
     if (this._problem?.field === "labels") this._problem = null;
     this.requestUpdate();
@@ -510,10 +423,8 @@ export class StrataFigureDialog extends LitElement {
       : nothing;
   }
 
-  private refuse({ field = "", title, detail }: ProblemBody): void {
-    const part = field.split(/[.[]/)[0]!;
-    const own = kFieldOf[part] ?? part;
-    this._problem = { field: kFields.includes(own) ? own : "", text: detail ?? title };
+  private refuse(problem: ProblemBody): void {
+    this._problem = fieldProblem(problem);
   }
 
   /** Of the preview: what is wrong stands at its field, where it has one. */
@@ -525,14 +436,8 @@ export class StrataFigureDialog extends LitElement {
     if (this._problem?.field !== "") event.preventDefault();
   }
 
-  /** A field holds what is none of its choices. */
-  private get typingProblem(): { field: string; text: string } | null {
-    const { _scaleTyped: scale, _dpiTyped: dpi } = this;
-    if (scale !== null && Number.isNaN(readScale(scale)))
-      return { field: "scale", text: words.wrong_scale };
-    return dpi !== null && !isDpi(readNumber(dpi))
-      ? { field: "dpi", text: words.wrong_dpi(kDpiRange.least, kDpiRange.most) }
-      : null;
+  private get typingProblem(): FieldProblem | null {
+    return typingProblem(this._scaleTyped, this._dpiTyped);
   }
 
   // ── what is made

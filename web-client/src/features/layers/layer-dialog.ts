@@ -1,22 +1,22 @@
 // <strata-layer-dialog>: makes a layer, or changes one's name, classes and colours, in the words of
 // who studies the object. With `layer` it edits; without, it creates.
 
-import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
 import { readNumber } from "../../core/locale";
 import { detailChoices, formatLength } from "../../domain/measure";
 import {
   classPalette,
-  kClassColors,
   measurementPalette,
   opaqueColor,
   presencePalette,
   purposeOf,
   recordPalette,
+  kTypeOfPurpose,
   type LayerPurpose,
 } from "../../domain/palette";
-import type { Layer, LayerCreate, Palette, Resolution, ValueType } from "../../core/types";
+import type { Layer, LayerCreate, Palette, Resolution } from "../../core/types";
 import { ApiError } from "../../net/api-error";
 import { createRecord } from "../../net/records";
 import { createLayer, createLayerOrJob, readLayer, recomputeLayer } from "../../net/layers";
@@ -24,9 +24,10 @@ import { labelOf } from "../../domain/cells";
 import type { Labels, Table, Visibility } from "../../core/protocol.gen";
 import "../../ui/dialog";
 import "./expression-field";
+import { classRows, newClass, withNewClass, type ClassRow } from "./class-rows";
+import { layerDialogStyles } from "./layer-dialog-styles";
 import type { StrataExpressionField } from "./expression-field";
 import type { StrataDialog } from "../../ui/dialog";
-import { icon } from "../../ui/icons";
 import "../../ui/labels-field";
 import type { StrataLabelsField } from "../../ui/labels-field";
 import { layerChanges, type LayerWanted } from "./layer-changes";
@@ -40,23 +41,10 @@ import { formStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import { visibilityChoice } from "../../ui/visibility";
 
-interface ClassRow {
-  at: number;
-  label: string;
-  color: string; // #rrggbbaa
-}
-
 /** What a new layer is for: something to paint, or values that are computed. */
 type Purpose = LayerPurpose | "shape" | "formula";
 
 const kNoWords: Labels = {};
-const kMostClasses = 255;
-const kTypes: Record<LayerPurpose, ValueType> = {
-  presence: "u8",
-  classes: "u8",
-  measurement: "f32",
-  records: "u32",
-};
 const words = texts.layer_dialog;
 
 @customElement("strata-layer-dialog")
@@ -83,118 +71,7 @@ export class StrataLayerDialog extends LitElement {
   @query("strata-shape-fields") private _shape!: StrataShapeFields;
   @query("strata-expression-field") private _expression!: StrataExpressionField;
 
-  static override styles = [
-    sharedStyles,
-    formStyles,
-    css`
-      .kinds {
-        display: grid;
-        grid-template-columns: repeat(2, 1fr);
-        gap: 0.625rem;
-        margin-top: 0.375rem;
-      }
-      .kinds button {
-        display: grid;
-        place-content: start stretch;
-        justify-items: start;
-        gap: 3px;
-        height: auto;
-        padding: 0.75rem 0.8125rem;
-        text-align: left;
-        white-space: normal;
-        border-radius: var(--radius);
-      }
-      .kinds button b {
-        font: 600 1.02rem var(--serif);
-      }
-      .kinds button span {
-        font-size: 0.82rem;
-        line-height: 1.35;
-        color: var(--ink-soft);
-      }
-      .kinds button:last-child:nth-child(odd) {
-        grid-column: 1 / -1;
-      }
-      .kinds button[aria-checked="true"] {
-        border-color: var(--accent);
-        box-shadow: inset 0 0 0 1px var(--accent);
-        background: var(--accent-soft);
-      }
-      .two {
-        display: flex;
-        gap: 0.75rem;
-        align-items: end;
-      }
-      .two > label:first-child {
-        flex: 1;
-      }
-      .classes {
-        display: grid;
-        gap: 0.4375rem;
-        max-height: 16.875rem;
-        overflow: auto;
-        padding: 3px;
-        margin: -3px;
-      }
-      .class {
-        display: flex;
-        gap: 0.5rem;
-        align-items: center;
-      }
-      .range {
-        display: grid;
-        grid-template-columns: 1fr auto 1fr 6rem;
-        align-items: end;
-        gap: 0.625rem;
-      }
-      .range > span {
-        padding-bottom: 0.5625rem;
-        color: var(--ink-soft);
-      }
-      .details {
-        display: grid;
-        gap: 5px;
-      }
-      .details .segments {
-        display: flex;
-      }
-      .details .segments button {
-        min-height: 2.375rem;
-      }
-      .chosen-lead {
-        display: none;
-      }
-      /* the fields below are to be seen as well */
-      @media (max-width: 560px) {
-        .kinds {
-          gap: 0.5rem;
-        }
-        .kinds button {
-          position: relative;
-          align-content: center;
-          padding: 0.5rem 0.6875rem;
-        }
-        .kinds button b {
-          font-size: 0.95rem;
-          line-height: 1.2;
-        }
-        .kinds button span {
-          position: absolute;
-          width: 1px;
-          height: 1px;
-          overflow: hidden;
-          clip-path: inset(50%);
-        }
-        .chosen-lead {
-          display: block;
-          margin-top: 0.5rem;
-        }
-        .range {
-          grid-template-columns: 1fr auto 1fr;
-        }
-      }
-    `,
-  ];
+  static override styles = [sharedStyles, formStyles, layerDialogStyles];
 
   override connectedCallback(): void {
     super.connectedCallback();
@@ -379,43 +256,16 @@ export class StrataLayerDialog extends LitElement {
   }
 
   private classes(): TemplateResult {
-    return html`<div class="details">
-      <p class="caption">${words.classes_title}</p>
-      <div class="classes">
-        ${this._classes.map(
-          (row, index) =>
-            html`<div class="class">
-              <input
-                type="color"
-                .value=${opaqueColor(row.color)}
-                aria-label=${words.class_color(row.at)}
-                @input=${(event: Event) => this.changeClass(index, { color: `${(event.target as HTMLInputElement).value}ff` })}
-              />
-              <input
-                type="text"
-                maxlength="200"
-                .value=${row.label}
-                placeholder=${words.class_default(row.at)}
-                aria-label=${words.class_label(row.at)}
-                @input=${(event: Event) => this.changeClass(index, { label: (event.target as HTMLInputElement).value })}
-              />
-              <button
-                type="button"
-                class="icon quiet"
-                aria-label=${words.class_remove(row.label || words.class_default(row.at))}
-                ?disabled=${this._classes.length === 1}
-                @click=${() => (this._classes = this._classes.filter((_, other) => other !== index))}
-              >
-                ${icon("close")}
-              </button>
-            </div>`,
-        )}
-      </div>
-      <div class="row">
-        <button type="button" @click=${this.addClass}>${icon("plus")}${words.class_add}</button>
-        ${this.layer ? html`<span class="hint">${words.class_kept}</span>` : nothing}
-      </div>
-    </div>`;
+    return classRows({
+      rows: this._classes,
+      isNew: !this.layer,
+      change: (rows) => (this._classes = rows),
+      add: () => {
+        const more = withNewClass(this._classes);
+        if (more) this._classes = more;
+        else this._problem = words.too_many;
+      },
+    });
   }
 
   private measurement(): TemplateResult {
@@ -468,22 +318,6 @@ export class StrataLayerDialog extends LitElement {
     </div>`;
   }
   @state() private _chosenResolution: number | null = null;
-
-  private changeClass(index: number, change: Partial<ClassRow>): void {
-    this._classes = this._classes.map((row, other) =>
-      other === index ? { ...row, ...change } : row,
-    );
-  }
-
-  private addClass(): void {
-    const used = new Set(this._classes.map((row) => row.at));
-    for (let at = 1; at <= kMostClasses; ++at) {
-      if (used.has(at)) continue;
-      this._classes = [...this._classes, newClass(at)];
-      return;
-    }
-    this._problem = words.too_many;
-  }
 
   private async onSubmit(event: Event): Promise<void> {
     event.preventDefault();
@@ -651,7 +485,7 @@ export class StrataLayerDialog extends LitElement {
     const created: LayerCreate = {
       ...wanted,
       kind: purpose === "records" ? "database" : "numeric",
-      type: kTypes[purpose],
+      type: kTypeOfPurpose[purpose],
       ...(this.namedByTable ? { table: this._table!.id } : {}),
       ...this.resolution(),
     };
@@ -663,9 +497,3 @@ export class StrataLayerDialog extends LitElement {
     notices.show("success", texts.layers.created(wanted.name));
   }
 }
-
-const newClass = (at: number): ClassRow => ({
-  at,
-  label: "",
-  color: kClassColors[(at - 1) % kClassColors.length]!,
-});

@@ -1,0 +1,81 @@
+// The classes of a layer in its dialog: a row for each, with its colour and label.
+
+import { html, nothing, type TemplateResult } from "lit";
+import { kClassColors, opaqueColor } from "../../domain/palette";
+import { texts } from "../../texts";
+import { icon } from "../../ui/icons";
+
+export interface ClassRow {
+  at: number;
+  label: string;
+  color: string; // #rrggbbaa
+}
+
+const kMaxClasses = 255;
+const words = texts.layer_dialog;
+
+export const newClass = (at: number): ClassRow => ({
+  at,
+  label: "",
+  color: kClassColors[(at - 1) % kClassColors.length]!,
+});
+
+/** With one more, of the lowest number that is free; null where there is none. */
+export function withNewClass(rows: readonly ClassRow[]): ClassRow[] | null {
+  const used = new Set(rows.map((row) => row.at));
+  for (let at = 1; at <= kMaxClasses; ++at) if (!used.has(at)) return [...rows, newClass(at)];
+  return null;
+}
+
+/** `isNew`: of a layer that is made now; in one that is there classes stay painted. */
+export function classRows({
+  rows,
+  isNew,
+  change,
+  add,
+}: {
+  rows: readonly ClassRow[];
+  isNew: boolean;
+  change(rows: ClassRow[]): void;
+  add(): void;
+}): TemplateResult {
+  const set = (index: number, part: Partial<ClassRow>): void =>
+    change(rows.map((row, other) => (other === index ? { ...row, ...part } : row)));
+  return html`<div class="details">
+    <p class="caption">${words.classes_title}</p>
+    <div class="classes">
+      ${rows.map(
+        (row, index) =>
+          html`<div class="class">
+            <input
+              type="color"
+              .value=${opaqueColor(row.color)}
+              aria-label=${words.class_color(row.at)}
+              @input=${(event: Event) => set(index, { color: `${(event.target as HTMLInputElement).value}ff` })}
+            />
+            <input
+              type="text"
+              maxlength="200"
+              .value=${row.label}
+              placeholder=${words.class_default(row.at)}
+              aria-label=${words.class_label(row.at)}
+              @input=${(event: Event) => set(index, { label: (event.target as HTMLInputElement).value })}
+            />
+            <button
+              type="button"
+              class="icon quiet"
+              aria-label=${words.class_remove(row.label || words.class_default(row.at))}
+              ?disabled=${rows.length === 1}
+              @click=${() => change(rows.filter((_, other) => other !== index))}
+            >
+              ${icon("close")}
+            </button>
+          </div>`,
+      )}
+    </div>
+    <div class="row">
+      <button type="button" @click=${add}>${icon("plus")}${words.class_add}</button>
+      ${isNew ? nothing : html`<span class="hint">${words.class_kept}</span>`}
+    </div>
+  </div>`;
+}

@@ -1,0 +1,37 @@
+// What the page of a model says of its connection: whether all is saved, and a banner while the
+// server is out of reach.
+
+import { html, nothing, type TemplateResult } from "lit";
+import type { ModelSession } from "../session/model-session";
+import { texts } from "../texts";
+import { icon } from "../ui/icons";
+
+export function savingStatus({ saving, connectionState }: ModelSession): TemplateResult {
+  const { waiting, failing } = saving;
+  const lost = connectionState !== "open";
+  const state = waiting === 0 ? "saved" : failing || lost ? "not-saved" : "saving";
+  const words = {
+    saved: texts.saving.saved,
+    saving: texts.saving.saving,
+    "not-saved": texts.saving.not_saved(waiting),
+  }[state];
+  return html`<div
+    class="saving ${state}"
+    role="status"
+    data-state=${state}
+    title=${state === "not-saved" ? texts.saving.not_saved_hint : words}
+  >
+    ${icon(state === "saved" ? "check" : state === "saving" ? "cloud" : "warning")}<span>${words}</span>
+  </div>`;
+}
+
+export function lostBanner(session: ModelSession): TemplateResult | typeof nothing {
+  const reconnects = session.connectionState === "connecting" && session.view.framesDrawn > 0;
+  if (session.connectionState !== "lost" && !reconnects) return nothing;
+  const { waiting } = session.saving;
+  return html`<div class="banner" role="alert">
+    ${icon("warning")}
+    <span class="grow">${texts.connection.lost} ${waiting > 0 ? texts.connection.kept(waiting) : ""}</span>
+    <button @click=${() => session.checkConnection()}>${texts.connection.retry}</button>
+  </div>`;
+}

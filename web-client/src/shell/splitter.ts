@@ -1,0 +1,75 @@
+// A bar between two parts of a window: dragged, or moved by arrow keys, it gives one of them its
+// size, which the browser keeps.
+
+import { html, nothing, type ReactiveControllerHost, type TemplateResult } from "lit";
+
+const kStep = 20; // of an arrow key
+
+export interface SplitterOptions {
+  label: string;
+  /** By this name the size is kept. */
+  key: string;
+  first: number;
+  least: number;
+  most(): number;
+  /** What a screen reader is told of the largest size. */
+  largest?: number;
+  /** The bar lies across the window: its part is below it, else at its right. */
+  isAcross?: boolean;
+  /** The size when the bar is at the pointer. */
+  sizeAt(pointer: PointerEvent): number;
+}
+
+export class Splitter {
+  size: number;
+
+  constructor(
+    private readonly _host: ReactiveControllerHost,
+    private readonly _options: SplitterOptions,
+  ) {
+    this.size = Number(localStorage.getItem(_options.key)) || _options.first;
+  }
+
+  resize(size: number): void {
+    const { key, least, most } = this._options;
+    this.size = Math.round(Math.min(most(), Math.max(least, size)));
+    localStorage.setItem(key, String(this.size));
+    this._host.requestUpdate();
+  }
+
+  render(): TemplateResult {
+    const { label, least, largest, isAcross } = this._options;
+    return html`<div
+      class="splitter ${isAcross ? "across" : ""}"
+      role="separator"
+      aria-orientation=${isAcross ? "horizontal" : "vertical"}
+      aria-label=${label}
+      aria-valuenow=${this.size}
+      aria-valuemin=${least}
+      aria-valuemax=${largest ?? nothing}
+      tabindex="0"
+      @pointerdown=${this.onPointerDown}
+      @keydown=${this.onKey}
+    ></div>`;
+  }
+
+  private readonly onPointerDown = (event: PointerEvent): void => {
+    const bar = event.currentTarget as HTMLElement;
+    const move = (at: PointerEvent): void => this.resize(this._options.sizeAt(at));
+    bar.setPointerCapture(event.pointerId);
+    bar.addEventListener("pointermove", move);
+    bar.addEventListener("lostpointercapture", () => bar.removeEventListener("pointermove", move), {
+      once: true,
+    });
+  };
+
+  private readonly onKey = (event: KeyboardEvent): void => {
+    const [more, less] = this._options.isAcross
+      ? ["ArrowUp", "ArrowDown"]
+      : ["ArrowLeft", "ArrowRight"];
+    const step = event.key === more ? kStep : event.key === less ? -kStep : 0;
+    if (step === 0) return;
+    event.preventDefault();
+    this.resize(this.size + step);
+  };
+}
