@@ -128,7 +128,8 @@ write_stamp() {
 
 web_modules_stamp() { printf '%s\n' web-client/package.json web-client/package-lock.json | stamp_of; }
 web_client_stamp() {
-  find web-client/src web-client/public web-client/index.html web-client/*.json web-client/*.ts -type f 2>/dev/null | sort | stamp_of
+  find web-client/src web-client/public web-client/*.html web-client/*.json web-client/*.ts \
+    protocol/generated/openapi.json -type f 2>/dev/null | sort | stamp_of
 }
 web_client_is_current() {
   [ -d web-client/node_modules ] && [ -f web-client/dist/index.html ] && is_current web-modules "$(web_modules_stamp)" &&

@@ -21,7 +21,8 @@ export function thirdPartyNotices(): Plugin {
       const packages = new Map<string, string>();
       for (const chunk of Object.values(bundle))
         for (const id of chunk.type === "chunk" ? Object.keys(chunk.modules) : []) {
-          const found = kFolder.exec(id.replaceAll("\\", "/"));
+          // Rollup marks what it makes of a CommonJS module by a zero byte.
+          const found = kFolder.exec(id.replaceAll("\\", "/").replace(/^\0/, ""));
           if (found) packages.set(found[2]!, found[1]!);
         }
       const notices = [...packages].sort().map(([name, folder]) => {

@@ -1,12 +1,24 @@
+import { fileURLToPath } from "node:url";
 import { defineConfig } from "vitest/config";
 import { compressedBeside } from "./compress";
 import { thirdPartyNotices } from "./notices";
+import { operationsWithoutScript } from "./operations";
 
 // The server's address while developing the page with `npm run dev`.
 const server = process.env["STRATA_SERVER"] ?? "http://127.0.0.1:8080";
 
+// Redoc's readers of other kinds of contracts than ours are left out.
+const unused = fileURLToPath(new URL("src/docs/unused.ts", import.meta.url));
+
 export default defineConfig({
-  plugins: [thirdPartyNotices(), compressedBeside()],
+  plugins: [operationsWithoutScript(), thirdPartyNotices(), compressedBeside()],
+  resolve: {
+    alias: {
+      "@redocly/openapi-core/lib/bundle": unused,
+      "@redocly/openapi-core/lib/config/config": unused,
+      yaml: unused,
+    },
+  },
   build: {
     outDir: "dist",
     target: "es2022",
@@ -17,7 +29,7 @@ export default defineConfig({
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },
     rollupOptions: {
-      input: { index: "index.html", "kiosk-worker": "src/kiosk/worker.ts" },
+      input: { index: "index.html", docs: "docs.html", "kiosk-worker": "src/kiosk/worker.ts" },
       // A service worker has an address that never changes.
       output: {
         entryFileNames: ({ name }) =>

@@ -48,7 +48,9 @@ def main():
     page = os.path.join(ROOT, "web-client", "dist", "third-party-notices.txt")
     if os.path.exists(page):
         with open(page, encoding="utf-8") as file:
-            assert "lit-html " in file.read()
+            notices = file.read()
+        for name in ("lit-html ", "redoc ", "react ", "styled-components "):
+            assert name in notices, f"{name}has no notice"
     print(f"{len(heads)} heads")
 
 

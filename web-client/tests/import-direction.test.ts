@@ -54,6 +54,8 @@ describe("The imports of the page", () => {
       ["kiosk/show.ts", "texts/index.ts"],
       ["ui/styles.ts", "kiosk/stage.ts"],
       ["shell/stage.ts", "kiosk/stage.ts"],
+      ["shell/stage.ts", "docs/theme.ts"],
+      ["docs/main.ts", "core/types.ts"],
       ["loose.ts", "core/types.ts"],
     ] as const) {
       expect(planted(from, type(to))).toEqual(of(from, to));

@@ -87,6 +87,7 @@ const featureOf = (file: string): string => file.split("/")[1]!;
 
 function mayImport(from: string, { to, typeOnly }: Import): boolean {
   const [own, other] = [folderOf(from), folderOf(to)];
+  if (own === "docs" || other === "docs") return own === other; // the page of the contract
   if (own === "kiosk") return kOfKiosk.includes(other);
   if (other === "kiosk") return from === kEntry;
   if (own === "features" && other === "features") return featureOf(from) === featureOf(to);

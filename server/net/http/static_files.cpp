@@ -11,10 +11,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_page(const Request& request) {
-  if (request.path == "/") return true;
+// The document that finds its way by the address; none where there is nothing to show.
+std::string_view document_of(const Request& request) {
+  if (request.path == "/") return "index.html";
+  if (request.path == "/docs" || request.path == "/api/v1/docs") return "docs.html";
   const std::string& first = request.segments.front();
-  return first == "models" || first == "projects" || first == "join" || first == "kiosk";
+  const bool is_app =
+      first == "models" || first == "projects" || first == "join" || first == "kiosk";
+  return is_app ? "index.html" : "";
 }
 
 bool is_safe(const std::string& segment) {
@@ -81,8 +85,9 @@ Response StaticFiles::serve(const Request& request) const {
   }
   std::error_code error;
   if (file == folder_ || !fs::is_regular_file(file, error)) {
-    if (!is_page(request)) return problem_response(missing);
-    file = folder_ / "index.html";
+    const std::string_view document = document_of(request);
+    if (document.empty()) return problem_response(missing);
+    file = folder_ / document;
     if (!fs::is_regular_file(file, error))
       return problem_response(
           {ErrorCode::unavailable,

@@ -9,8 +9,8 @@
 
 #include "core/byte_budget.h"
 #include "core/uuid.h"
-#include "net/api/docs_page.h"
 #include "net/api/metrics.h"
+#include "net/api/problems_page.h"
 #include "net/http/accept.h"
 #include "net/http/form_files.h"
 #include "net/http/http_types.h"
@@ -331,6 +331,15 @@ TEST(StaticFiles, addresses_of_the_page_are_the_page) {
   EXPECT_EQ(files.serve(parsed("/nothing.js")).status, 404);
 }
 
+TEST(StaticFiles, the_contract_has_a_page_of_its_own) {
+  const Folder folder;
+  folder.write("index.html", "<p>page</p>");
+  folder.write("docs.html", "<p>contract</p>");
+  const StaticFiles files(folder.path());
+  for (const char* target : {"/docs", "/api/v1/docs"})
+    EXPECT_EQ(text_of(files.serve(parsed(target)).file), "<p>contract</p>") << target;
+}
+
 TEST(StaticFiles, nothing_outside_the_folder_is_served) {
   const Folder outside;
   const auto secret = outside.write("secret.txt", "secret");
@@ -487,27 +496,17 @@ TEST(ByteBudget, what_is_held_bounds_what_may_be_taken) {
 
 // --- pages and figures
 
-TEST(Docs, text_of_the_contract_cannot_become_markup) {
-  const nlohmann::json contract = {
-      {"info", {{"title", "<script>alert(1)</script>"}, {"version", "1"}}},
-      {"paths",
-       {{"/a",
-         {{"get", {{"summary", "a & b"}, {"responses", {{"200", {{"description", "ok"}}}}}}}}}}}};
-  const std::string page = docs_html(contract);
-  EXPECT_EQ(page.find("<script"), std::string::npos);
-  EXPECT_NE(page.find("a &amp; b"), std::string::npos);
+TEST(Problems, text_cannot_become_markup) {
+  EXPECT_EQ(html_escape("<a href=\"x\">&'"), "&lt;a href=&quot;x&quot;&gt;&amp;&#39;");
 }
 
-TEST(Docs, all_of_it_is_the_main_part_and_every_column_has_a_head) {
-  const nlohmann::json contract =
-      nlohmann::json::parse(R"({"info": {"title": "T"}, "components": {"schemas": {"A": {
-      "properties": {"b": {"type": "string"}}}}}, "paths": {"/a": {"get": {"parameters": [{"name": "p", "in": "query"}],
-      "responses": {"200": {"description": "ok"}}}}}})");
-  const std::string page = docs_html(contract);
+TEST(Problems, all_of_it_is_the_main_part_and_every_column_has_a_head) {
+  const std::string page = problems_html();
+  EXPECT_EQ(page.find("<script"), std::string::npos);
   EXPECT_NE(page.find("<body><main><h1>"), std::string::npos);
   EXPECT_TRUE(page.ends_with("</main></body></html>"));
   EXPECT_EQ(page.find("<th></th>"), std::string::npos);
-  EXPECT_NE(page.find("<th scope=\"col\">description</th>"), std::string::npos);
+  EXPECT_NE(page.find("<th scope=\"col\">Meaning</th>"), std::string::npos);
 }
 
 TEST(Metrics, text_names_every_counter_once) {

@@ -2,8 +2,8 @@
 #include <sstream>
 
 #include "core/version.h"
-#include "net/api/docs_page.h"
 #include "net/api/metrics.h"
+#include "net/api/problems_page.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/question_desk.h"
@@ -70,15 +70,8 @@ void add_system_routes(Router& router, const RouteContext& context) {
   });
   open("/api/v1/openapi.json",
        [&context](const Request& request) { return contract(context, request); });
-  for (const char* pattern : {"/docs", "/api/v1/docs"})
-    open(pattern, [&context](const Request&) {
-      return docs_page(context.options.protocol_dir / "openapi.json");
-    });
   open("/problems", [](const Request&) -> Result<Response> {
     return text_response(problems_html(), "text/html; charset=utf-8");
-  });
-  open("/api/v1/docs.css", [](const Request&) -> Result<Response> {
-    return text_response(std::string(docs_style()), "text/css; charset=utf-8");
   });
 }
 

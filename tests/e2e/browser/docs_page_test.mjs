@@ -1,0 +1,87 @@
+// The page of the contract: every operation is there, its menu leads to each, and nothing on it
+// breaks the content security policy or comes from another host.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { findings } from "../support/js/accessible.mjs";
+import { attach_log, ends_well, test } from "../support/js/cases.mjs";
+import { kRoot } from "../support/js/modules.mjs";
+
+const contract = JSON.parse(
+  readFileSync(join(kRoot, "protocol", "generated", "openapi.json"), "utf8"),
+);
+const operations = Object.values(contract.paths)
+  .flatMap((item) => Object.values(item))
+  .filter((operation) => operation.operationId);
+// A heading begins with a link to itself, which has a name, too.
+const heading = (page, name) => page.getByRole("heading", { level: 2, name });
+const summary_of = (id) => operations.find(({ operationId }) => operationId === id).summary;
+const foreign = [];
+
+test.use({ demo: false });
+
+test("it opens without an account, and all comes from this server", async ({ server, page }) => {
+  page.on("request", (request) => {
+    if (!request.url().startsWith(`${server.url}/`)) foreign.push(request.url());
+  });
+  await page.goto(`${server.url}/docs`);
+  await page.getByRole("main").getByRole("heading", { level: 1 }).waitFor();
+  assert.match(
+    await page.getByRole("main").getByRole("heading", { level: 1 }).innerText(),
+    /^Strata/,
+  );
+});
+
+test("every operation of the contract has a heading", async ({ page }) => {
+  assert.ok(operations.length > 150);
+  for (const id of ["is_alive", "import_model", "create_tool"])
+    await heading(page, summary_of(id)).first().waitFor();
+  const shown = await page
+    .locator('main [id^="operation/"]')
+    .evaluateAll((all) =>
+      all.map((each) => [
+        each.id.split("operation/")[1],
+        each.querySelector("h2")?.textContent.trim(),
+      ]),
+    );
+  const ids_and_names = operations.map(({ operationId, summary }) => [operationId, summary]);
+  assert.deepEqual(shown.sort(), ids_and_names.sort());
+});
+
+test("the menu leads to an operation", async ({ page }) => {
+  const menu = page.getByRole("navigation", { name: "Operations" });
+  await menu.getByText("tools", { exact: true }).click();
+  const link = menu.getByRole("link", { name: summary_of("create_tool") });
+  await link.click();
+  await page.waitForFunction((name) => {
+    const found = [...document.querySelectorAll("main h2")].find(
+      (each) => each.textContent.trim() === name,
+    );
+    const { top } = found.getBoundingClientRect();
+    return top > -100 && top < innerHeight / 2;
+  }, summary_of("create_tool"));
+  await menu.locator('a[aria-current="location"]').first().waitFor();
+});
+
+test("axe has no serious finding", async ({ page }) => {
+  assert.deepEqual(await findings(page), []);
+});
+
+test("it opens for who is signed in, at both of its addresses", async ({ server, desk, page }) => {
+  await desk.sign_in(server, server.token);
+  await page.goto(`${server.url}/api/v1/docs`);
+  await heading(page, summary_of("is_alive")).first().waitFor();
+  assert.deepEqual(foreign, []);
+});
+
+test("the policy allows the styles of Redoc by their hashes alone", async ({ server }) => {
+  const policy = (path) =>
+    fetch(`${server.url}${path}`).then(({ headers }) => headers.get("Content-Security-Policy"));
+  const wider = await policy("/docs");
+  assert.match(wider, /style-src 'self'( 'sha256-[\w+/=]+'){2}$/);
+  assert.doesNotMatch(wider, /unsafe/);
+  assert.doesNotMatch(await policy("/"), /style-src/);
+});
+
+test.afterEach(({ server }, info) => attach_log(info, server));
+ends_well({ complaints: ["oneOf and anyOf are not supported on the same level"] });
