@@ -2,24 +2,13 @@
 // not one of these (`ui/keyboard`).
 
 import type { StandardView } from "../math/camera";
-import type { ToolName } from "../tools/tool";
+import { kToolKeys, type ToolName } from "../tools/tool";
 import type { OpenModelSession } from "./open-model-session";
 
 const kViews: StandardView[] = ["front", "back", "left", "right", "top", "bottom"];
-const kTools: Record<string, ToolName> = {
-  b: "brush",
-  e: "eraser",
-  a: "polygon",
-  l: "lasso",
-  g: "bucket",
-  i: "pick",
-  m: "measure",
-  d: "line",
-  s: "point",
-  c: "comment",
-  v: "orbit",
-  h: "pan",
-};
+const kToolOfKey = new Map(
+  Object.entries(kToolKeys).map(([tool, key]) => [key.toLowerCase(), tool as ToolName]),
+);
 const kArrows: Record<string, [number, number]> = {
   ArrowLeft: [1, 0],
   ArrowRight: [-1, 0],
@@ -43,7 +32,7 @@ export function handleKey(
   }
   if (event.altKey) return false;
   if (session.tools.key(key)) return true;
-  const tool = kTools[key.toLowerCase()];
+  const tool = kToolOfKey.get(key.toLowerCase());
   if (tool) {
     session.chooseTool(tool);
     return true;

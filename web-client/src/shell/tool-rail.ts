@@ -3,7 +3,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import type { StandardView } from "../math/camera";
-import { kChangingTools, type ToolName } from "../tools/tool";
+import { kChangingTools, kToolKeys, type ToolName } from "../tools/tool";
 import { followSession } from "../session/follow-session";
 import { icon } from "../ui/icons";
 import "../ui/menu";
@@ -13,20 +13,7 @@ import { sharedStyles } from "../ui/styles";
 import { texts } from "../texts";
 import type { StepName } from "../features/onboarding/onboarding-steps";
 
-const kTools: [Exclude<ToolName, "face">, string][] = [
-  ["orbit", "V"],
-  ["pan", "H"],
-  ["brush", "B"],
-  ["eraser", "E"],
-  ["polygon", "A"],
-  ["lasso", "L"],
-  ["bucket", "G"],
-  ["line", "D"],
-  ["point", "S"],
-  ["pick", "I"],
-  ["measure", "M"],
-  ["comment", "C"],
-];
+const kTools = Object.entries(kToolKeys) as [keyof typeof kToolKeys, string][];
 /** What a step of the tour speaks of. */
 const kOfTour: Partial<Record<ToolName, StepName>> = { brush: "brush", pick: "values" };
 const kViews: StandardView[] = ["front", "back", "left", "right", "top", "bottom"];

@@ -18,6 +18,21 @@ export type ToolName =
   | "measure"
   | "face";
 
+/** The tools of the rail, in its order, with the keys that choose them. */
+export const kToolKeys: Readonly<Record<Exclude<ToolName, "face">, string>> = {
+  orbit: "V",
+  pan: "H",
+  brush: "B",
+  eraser: "E",
+  polygon: "A",
+  lasso: "L",
+  bucket: "G",
+  line: "D",
+  point: "S",
+  pick: "I",
+  measure: "M",
+  comment: "C",
+};
 /** Those that add to a record of the layer's table. */
 export const kMarkingTools: readonly ToolName[] = ["line", "point"];
 /** Those that change what a layer shows. */
