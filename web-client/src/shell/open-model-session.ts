@@ -45,7 +45,13 @@ import { OrbitTool, PanTool } from "../tools/navigate";
 import { LassoTool, PolygonTool } from "../tools/outline";
 import { PickTool } from "../features/painting/pick-tool";
 import { PointTool } from "../features/records/point-tool";
-import { kChangingTools, kMarkingTools, kPaintingTools, type ToolName } from "../tools/tool";
+import {
+  kChangingTools,
+  kMarkingTools,
+  kPaintingTools,
+  type Tool,
+  type ToolName,
+} from "../tools/tool";
 import { ToolManager } from "../tools/tool-manager";
 import { Appearance } from "../features/appearance/appearance";
 import { Comments } from "../features/comments/comments";
@@ -408,28 +414,25 @@ export class OpenModelSession implements ModelSession {
         this.changed("tools");
       },
     };
-    return new ToolManager(
-      [
-        new OrbitTool(navigator),
-        new PanTool(navigator),
-        new BrushTool("brush", brushHost),
-        new BrushTool("eraser", brushHost),
-        new PolygonTool(outlineHost),
-        new LassoTool(outlineHost),
-        new BucketTool((sample) => this.painting.fillAt(sample)),
-        new PickTool((sample) => this.pointer.take(sample)),
-        new LineTool(lineHost),
-        new PointTool((sample) => this.marks.setPoint(sample)),
-        new MeasureTool(measureHost),
-        new FaceTool(faceHost),
-        new CommentTool({ ...navigator, tap: comment }, () => ({
-          x: this.view.camera.width / 2,
-          y: this.view.camera.height / 2,
-        })),
-      ],
-      "orbit",
-      () => this.targetChanged("tools"),
-    );
+    const tools: Readonly<Record<ToolName, Tool>> = {
+      orbit: new OrbitTool(navigator),
+      pan: new PanTool(navigator),
+      brush: new BrushTool("brush", brushHost),
+      eraser: new BrushTool("eraser", brushHost),
+      polygon: new PolygonTool(outlineHost),
+      lasso: new LassoTool(outlineHost),
+      bucket: new BucketTool((sample) => this.painting.fillAt(sample)),
+      pick: new PickTool((sample) => this.pointer.take(sample)),
+      line: new LineTool(lineHost),
+      point: new PointTool((sample) => this.marks.setPoint(sample)),
+      measure: new MeasureTool(measureHost),
+      face: new FaceTool(faceHost),
+      comment: new CommentTool({ ...navigator, tap: comment }, () => ({
+        x: this.view.camera.width / 2,
+        y: this.view.camera.height / 2,
+      })),
+    };
+    return new ToolManager(Object.values(tools), "orbit", () => this.targetChanged("tools"));
   }
 
   // ── life
