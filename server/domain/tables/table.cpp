@@ -15,6 +15,9 @@ namespace {
 constexpr std::array<std::string_view, 15> kKindNames = {
     "text", "integer", "numeric",  "boolean", "date",     "timestamp", "period", "enumeration",
     "url",  "term",    "relation", "picture", "document", "line",      "point"};
+static_assert(kKindNames.size() == static_cast<std::size_t>(ColumnKind::point) + 1 &&
+                  !kKindNames.back().empty(),
+              "each kind has its name, in the order of ColumnKind");
 
 bool is_number(ColumnKind kind) {
   return kind == ColumnKind::integer || kind == ColumnKind::numeric;

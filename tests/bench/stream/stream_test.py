@@ -82,7 +82,7 @@ def main():
             assert len(row["runs"]) == 1, row
             check_run(row, row["runs"][0])
         drawn = subprocess.run(
-            [sys.executable, HERE / "draw_stream.py", result, folder],
+            [sys.executable, HERE.parent / "draw_stream.py", result, folder],
             check=True,
             capture_output=True,
             text=True,

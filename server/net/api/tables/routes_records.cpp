@@ -189,25 +189,29 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
         "The values by which this page ends are too long for an address; sort by fewer columns.",
         "sortby");
   Response response;
-  if (format == SheetFormat::xlsx) {
-    auto book = STRATA_TRY(records_book(context, records, measures, words));
-    response = std::move(book);
-  } else if (format == SheetFormat::csv) {
-    std::vector<std::vector<double>> values;
-    for (const Record& record : records.records) values.push_back(measures.of(record));
-    response =
-        text_response(app::records_csv(records.records, records.table.columns,
-                                       {measures.names(), std::move(values)}, separator, words),
-                      kCsvType);
-    name_download(response, place.table.slug + ".csv");
-  } else {
-    nlohmann::json list = nlohmann::json::array();
-    for (const Record& record : records.records) {
-      nlohmann::json json = to_json(record, records.table.columns);
-      app::add_measures(json, measures.names(), measures.of(record));
-      list.push_back(std::move(json));
+  switch (format) {
+    case SheetFormat::xlsx:
+      response = STRATA_TRY(records_book(context, records, measures, words));
+      break;
+    case SheetFormat::csv: {
+      std::vector<std::vector<double>> values;
+      for (const Record& record : records.records) values.push_back(measures.of(record));
+      response =
+          text_response(app::records_csv(records.records, records.table.columns,
+                                         {measures.names(), std::move(values)}, separator, words),
+                        kCsvType);
+      name_download(response, place.table.slug + ".csv");
+      break;
     }
-    response = json_response({{"records", std::move(list)}, {"total", records.total}});
+    case SheetFormat::json: {
+      nlohmann::json list = nlohmann::json::array();
+      for (const Record& record : records.records) {
+        nlohmann::json json = to_json(record, records.table.columns);
+        app::add_measures(json, measures.names(), measures.of(record));
+        list.push_back(std::move(json));
+      }
+      response = json_response({{"records", std::move(list)}, {"total", records.total}});
+    }
   }
   if (!whole) add_page_links(response, request, page, records.last);
   response.with("Strata-Sequence", std::to_string(records.table.sequence)).with("Vary", "Accept");

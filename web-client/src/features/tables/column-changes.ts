@@ -18,22 +18,6 @@ export interface ColumnWanted {
   maximum: number | null;
 }
 
-export const kColumnKinds: readonly ColumnKind[] = [
-  "text",
-  "integer",
-  "numeric",
-  "boolean",
-  "date",
-  "timestamp",
-  "period",
-  "enumeration",
-  "url",
-  "term",
-  "relation",
-  "line",
-  "point",
-];
-
 export const hasLimits = (kind: ColumnKind): boolean => kind === "integer" || kind === "numeric";
 export const hasTarget = (kind: ColumnKind): boolean => kind === "term" || kind === "relation";
 

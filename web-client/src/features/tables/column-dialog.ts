@@ -14,14 +14,7 @@ import type {
   Table,
   Visibility,
 } from "../../core/protocol.gen";
-import {
-  columnChanges,
-  hasLimits,
-  hasTarget,
-  kColumnKinds,
-  ofKind,
-  type ColumnWanted,
-} from "./column-changes";
+import { columnChanges, hasLimits, hasTarget, ofKind, type ColumnWanted } from "./column-changes";
 import "../../ui/dialog";
 import type { StrataDialog } from "../../ui/dialog";
 import "../../ui/labels-field";
@@ -32,6 +25,7 @@ import { texts } from "../../texts";
 import { visibilityChoice } from "../../ui/visibility";
 
 const words = texts.column_dialog;
+const kKinds = Object.keys(words.kinds) as ColumnKind[];
 const kNoLabels = {};
 
 @customElement("strata-column-dialog")
@@ -113,7 +107,7 @@ export class StrataColumnDialog extends LitElement {
       <label class="field">
         <span>${words.kind}</span>
         <select name="kind" @change=${(event: Event) => (this._kind = (event.target as HTMLSelectElement).value as ColumnKind)}>
-          ${kColumnKinds.map((each) => html`<option value=${each} ?selected=${each === kind}>${words.kinds[each]}</option>`)}
+          ${kKinds.map((each) => html`<option value=${each} ?selected=${each === kind}>${words.kinds[each]}</option>`)}
         </select>
       </label>
       ${column && column.kind !== kind ? html`<p class="hint" role="status">${words.retype_hint}</p>` : nothing}
