@@ -88,7 +88,7 @@ TEST(Target, a_query_parameter_given_twice_is_refused) {
 TEST(Respond, only_the_first_answer_counts) {
   std::vector<int> answers;
   {
-    const Respond respond([&](Response response) { answers.push_back(response.status); });
+    const Respond respond([&](const Response& response) { answers.push_back(response.status); });
     respond(empty_response(204));
     respond(Error{ErrorCode::internal, "Too late", "", {}});
   }
@@ -98,7 +98,7 @@ TEST(Respond, only_the_first_answer_counts) {
 TEST(Respond, a_dropped_request_still_gets_an_answer) {
   int status = 0;
   {
-    const Respond respond([&](Response response) { status = response.status; });
+    const Respond respond([&](const Response& response) { status = response.status; });
   }
   EXPECT_EQ(status, 503);
 }
