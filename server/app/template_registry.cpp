@@ -149,8 +149,7 @@ Labels labels_with(const std::string& name, const std::optional<protocol::Labels
   return all;
 }
 
-Result<std::vector<store::NewTable>> new_tables(const protocol::Template& of,
-                                                std::int64_t project_id,
+Result<std::vector<store::NewTable>> new_tables(const protocol::Template& of, ProjectId project_id,
                                                 const std::optional<std::string>& language) {
   std::vector<store::NewTable> tables;
   for (const protocol::TemplateTable& told : of.tables) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ids.h"
 #include "protocol/messages.h"
 #include "store/store.h"
 #include "store/tables/tables.h"
@@ -36,8 +37,7 @@ Labels labels_with(const std::string& name, const std::optional<protocol::Labels
 
 // The template's tables as the store makes them, in a language. Slugs stay what they are in
 // English, so that scripts work in any. Refused: what load() refuses.
-Result<std::vector<store::NewTable>> new_tables(const protocol::Template& of,
-                                                std::int64_t project_id,
+Result<std::vector<store::NewTable>> new_tables(const protocol::Template& of, ProjectId project_id,
                                                 const std::optional<std::string>& language);
 
 }  // namespace strata::app

@@ -30,7 +30,7 @@ Command add_demo(CLI::App& app) {
       return jobs::make_demo(*(*database)->store, progress);
     }();
     if (!model) return report(model.error());
-    auto projects = (*database)->store->projects().find(std::to_string(model->project_id));
+    auto projects = (*database)->store->projects().find(to_string(model->project_id));
     std::cout << to_json(*model, projects ? projects->slug : "").dump(2) << std::endl;
     return 0;
   };

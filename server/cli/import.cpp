@@ -24,7 +24,7 @@ struct ImportOptions {
 Result<std::string> import_locally(store::Store& store, const jobs::ImportRequest& request,
                                    Progress& progress) {
   auto model = STRATA_TRY(jobs::import_model(store, request, progress));
-  auto project = STRATA_TRY(store.projects().find(std::to_string(model.project_id)));
+  auto project = STRATA_TRY(store.projects().find(to_string(model.project_id)));
   return to_json(model, project.slug).dump(2);
 }
 

@@ -14,7 +14,7 @@ namespace {
 struct KioskOptions {
   DataOptions data;
   std::string tour, name, url = "http://127.0.0.1:8080";
-  std::int64_t id = 0;
+  std::int64_t kiosk = 0;
   int days = 0;  // 0: for ever
 };
 
@@ -47,11 +47,11 @@ Result<void> list(store::Store& store, const KioskOptions&) {
 }
 
 Result<void> revoke(store::Store& store, const KioskOptions& options) {
-  return store.kiosks().revoke(options.id);
+  return store.kiosks().revoke(KioskId(options.kiosk));
 }
 
 Result<void> reload(store::Store& store, const KioskOptions& options) {
-  STRATA_TRY(store.kiosks().ask_reload(options.id));
+  STRATA_TRY(store.kiosks().ask_reload(KioskId(options.kiosk)));
   return {};
 }
 
@@ -69,7 +69,7 @@ Command add_kiosk(CLI::App& app) {
   add_subcommand(*parent, options, "list", "All links, and when their screens were seen last");
   const auto add_of_one = [&](const char* name, const char* what) {
     add_subcommand(*parent, options, name, what)
-        ->add_option("id", options->id, "As `list` tells it")
+        ->add_option("id", options->kiosk, "As `list` tells it")
         ->required();
   };
   add_of_one("revoke", "Makes a link worthless");

@@ -20,7 +20,7 @@ using store::TokenKind;
 struct PeopleOptions {
   DataOptions data;
   std::string name, role, project, full_name, user, url = "http://127.0.0.1:8080";
-  std::int64_t id = 0;
+  std::int64_t token = 0;
   int days = 365;
   bool password_stdin = false;
 };
@@ -156,7 +156,7 @@ Result<void> remove_person(store::Store& store, const PeopleOptions&, const stor
 }
 
 // What somebody may do in a project: by their own role, by one there, and by those of their groups.
-Result<Role> role_there(store::Store& store, const store::Person& person, std::int64_t project) {
+Result<Role> role_there(store::Store& store, const store::Person& person, ProjectId project) {
   Role role = person.role;
   const auto members = STRATA_TRY(store.members().of_project(project));
   for (const store::Membership& member : members)
@@ -170,7 +170,7 @@ Result<Role> role_there(store::Store& store, const store::Person& person, std::i
 Result<void> add_token_of(store::Store& store, const PeopleOptions& options) {
   const auto person = STRATA_TRY(store.accounts().find(options.user));
   Role own = person.role, usual = own;
-  std::optional<std::int64_t> only;
+  std::optional<ProjectId> only;
   if (!options.project.empty()) {
     const auto project = STRATA_TRY(store.projects().find(options.project));
     only = project.id;
@@ -205,7 +205,7 @@ Result<void> list_tokens(store::Store& store, const PeopleOptions& options) {
 
 Result<void> revoke_token(store::Store& store, const PeopleOptions& options) {
   const auto person = STRATA_TRY(store.accounts().find(options.user));
-  return store.tokens().revoke(person.name, TokenKind::script, options.id);
+  return store.tokens().revoke(person.name, TokenKind::script, TokenId(options.token));
 }
 
 }  // namespace
@@ -267,7 +267,7 @@ Command add_token(CLI::App& app) {
       ->capture_default_str();
   add_of("list", "Tokens of a person");
   add_of("revoke", "Makes a token worthless")
-      ->add_option("id", options->id, "As `list` tells it")
+      ->add_option("id", options->token, "As `list` tells it")
       ->required();
   return choosing<PeopleOptions>(
       parent, options, {{"add", add_token_of}, {"list", list_tokens}, {"revoke", revoke_token}});

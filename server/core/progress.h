@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/ids.h"
 
 namespace strata {
 
@@ -34,8 +35,8 @@ class Progress {
     return message_;
   }
   // Of the job that reports here, for what is kept of it; 0: no job.
-  std::int64_t job() const { return job_; }
-  void set_job(std::int64_t job) { job_ = job; }  // before the work begins
+  JobId job() const { return job_; }
+  void set_job(JobId job) { job_ = job; }  // before the work begins
 
   void cancel() { cancelled_ = true; }
   bool cancelled() const { return cancelled_; }
@@ -46,7 +47,7 @@ class Progress {
   double fraction_ = 0;
   std::string message_;
   std::atomic<bool> cancelled_{false};
-  std::int64_t job_ = 0;
+  JobId job_ = 0;
 };
 
 inline tl::unexpected<Error> cancelled_problem() {

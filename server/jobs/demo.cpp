@@ -214,7 +214,7 @@ Result<Model> make_demo(store::Store& store, Progress& progress, double detail) 
   }
   progress.begin_stage(0, 1);
   progress.report(1, "Done");
-  return store.models().find(std::to_string(pot.id));
+  return store.models().find(to_string(pot.id));
 }
 
 }  // namespace strata::jobs

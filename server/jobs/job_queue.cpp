@@ -84,10 +84,10 @@ JobStatus status_of(const store::StoredJob& stored) {
   status.message = status.problem ? status.problem->title : "Done";
   if (status.state == JobState::done) status.progress = 1;
   if (stored.result.is_object()) {
-    status.result.emplace(stored.result.value("model", std::int64_t{0}));
-    status.result->layers = stored.result.value("layers", std::vector<std::int64_t>());
+    status.result.emplace(stored.result.value("model", ModelId()));
+    status.result->layers = stored.result.value("layers", std::vector<LayerId>());
     if (stored.result.contains("look"))
-      status.result->image = stored.result["look"].get<std::int64_t>();
+      status.result->image = stored.result["look"].get<SurfaceImageId>();
     status.result->report = stored.result.value("report", nlohmann::json());
   }
   return status;
@@ -153,8 +153,8 @@ Result<JobResult> run(const JobQueue::Work& work, Progress& progress) {
 struct JobQueue::Impl {
   mutable std::mutex mutex;
   std::condition_variable changed;
-  std::map<std::int64_t, Job> jobs;  // by id: in order of asking
-  std::deque<std::int64_t> waiting;
+  std::map<JobId, Job> jobs;  // by id: in order of asking
+  std::deque<JobId> waiting;
   std::size_t coming = 0;  // those that are being kept, before they wait
   // In milliseconds: nobody asks for a thousand jobs a second, second after second.
   std::int64_t last_id = std::chrono::duration_cast<std::chrono::milliseconds>(
@@ -173,7 +173,7 @@ struct JobQueue::Impl {
     }
     for (const store::StoredJob& stored : *earlier) {
       jobs[stored.id].status = status_of(stored);
-      last_id = std::max(last_id, stored.id);
+      last_id = std::max(last_id, stored.id.number());
     }
   }
 
@@ -268,13 +268,12 @@ JobQueue::~JobQueue() {
   impl_->thread.join();
 }
 
-Result<std::int64_t> JobQueue::add(std::int64_t project, Work work, std::string user,
-                                   JobKind kind) {
+Result<JobId> JobQueue::add(ProjectId project, Work work, std::string user, JobKind kind) {
   JobStatus status;
   {
     std::lock_guard lock(impl_->mutex);
     STRATA_TRY(impl_->may_add());
-    status.id = ++impl_->last_id;
+    status.id = JobId(++impl_->last_id);
     ++impl_->coming;
   }
   status.project = project;
@@ -288,7 +287,7 @@ Result<std::int64_t> JobQueue::add(std::int64_t project, Work work, std::string 
   if (impl_->stopping)
     return fail(ErrorCode::unavailable, "Server stops",
                 "The server is stopping and takes no new work.");
-  const std::int64_t id = status.id;
+  const JobId id = status.id;
   Job& job = impl_->jobs[id];
   job.work = std::move(work);
   job.progress->set_job(impl_->store ? id : 0);
@@ -298,7 +297,7 @@ Result<std::int64_t> JobQueue::add(std::int64_t project, Work work, std::string 
   return id;
 }
 
-std::optional<JobStatus> JobQueue::status(std::int64_t id) const {
+std::optional<JobStatus> JobQueue::status(JobId id) const {
   std::lock_guard lock(impl_->mutex);
   const auto found = impl_->jobs.find(id);
   if (found == impl_->jobs.end()) return std::nullopt;
@@ -313,7 +312,7 @@ std::vector<JobStatus> JobQueue::all() const {
   return all;
 }
 
-bool JobQueue::cancel(std::int64_t id) {
+bool JobQueue::cancel(JobId id) {
   std::unique_lock lock(impl_->mutex);
   const auto found = impl_->jobs.find(id);
   if (found == impl_->jobs.end() || is_over(found->second.status.state)) return false;

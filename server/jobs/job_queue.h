@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ids.h"
 #include "core/progress.h"
 #include "core/temporary_file.h"
 
@@ -23,20 +24,20 @@ enum class JobState { queued, running, done, failed, cancelled };
 
 // What a job made.
 struct JobResult {
-  JobResult(std::int64_t the_model)
+  JobResult(ModelId the_model)
       : model(the_model) {}  // NOLINT(google-explicit-constructor): most make only that
-  std::int64_t model = 0;
-  std::vector<std::int64_t> layers;   // new ones on it
-  std::optional<std::int64_t> image;  // a new one on it
+  ModelId model = 0;
+  std::vector<LayerId> layers;          // new ones on it
+  std::optional<SurfaceImageId> image;  // a new one on it
   // what else is to be told, see the schema `TransferReport`; null: nothing
   nlohmann::json report;
   std::shared_ptr<const TemporaryFile> file;
 };
 
 struct JobStatus {
-  std::int64_t id = 0;
-  std::int64_t project = 0;  // whose members may know of it
-  std::string user;          // who started it; empty: the server itself
+  JobId id = 0;
+  ProjectId project = 0;  // whose members may know of it
+  std::string user;       // who started it; empty: the server itself
   JobKind kind = JobKind::import;
   JobState state = JobState::queued;
   double progress = 0;
@@ -58,11 +59,11 @@ class JobQueue {
   ~JobQueue();  // cancels what runs, joins
   using Work = std::function<Result<JobResult>(Progress&)>;
   // Refused (unavailable) when 64 wait, or as the store refuses. Blocks while the store is written.
-  Result<std::int64_t> add(std::int64_t project, Work work, std::string user = {},
-                           JobKind kind = JobKind::import);
-  std::optional<JobStatus> status(std::int64_t id) const;
+  Result<JobId> add(ProjectId project, Work work, std::string user = {},
+                    JobKind kind = JobKind::import);
+  std::optional<JobStatus> status(JobId id) const;
   std::vector<JobStatus> all() const;  // newest first
-  bool cancel(std::int64_t id);
+  bool cancel(JobId id);
 
  private:
   struct Impl;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "core/uuid.h"
 #include "domain/layers/layer.h"
 #include "domain/layers/review.h"
@@ -77,7 +78,7 @@ struct RestoreEdit {  // the whole layer as it was after a sequence
 struct EditRequest {
   Uuid id;  // of the message: a repeat gets the first answer and paints nothing
   Author author;
-  std::int64_t layer_id = 0;
+  LayerId layer_id = 0;
   std::variant<StrokeEdit, FillEdit, PolygonEdit, ImportEdit, ComputeEdit, UndoEdit, RedoEdit,
                RestoreEdit, ReviewEdit>
       edit{};

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "domain/layers/tile_mirror.h"
 
 namespace strata::room {
@@ -20,7 +21,7 @@ using Saved = std::function<void(Result<EditAnswer>)>;
 // anything does (room/pipeline/provisional.h).
 struct DurableState {
   std::int64_t sequence = 0;
-  std::map<std::int64_t, TileMap> provisional;
+  std::map<LayerId, TileMap> provisional;
 };
 
 // The edits of an open model, in one order. Thread-safe; callbacks run on the room's strand.
@@ -35,7 +36,7 @@ class Edits {
   virtual DurableState durable_state() const = 0;
   // Counts all tiles of a layer for the journal's sums (store::Layers::keep_sums). Edits wait
   // meanwhile. Blocks.
-  virtual Result<void> keep_sums(std::int64_t layer_id) = 0;
+  virtual Result<void> keep_sums(LayerId layer_id) = 0;
 };
 
 }  // namespace strata::room

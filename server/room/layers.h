@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "domain/layers/layer.h"
 #include "domain/people/visibility.h"
 #include "domain/tables/table.h"
@@ -33,20 +34,20 @@ class Layers {
   virtual Result<Layer> widen(const Layer& layer, ValueType type,
                               const store::IdempotentResponse<Layer>& answer = {}) = 0;
   // for ever
-  virtual Result<void> erase(std::int64_t id, const store::IdempotentResponse<>& answer = {}) = 0;
+  virtual Result<void> erase(LayerId id, const store::IdempotentResponse<>& answer = {}) = 0;
   // Into the trash, and out of it: who restored layers hear of is one that is made.
-  virtual Result<void> put_in_trash(std::int64_t id, const store::IdempotentResponse<>& answer) = 0;
+  virtual Result<void> put_in_trash(LayerId id, const store::IdempotentResponse<>& answer) = 0;
   virtual Result<store::TrashRestored> restore(
       const store::TrashEntry& entry,
       const store::IdempotentResponse<store::TrashRestored>& answer) = 0;
   // A ComputeEdit of the layer was durable with this sequence, and the tables that its expression
   // reads stood there before it.
-  virtual Result<Layer> mark_computed(std::int64_t id, const std::string& expression,
+  virtual Result<Layer> mark_computed(LayerId id, const std::string& expression,
                                       std::int64_t sequence,
-                                      const std::map<std::int64_t, std::int64_t>& tables) = 0;
+                                      const std::map<TableId, std::int64_t>& tables) = 0;
   // Records of a table have changed: layers that are computed from them are stale, those that take
   // their colours from its terms others.
-  virtual void records_changed(std::int64_t table_id) = 0;
+  virtual void records_changed(TableId table_id) = 0;
   // Whether a formula for a computed layer can be evaluated here. Refused (invalid at `field`) as
   // by bind_for_layer.
   virtual Result<void> check_expression(const Expression& expression, const std::string& field,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "core/uuid.h"
 #include "domain/layers/layer.h"
 #include "domain/layers/review.h"
@@ -21,7 +22,7 @@ class Listener {
  public:
   virtual ~Listener() = default;
   struct Edit {
-    std::int64_t layer_id = 0;
+    LayerId layer_id = 0;
     std::string layer;  // slug
     std::int64_t sequence = 0;
     Uuid id, stroke;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "domain/layers/tile_mirror.h"
 #include "domain/people/role.h"
 #include "domain/scene/camera.h"
@@ -25,7 +26,7 @@ struct PictureRequest {
   ViewSettings shown{};
   At at{};  // of the layers
   // With `at`, by layer: what waited for review then, and is hatched. Without, what waits now is.
-  std::map<std::int64_t, TileMap> provisional{};
+  std::map<LayerId, TileMap> provisional{};
   Role seen_by = Role::owner;  // columns that it does not see neither draw nor colour
 };
 

@@ -49,10 +49,10 @@ class FilteredLayers final : public Layers {
                       const store::IdempotentResponse<Layer>& answer) override {
     return layers_.widen(layer, type, answer);
   }
-  Result<void> erase(std::int64_t id, const store::IdempotentResponse<>& answer) override {
+  Result<void> erase(LayerId id, const store::IdempotentResponse<>& answer) override {
     return layers_.erase(id, answer);
   }
-  Result<void> put_in_trash(std::int64_t id, const store::IdempotentResponse<>& answer) override {
+  Result<void> put_in_trash(LayerId id, const store::IdempotentResponse<>& answer) override {
     return layers_.put_in_trash(id, answer);
   }
   Result<store::TrashRestored> restore(
@@ -60,11 +60,11 @@ class FilteredLayers final : public Layers {
       const store::IdempotentResponse<store::TrashRestored>& answer) override {
     return layers_.restore(entry, answer);
   }
-  Result<Layer> mark_computed(std::int64_t id, const std::string& expression, std::int64_t sequence,
-                              const std::map<std::int64_t, std::int64_t>& tables) override {
+  Result<Layer> mark_computed(LayerId id, const std::string& expression, std::int64_t sequence,
+                              const std::map<TableId, std::int64_t>& tables) override {
     return layers_.mark_computed(id, expression, sequence, tables);
   }
-  void records_changed(std::int64_t table_id) override { layers_.records_changed(table_id); }
+  void records_changed(TableId table_id) override { layers_.records_changed(table_id); }
   Result<void> check_expression(const Expression& expression, const std::string& field,
                                 Visibility layer) const override {
     return layers_.check_expression(expression, field, layer);
@@ -166,7 +166,7 @@ class FilteredPictures final : public Pictures {
       sort_as_shown(in_order, asked.shown);
       for (const Layer& layer : in_order)
         if (asked.shown.of(layer.id).visible.value_or(layer.visible))
-          seen.layers->push_back(std::to_string(layer.id));
+          seen.layers->push_back(to_string(layer.id));
     }
     return pictures_.draw(seen, parts, see);
   }
@@ -203,10 +203,10 @@ class FilteredEdits final : public Edits {
   DurableState durable_state() const override {
     DurableState state = edits_.durable_state();
     std::erase_if(state.provisional,
-                  [&](const auto& entry) { return !layers_.find(std::to_string(entry.first)); });
+                  [&](const auto& entry) { return !layers_.find(to_string(entry.first)); });
     return state;
   }
-  Result<void> keep_sums(std::int64_t layer_id) override { return edits_.keep_sums(layer_id); }
+  Result<void> keep_sums(LayerId layer_id) override { return edits_.keep_sums(layer_id); }
 
  private:
   Edits& edits_;

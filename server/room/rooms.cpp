@@ -87,7 +87,7 @@ struct Rooms::Impl {
   std::shared_ptr<OpenRoom> find(const std::string& ref) {
     std::lock_guard lock(mutex);
     for (auto& [id, room] : rooms)
-      if (is_all_digits(ref) ? std::to_string(id) == ref : room->model().slug == ref) {
+      if (is_all_digits(ref) ? to_string(id) == ref : room->model().slug == ref) {
         room->touch();
         return room;
       }
@@ -160,7 +160,7 @@ struct Rooms::Impl {
     }
     for (auto& room : leaving) {
       room->close(kClosing);
-      log::info("closed model " + std::to_string(room->id()) + ", " + why);
+      log::info("closed model " + to_string(room->id()) + ", " + why);
     }
     return !leaving.empty();
   }
@@ -180,8 +180,8 @@ struct Rooms::Impl {
   const RoomServices services;
   std::mutex mutex;
   std::condition_variable changed;
-  std::map<std::int64_t, std::shared_ptr<OpenRoom>> rooms;
-  std::set<std::int64_t> opening, deleted_meanwhile;
+  std::map<ModelId, std::shared_ptr<OpenRoom>> rooms;
+  std::set<ModelId> opening, deleted_meanwhile;
   std::atomic<int> context_losses{0};
   bool stopping = false;
   bool draining = false;
@@ -215,9 +215,9 @@ Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref
     }
     opening.insert(model.id);
   }
-  auto room = OpenRoom::open(services, std::to_string(model.id));
+  auto room = OpenRoom::open(services, to_string(model.id));
   if (!room && room.error().code == ErrorCode::out_of_memory && close_empty_rooms())
-    room = OpenRoom::open(services, std::to_string(model.id));
+    room = OpenRoom::open(services, to_string(model.id));
   std::unique_lock lock(mutex);
   opening.erase(model.id);
   changed.notify_all();
@@ -234,11 +234,11 @@ Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref
   return room;
 }
 
-void Rooms::records_changed(std::int64_t table_id) {
+void Rooms::records_changed(TableId table_id) {
   for (const auto& room : impl_->open_ones()) room->layers().records_changed(table_id);
 }
 
-Result<void> Rooms::retire_key(std::int64_t table_id, std::int64_t key) {
+Result<void> Rooms::retire_key(TableId table_id, std::int64_t key) {
   impl_->retired_keys.retire(table_id, key);
   for (const auto& room : impl_->open_ones()) {
     const auto layers = room->layers().all();
@@ -257,11 +257,11 @@ Result<void> Rooms::settle() {
   return {};
 }
 
-void Rooms::admit_keys(std::int64_t table_id, std::span<const std::int64_t> keys) {
+void Rooms::admit_keys(TableId table_id, std::span<const std::int64_t> keys) {
   impl_->retired_keys.admit(table_id, keys);
 }
 
-void Rooms::forget(std::int64_t model_id) {
+void Rooms::forget(ModelId model_id) {
   std::shared_ptr<OpenRoom> room;
   {
     std::lock_guard lock(impl_->mutex);
@@ -295,7 +295,7 @@ void Rooms::drain() {
     while (!room->has_no_edits() && std::chrono::steady_clock::now() < deadline)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     if (room->has_no_edits()) continue;
-    log::error("model " + std::to_string(room->id()) +
+    log::error("model " + to_string(room->id()) +
                ": edits still wait and are refused, since the server stops");
     room->close(kStopping);
   }

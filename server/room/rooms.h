@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "domain/people/role.h"
 
 namespace strata {
@@ -49,17 +50,17 @@ class Rooms {
   // server itself sees all, as its owner.
   Result<std::shared_ptr<Room>> open(const std::string& model_ref, Role seen_by);
   // in the models that are open (Room::records_changed)
-  void records_changed(std::int64_t table_id);
+  void records_changed(TableId table_id);
   // From now on edits that would paint the key of the table are refused (conflict). Those that were
   // let in are durable when it returns; of an Error this is not known, and the key is retired all
   // the same. Blocks.
-  Result<void> retire_key(std::int64_t table_id, std::int64_t key);
+  Result<void> retire_key(TableId table_id, std::int64_t key);
   // Returns when every edit that was let in is durable. Of an Error this is not known, and to ask
   // again is right. Blocks.
   Result<void> settle();
   // they have records again
-  void admit_keys(std::int64_t table_id, std::span<const std::int64_t> keys);
-  void forget(std::int64_t model_id);  // the model was deleted: members are told, the room closes
+  void admit_keys(TableId table_id, std::span<const std::int64_t> keys);
+  void forget(ModelId model_id);  // the model was deleted: members are told, the room closes
   std::size_t open_rooms() const;
   std::uint64_t memory_bytes_used() const;
   // of what open models, and pictures on their way to one, hold; thread-safe

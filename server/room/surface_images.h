@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "domain/scene/surface_image.h"
 #include "store/content/idempotent_response.h"
 
@@ -23,7 +24,7 @@ class SurfaceImages {
       const store::IdempotentResponse<SurfaceImage>& answer = {}) = 0;
   virtual Result<SurfaceImage> update(
       const SurfaceImage& image, const store::IdempotentResponse<SurfaceImage>& answer = {}) = 0;
-  virtual Result<void> erase(std::int64_t id, const store::IdempotentResponse<>& answer = {}) = 0;
+  virtual Result<void> erase(SurfaceImageId id, const store::IdempotentResponse<>& answer = {}) = 0;
 };
 
 }  // namespace strata::room

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/ids.h"
 #include "domain/layers/layer.h"
 #include "domain/layers/palette.h"
 #include "domain/scene/background.h"
@@ -24,7 +25,7 @@ struct Highlight {
 
 // Layers as one person sees them; what is not set follows the layer's default.
 struct LayerView {
-  std::int64_t layer_id = 0;
+  LayerId layer_id = 0;
   std::optional<bool> visible;
   std::optional<double> opacity;
   std::optional<Palette> palette;
@@ -33,7 +34,7 @@ struct LayerView {
 };
 
 struct SurfaceImageView {
-  std::int64_t surface_image_id = 0;
+  SurfaceImageId surface_image_id = 0;
   double opacity = 1;
 };
 
@@ -46,7 +47,7 @@ struct ViewSettings {
   Background background{};
 
   // What it says of a layer; of one that it does not name, nothing.
-  const LayerView& of(std::int64_t layer_id) const {
+  const LayerView& of(LayerId layer_id) const {
     static const LayerView kNothing;
     const auto last = std::find_if(layers.rbegin(), layers.rend(),
                                    [&](const auto& own) { return own.layer_id == layer_id; });
@@ -74,7 +75,7 @@ void sort_as_shown(Layers& layers, const Of& of) {
 }
 template <class Layers>
 void sort_as_shown(Layers& layers, const ViewSettings& shown) {
-  sort_as_shown(layers, [&](std::int64_t id) { return &shown.of(id); });
+  sort_as_shown(layers, [&](LayerId id) { return &shown.of(id); });
 }
 
 }  // namespace strata::room

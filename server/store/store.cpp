@@ -97,7 +97,7 @@ Result<void> check_json(const nlohmann::json& json, const std::string& field) {
   return {};
 }
 
-std::optional<std::int64_t> id_of(const std::string& ref) {
+std::optional<std::int64_t> number_of(const std::string& ref) {
   if (!is_all_digits(ref)) return std::nullopt;
   return ref.size() > 18 ? 0 : std::stoll(ref);
 }

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <mutex>
 
+#include "core/ids.h"
 #include "core/no_such.h"
 #include "core/text/slug.h"
 #include "store/content/answers.h"
@@ -35,7 +36,7 @@ Result<void> insert_answer(PgConnection& connection, const std::string& key,
                            const nlohmann::json& answer);
 
 // In the transaction at hand: the job ended well, with that as its result.
-Result<void> finish_job(PgConnection& connection, std::int64_t job, nlohmann::json result);
+Result<void> finish_job(PgConnection& connection, JobId job, nlohmann::json result);
 
 // In the transaction at hand: what it changes is told as this person's doing
 // (db/migrations/000018_activity.sql). Empty: as nobody's.
@@ -57,9 +58,9 @@ Result<void> rename_in_journal(PgConnection& connection, const std::string& name
 
 // In the transaction at hand: what is said of them holds until it is written.
 Result<Person> lock_person(PgConnection& connection, const std::string& name);
-Result<void> lock_project(PgConnection& connection, std::int64_t id);  // against its being deleted
-Result<void> join_groups(PgConnection& connection, std::int64_t person_id,
-                         const std::vector<std::int64_t>& groups);
+Result<void> lock_project(PgConnection& connection, ProjectId id);  // against its being deleted
+Result<void> join_groups(PgConnection& connection, PersonId person_id,
+                         const std::vector<GroupId>& groups);
 
 Result<void> check_project_role(Role role);  // invalid: not one that is given in projects
 
@@ -132,8 +133,8 @@ struct Store::Impl {
 
 // With all that hangs on it, in the transaction at hand, in the Trash or not
 // (store/content/bin.cpp).
-Result<void> erase_layer(PgConnection& connection, std::int64_t id);
-Result<void> erase_model(PgConnection& connection, std::int64_t id);
+Result<void> erase_layer(PgConnection& connection, LayerId id);
+Result<void> erase_model(PgConnection& connection, ModelId id);
 
 // Of what the role sees, for `= any($n)`.
 PgArray visibilities_seen_by(Role role);
@@ -155,7 +156,12 @@ Result<void> check_json(const nlohmann::json& json, const std::string& field);
 
 // An id for a reference in digits; nothing for a slug, and 0 (no row has it) for digits beyond 64
 // bits.
-std::optional<std::int64_t> id_of(const std::string& ref);
+std::optional<std::int64_t> number_of(const std::string& ref);
+template <class Id>
+std::optional<Id> id_of(const std::string& ref) {
+  const auto number = number_of(ref);
+  return number ? std::optional(Id(*number)) : std::nullopt;
+}
 
 // `wished`, or `wished-2`, `wished-3`… that `taken` (one text column) does not list.
 std::string free_slug(const std::string& wished, const PgResult& taken);

@@ -160,7 +160,7 @@ class Queries {
     state.choices = {"loose", "firm"};
     const Layer made = layers_["parts"] =
         must(room_->layers().create(layer, {}, {thickness, state}));
-    const Table table = must(site_.store->tables().find(std::to_string(*made.table), Role::owner));
+    const Table table = must(site_.store->tables().find(to_string(*made.table), Role::owner));
     store::WriteRecords records;
     for (int i = 0; i < kParts; ++i)
       records.records.push_back({{},

@@ -4,6 +4,7 @@
 #include <map>
 #include <random>
 
+#include "core/ids.h"
 #include "domain/layers/revision.h"
 #include "store/content/layers.h"
 #include "store/content/models.h"
@@ -20,7 +21,7 @@ inline Model make_model(store::Store& store, const std::string& name = "pot") {
   return store.models().create(fresh, {}).value();
 }
 
-inline Layer make_layer(store::Store& store, std::int64_t model_id, ValueType type = ValueType::u8,
+inline Layer make_layer(store::Store& store, ModelId model_id, ValueType type = ValueType::u8,
                         const std::string& name = "layer") {
   Layer layer;
   layer.model_id = model_id;

@@ -46,7 +46,7 @@ bool names_unseen_column(const Expression& e, const std::map<std::string, Table>
 Result<void> check_shows_nothing(store::Store& store, const Layer& layer,
                                  const std::vector<Layer>& others) {
   if (layer.table && !layer.palette.column.empty()) {
-    const auto table = STRATA_TRY(store.tables().find(std::to_string(*layer.table), Role::owner));
+    const auto table = STRATA_TRY(store.tables().find(to_string(*layer.table), Role::owner));
     const Column* column = find_column(table.columns, layer.palette.column);
     if (column && column->visibility > layer.visibility)
       return fail(
@@ -67,7 +67,7 @@ Result<void> check_shows_nothing(store::Store& store, const Layer& layer,
 Result<void> check_shows_nothing(store::Store& store, const Table& table, const Column& column,
                                  Visibility visibility) {
   const auto layers = STRATA_TRY(store.layers().of_table(table.id, Role::owner));
-  std::map<std::int64_t, std::set<std::string>> by_model;  // slugs
+  std::map<ModelId, std::set<std::string>> by_model;  // slugs
   for (const Layer& layer : layers) {
     by_model[layer.model_id].insert(layer.slug);
     if (layer.visibility < visibility &&
@@ -85,7 +85,7 @@ Result<void> check_shows_nothing(store::Store& store, const Table& table, const 
   return {};
 }
 
-Result<bool> sees_all_of(store::Store& store, Role role, std::int64_t model_id,
+Result<bool> sees_all_of(store::Store& store, Role role, ModelId model_id,
                          const std::string& text) {
   if (sees(role, Visibility::curators)) return true;
   const auto expression = parse_formula(text);
@@ -97,7 +97,7 @@ Result<bool> sees_all_of(store::Store& store, Role role, std::int64_t model_id,
     if (std::ranges::find(named, layer.slug) == named.end()) continue;
     if (!sees(role, layer.visibility)) return false;
     if (!layer.table) continue;
-    auto table = STRATA_TRY(store.tables().find(std::to_string(*layer.table), Role::owner));
+    auto table = STRATA_TRY(store.tables().find(to_string(*layer.table), Role::owner));
     seen.emplace(layer.slug, seen_by(table, role));
     all.emplace(layer.slug, std::move(table));
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/ids.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
 #include "domain/people/visibility.h"
@@ -22,7 +23,7 @@ Result<void> check_shows_nothing(store::Store& store, const Table& table, const 
                                  Visibility visibility);
 
 // Whether the formula names nothing that the role does not see, of what is on the model now.
-Result<bool> sees_all_of(store::Store& store, Role role, std::int64_t model_id,
+Result<bool> sees_all_of(store::Store& store, Role role, ModelId model_id,
                          const std::string& expression);
 
 }  // namespace strata::app

@@ -7,7 +7,7 @@
 
 namespace strata::app {
 
-Result<RecordNames> record_names(store::Store& store, std::int64_t table_id, Role seen_by,
+Result<RecordNames> record_names(store::Store& store, TableId table_id, Role seen_by,
                                  std::vector<std::int64_t> keys, std::optional<std::int64_t> at,
                                  const std::string& language) {
   store::RecordQuery query;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ids.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
 #include "query/statistics/quantities.h"
@@ -19,7 +20,7 @@ using RecordNames = std::map<std::int64_t, std::string>;
 
 // Names of records as `seen_by` reads them, after an edit of the table where `at` names one; terms
 // by their labels in `language`.
-Result<RecordNames> record_names(store::Store& store, std::int64_t table_id, Role seen_by,
+Result<RecordNames> record_names(store::Store& store, TableId table_id, Role seen_by,
                                  std::vector<std::int64_t> keys, std::optional<std::int64_t> at,
                                  const std::string& language);
 

@@ -112,7 +112,7 @@ Result<std::vector<figure::Legend>> legends_of(store::Store& store, const Figure
   std::vector<std::string> refs;
   std::vector<query::LayerCover> covers;
   for (const Layer& layer : request.layers) {
-    refs.push_back(std::to_string(layer.id));
+    refs.push_back(to_string(layer.id));
     covers.push_back(cover_of(request, layer));
   }
   std::vector<figure::Legend> legends;
@@ -140,7 +140,7 @@ Result<std::vector<figure::Legend>> legends_of(store::Store& store, const Figure
           {request.waiting_label, waiting.color, waiting.pattern, waiting.angle, true});
     }
     if (palette.column.empty() || !layer.table) continue;
-    const auto table = store.tables().find(std::to_string(*layer.table), request.role);
+    const auto table = store.tables().find(to_string(*layer.table), request.role);
     const Column* column = table ? find_column(table->columns, palette.column) : nullptr;
     if (column)
       legends.back().title = label_or(layer.labels, request.language, layer.name) + ": " +

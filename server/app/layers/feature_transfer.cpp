@@ -16,7 +16,7 @@
 namespace strata::app {
 namespace {
 
-Result<FeatureTransfer> bring_features_of(const Services& services, std::int64_t table_id,
+Result<FeatureTransfer> bring_features_of(const Services& services, TableId table_id,
                                           const jobs::TransferTarget& target,
                                           const jobs::TransferRequest& request,
                                           const std::string& user) {
@@ -66,11 +66,11 @@ Result<FeatureTransfer> bring_features_of(const Services& services, std::int64_t
 Result<FeatureTransfer> bring_features(const Services& services, const jobs::TransferTarget& target,
                                        const jobs::TransferRequest& request,
                                        const std::string& user) {
-  std::set<std::int64_t> tables;
+  std::set<TableId> tables;
   for (const Layer& layer : request.layers)
     if (layer.table) tables.insert(*layer.table);
   FeatureTransfer all;
-  for (const std::int64_t table : tables) {
+  for (const TableId table : tables) {
     const auto brought = STRATA_TRY(bring_features_of(services, table, target, request, user));
     all.features += brought.features;
     all.lost_features += brought.lost_features;

@@ -98,7 +98,7 @@ Result<Expression> parse_formula(const std::string& text) {
 }
 
 Result<LayerFormula> read_formula(const room::Room& room, const std::string& text, bool automatic,
-                                  Visibility visibility, std::optional<std::int64_t> self) {
+                                  Visibility visibility, std::optional<LayerId> self) {
   const auto expression = STRATA_TRY(parse_formula(text));
   const std::vector<Layer> layers = room.layers().all();
   const auto shapes = room::shapes_read(expression, views_of(layers));

@@ -7,6 +7,7 @@
 
 #include "app/layers/new_layers.h"
 #include "app/services.h"
+#include "core/ids.h"
 #include "core/progress.h"
 #include "expression/expression.h"
 #include "room/room.h"
@@ -23,7 +24,7 @@ Result<Expression> parse_formula(const std::string& text);
 // which must see all that it reads. Refused (422 at `expression`, with the character): what cannot
 // be read, or names nothing.
 Result<LayerFormula> read_formula(const room::Room& room, const std::string& text, bool automatic,
-                                  Visibility visibility, std::optional<std::int64_t> self = {});
+                                  Visibility visibility, std::optional<LayerId> self = {});
 
 // Computes the layer's content anew, as one edit of the author, and tells who looks. `overwrites`:
 // also where it was edited by hand since (409 without). Returns it as it is then. The normals, the

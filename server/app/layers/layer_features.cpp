@@ -38,8 +38,7 @@ Result<Records> read_records(store::Store& store, const FeatureRequest& request,
     if (!then) return tl::unexpected(then.error());
     query.at = *then;
   }
-  const auto table =
-      STRATA_TRY(store.tables().find(std::to_string(*request.layer.table), request.role));
+  const auto table = STRATA_TRY(store.tables().find(to_string(*request.layer.table), request.role));
   // Records that are painted nowhere may have lines and points.
   const auto is_feature = [](const Column& column) { return holds_features(column.kind); };
   if (std::ranges::none_of(table.columns, is_feature)) query.keys = std::move(painted);

@@ -43,7 +43,7 @@ Result<void> NewLayers::show(const store::IdempotentResponse<Layer>& answer) {
   for (std::size_t i = 0; i < made_.size(); ++i) {
     const bool is_last = i + 1 == made_.size();
     for (int tries = 0;; ++tries) {
-      auto now = STRATA_TRY(room_->layers().find(std::to_string(made_[i].layer.id)));
+      auto now = STRATA_TRY(room_->layers().find(to_string(made_[i].layer.id)));
       now.visible = made_[i].visible;
       auto shown = room_->layers().update(now, is_last ? last : store::IdempotentResponse<Layer>{});
       if (shown) break;
@@ -59,7 +59,7 @@ void NewLayers::take_back() {
   for (const Made& made : made_)
     if (auto gone = room_->layers().erase(made.layer.id);
         !gone && gone.error().code != ErrorCode::not_found && gone.error().code != ErrorCode::gone)
-      log::warning("layer " + std::to_string(made.layer.id) +
+      log::warning("layer " + to_string(made.layer.id) +
                    " of work that failed could not be removed: " + gone.error().detail);
   made_.clear();
 }
@@ -70,8 +70,8 @@ int order_on_top(const std::vector<Layer>& others) {
   return top + 1;
 }
 
-std::vector<std::int64_t> NewLayers::ids() const {
-  std::vector<std::int64_t> ids;
+std::vector<LayerId> NewLayers::ids() const {
+  std::vector<LayerId> ids;
   for (const Made& made : made_) ids.push_back(made.layer.id);
   return ids;
 }

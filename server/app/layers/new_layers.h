@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/edits.h"
+#include "core/ids.h"
 #include "domain/layers/tile_mirror.h"
 #include "store/content/idempotent_response.h"
 
@@ -26,7 +27,7 @@ class NewLayers {
   Result<void> show(const store::IdempotentResponse<Layer>& answer);
   void take_back();  // all that were added
 
-  std::vector<std::int64_t> ids() const;
+  std::vector<LayerId> ids() const;
 
  private:
   Result<Layer> paint(const Layer& created, TileMap tiles, nlohmann::json recipe);

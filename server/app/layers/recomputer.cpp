@@ -68,7 +68,7 @@ void Recomputer::run() {
   }
 }
 
-bool Recomputer::is_quiet(const room::Room& room, std::int64_t layer_id) {
+bool Recomputer::is_quiet(const room::Room& room, LayerId layer_id) {
   Wait& wait = waits_[layer_id];
   const std::int64_t sequence = room.edits().sequence();
   if (wait.sequence != sequence && ++wait.checks < kMaxChecks) {
@@ -85,7 +85,7 @@ void Recomputer::attempt(
   const auto now = std::chrono::steady_clock::now();
   const auto failed = failures_.find(layer.id);
   if (failed != failures_.end() && now < failed->second.again) return;
-  auto room = services_.rooms.open(std::to_string(layer.model_id), kAuthor.role);
+  auto room = services_.rooms.open(to_string(layer.model_id), kAuthor.role);
   if (room && !is_quiet(**room, layer.id)) return;
   const Result<void> done = room ? work(*room) : tl::unexpected(room.error());
   if (done) {
@@ -96,7 +96,7 @@ void Recomputer::attempt(
       failed == failures_.end() ? kFirstPause : std::min(kMaxPause, 2 * failed->second.pause);
   failures_[layer.id] = {now + pause, pause};
   if (failed == failures_.end() && !is_stopping())
-    log::warning("layer " + std::to_string(layer.id) + " could not be " + what + ": " +
+    log::warning("layer " + to_string(layer.id) + " could not be " + what + ": " +
                  done.error().detail);
 }
 

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "app/services.h"
+#include "core/ids.h"
 #include "core/progress.h"
 #include "domain/layers/layer.h"
 #include "room/room.h"
@@ -35,7 +36,7 @@ class Recomputer {
     int checks = 0;
   };
   void run();
-  bool is_quiet(const room::Room& room, std::int64_t layer_id);
+  bool is_quiet(const room::Room& room, LayerId layer_id);
   // `work` opens the room and does what is behind; what fails is told once.
   void attempt(const Layer& layer, const char* what,
                const std::function<Result<void>(const std::shared_ptr<room::Room>&)>& work);
@@ -43,8 +44,8 @@ class Recomputer {
   bool is_stopping();
 
   const Services services_;
-  std::map<std::int64_t, Failure> failures_;  // by layer
-  std::map<std::int64_t, Wait> waits_;        // the same
+  std::map<LayerId, Failure> failures_;  // by layer
+  std::map<LayerId, Wait> waits_;        // the same
   Progress progress_;
   std::mutex mutex_;
   std::condition_variable wake_;

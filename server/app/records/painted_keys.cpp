@@ -34,13 +34,13 @@ std::string area_text(double area_m2) {
 
 }  // namespace
 
-Result<std::vector<PaintedLayer>> painted_layers(const Services& services, std::int64_t table_id,
+Result<std::vector<PaintedLayer>> painted_layers(const Services& services, TableId table_id,
                                                  Role seen_by) {
   auto layers = STRATA_TRY(services.store.layers().of_table(table_id, seen_by));
   std::vector<PaintedLayer> painted;
   for (Layer& layer : layers) {
     if (layer.sequence == 0) continue;  // nothing was ever painted there
-    auto room = STRATA_TRY(services.rooms.open(std::to_string(layer.model_id), seen_by));
+    auto room = STRATA_TRY(services.rooms.open(to_string(layer.model_id), seen_by));
     auto areas = room->queries().key_areas(layer.slug);
     if (!areas && areas.error().code == ErrorCode::not_found) continue;  // deleted meanwhile
     if (!areas) return tl::unexpected(areas.error());
@@ -110,7 +110,7 @@ Result<void> records_from_legend(const Services& services, const Layer& layer,
                                  const std::vector<std::int64_t>& keys, const Author& author) {
   if (keys.empty() || !layer.table || !lists_values(layer.palette)) return {};
   const auto missing = STRATA_TRY(services.store.records().missing(*layer.table, keys));
-  auto table = STRATA_TRY(services.store.tables().find(std::to_string(*layer.table), author.role));
+  auto table = STRATA_TRY(services.store.tables().find(to_string(*layer.table), author.role));
   const auto text =
       std::find_if(table.columns.begin(), table.columns.end(),
                    [](const Column& column) { return column.kind == ColumnKind::text; });

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/services.h"
+#include "core/ids.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
 #include "query/statistics/key_areas.h"
@@ -22,7 +23,7 @@ struct PaintedLayer {
 };
 // The layers of the table that the role sees. On the others keys may stay behind whose records are
 // gone, as after an undo: who deletes a record hears nothing of them, and changes nothing there.
-Result<std::vector<PaintedLayer>> painted_layers(const Services& services, std::int64_t table_id,
+Result<std::vector<PaintedLayer>> painted_layers(const Services& services, TableId table_id,
                                                  Role seen_by);
 
 // Those where one of the keys is painted, as they are named to a person: "12.5 cm² on Units of

@@ -55,7 +55,7 @@ Result<std::vector<Head>> read_heads(const CsvRow& row, const Table& table) {
                   table.name + " has no column \"" + head.text +
                       "\". The first row names columns by slug, name or label, and `key`.",
                   "body");
-    if (!met.insert(head.column ? std::to_string(head.column->id) : head.text).second)
+    if (!met.insert(head.column ? to_string(head.column->id) : head.text).second)
       return fail(ErrorCode::invalid, "Column named twice",
                   "\"" + head.text + "\" stands twice in the first row.", "body");
     heads.push_back(std::move(head));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/records/record_words.h"
+#include "core/ids.h"
 #include "domain/tables/table.h"
 #include "store/tables/table_changes.h"
 
@@ -39,8 +40,8 @@ struct RowMistake {
 
 struct RecordRows {
   std::vector<store::RecordInput> records;
-  std::vector<int> lines;                     // of each record
-  std::map<std::int64_t, std::string> heads;  // what the first row calls the columns, by id
+  std::vector<int> lines;                 // of each record
+  std::map<ColumnId, std::string> heads;  // what the first row calls the columns, by id
   // the first hundred; those rows are not among the records
   std::vector<RowMistake> mistakes;
   std::size_t rows = 0;

@@ -6,6 +6,7 @@
 
 #include "app/records/record_place.h"
 #include "app/services.h"
+#include "core/ids.h"
 #include "query/statistics/key_areas.h"
 
 namespace strata::app {
@@ -31,7 +32,7 @@ class RecordMeasures {
   bool has_area_ = false;
   std::map<std::int64_t, query::KeyArea> areas_;
   std::vector<Column> lines_, points_;
-  std::map<std::int64_t, double> metres_;  // of the unit of each model whose marks count
+  std::map<ModelId, double> metres_;  // of the unit of each model whose marks count
 };
 
 // Each under its name: numbers, counts as whole ones.

@@ -54,7 +54,7 @@ void RecordWords::add(std::int64_t key, const std::string& word) {
   if (!is_new && known->second != key) known->second.reset();
 }
 
-Result<RecordWords> RecordWords::load(store::Store& store, std::int64_t table_id, Role seen_by,
+Result<RecordWords> RecordWords::load(store::Store& store, TableId table_id, Role seen_by,
                                       const std::string& language) {
   store::RecordQuery all;
   all.limit = store::kMaxRecords;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "core/ids.h"
 #include "domain/people/role.h"
 #include "domain/tables/table.h"
 #include "store/store.h"
@@ -18,7 +19,7 @@ class RecordWords {
  public:
   // `language`: of terms, the one whose labels are said ("es-mx"); those of all languages are
   // understood. Blocks.
-  static Result<RecordWords> load(store::Store& store, std::int64_t table_id, Role seen_by,
+  static Result<RecordWords> load(store::Store& store, TableId table_id, Role seen_by,
                                   const std::string& language);
 
   // Its label or title where that means no other record, then its code, then its key. Of a record
@@ -41,7 +42,7 @@ class RecordWords {
 
 // The words of all tables that the columns of kind `term` name, by table; one table may be named by
 // several.
-using WordsOfTables = std::map<std::int64_t, RecordWords>;
+using WordsOfTables = std::map<TableId, RecordWords>;
 Result<WordsOfTables> words_of(store::Store& store, const std::vector<Column>& columns,
                                Role seen_by, const std::string& language);
 

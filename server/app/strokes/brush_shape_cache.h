@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 
+#include "core/ids.h"
 #include "media/shape_texture.h"
 #include "store/store.h"
 
@@ -12,7 +13,7 @@ namespace strata::app {
 
 // A tool of the site, ready to paint with.
 struct FoundTool {
-  std::int64_t id = 0;
+  ToolId id = 0;
   std::shared_ptr<const ShapeTexture> shape;
 };
 // by id or slug; may block
@@ -30,7 +31,7 @@ class BrushShapeCache {
 
   store::Store& store_;
   std::mutex mutex_;
-  std::map<std::int64_t, std::shared_ptr<const ShapeTexture>> ready_;
+  std::map<ToolId, std::shared_ptr<const ShapeTexture>> ready_;
 };
 
 }  // namespace strata::app

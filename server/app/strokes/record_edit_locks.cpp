@@ -4,7 +4,7 @@
 
 namespace strata::app {
 
-Result<void> RecordEditLocks::begin(std::int64_t project_id, const Record& record,
+Result<void> RecordEditLocks::begin(ProjectId project_id, const Record& record,
                                     const Editor& editor, bool take_over, const Tell& tell) {
   std::lock_guard lock(mutex_);
   const auto found = held_.find(record);
@@ -27,14 +27,14 @@ void RecordEditLocks::end(const Record& record, const Uuid& session, const Tell&
   std::lock_guard lock(mutex_);
   const auto found = held_.find(record);
   if (found == held_.end() || found->second.editor.session != session) return;
-  const std::int64_t project_id = found->second.project_id;
+  const ProjectId project_id = found->second.project_id;
   held_.erase(found);
   tell(project_id, {{record, std::nullopt}});
 }
 
 void RecordEditLocks::leave(const Uuid& session, const Tell& tell) {
   std::lock_guard lock(mutex_);
-  std::map<std::int64_t, std::vector<Entry>> gone;  // by project
+  std::map<ProjectId, std::vector<Entry>> gone;  // by project
   std::erase_if(held_, [&](const auto& entry) {
     const bool own = entry.second.editor.session == session;
     if (own) gone[entry.second.project_id].push_back({entry.first, std::nullopt});
@@ -43,7 +43,7 @@ void RecordEditLocks::leave(const Uuid& session, const Tell& tell) {
   for (const auto& [project_id, entries] : gone) tell(project_id, entries);
 }
 
-void RecordEditLocks::list(std::int64_t project_id, const Tell& tell) const {
+void RecordEditLocks::list(ProjectId project_id, const Tell& tell) const {
   std::lock_guard lock(mutex_);
   std::vector<Entry> entries;
   for (const auto& [record, held] : held_)

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "core/uuid.h"
 
 namespace strata::app {
@@ -22,7 +23,8 @@ class RecordEditLocks {
   static constexpr std::size_t kMaxOfSession = 100;  // records
 
   struct Record {
-    std::int64_t table = 0, key = 0;
+    TableId table = 0;
+    std::int64_t key = 0;
     auto operator<=>(const Record&) const = default;
   };
   struct Editor {
@@ -35,21 +37,21 @@ class RecordEditLocks {
   };
   // Hears what changed, or what there is, of a project. Called with the book locked, so that all
   // hear it in one order: it must return at once and not call the book.
-  using Tell = std::function<void(std::int64_t project_id, const std::vector<Entry>& entries)>;
+  using Tell = std::function<void(ProjectId project_id, const std::vector<Entry>& entries)>;
 
   // The editor has the record now, unless somebody else has it and is not to be relieved: then
   // nothing changes. Refused (422, `key`): more than `kMaxOfSession`.
-  Result<void> begin(std::int64_t project_id, const Record& record, const Editor& editor,
+  Result<void> begin(ProjectId project_id, const Record& record, const Editor& editor,
                      bool take_over, const Tell& tell);
   // where it is this session's
   void end(const Record& record, const Uuid& session, const Tell& tell);
   void leave(const Uuid& session, const Tell& tell);  // the connection is gone
   // not called where there is none
-  void list(std::int64_t project_id, const Tell& tell) const;
+  void list(ProjectId project_id, const Tell& tell) const;
 
  private:
   struct Held {
-    std::int64_t project_id = 0;
+    ProjectId project_id = 0;
     Editor editor;
   };
   mutable std::mutex mutex_;

@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/ids.h"
 #include "core/uuid.h"
 #include "domain/scene/stroke.h"
 
@@ -17,7 +18,7 @@ namespace strata::app {
 
 // What `stroke.begin` fixed for all batches of a stroke.
 struct StrokeTool {
-  std::int64_t layer_id = 0;
+  LayerId layer_id = 0;
   StrokeBatch batch;      // without a path
   nlohmann::json record;  // the edit for the journal, without a path
   bool operator==(const StrokeTool& other) const {
@@ -38,7 +39,7 @@ class StrokeTracker {
   static constexpr std::chrono::minutes kKeepFor{10};
 
   struct Owner {
-    std::int64_t model_id = 0;
+    ModelId model_id = 0;
     std::string user;
     auto operator<=>(const Owner&) const = default;
   };

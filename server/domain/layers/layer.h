@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ids.h"
 #include "domain/layers/palette.h"
 #include "domain/people/visibility.h"
 #include "domain/tables/labels.h"
@@ -23,9 +24,9 @@ struct LayerFormula {
   std::int64_t computed_sequence = 0;  // of the model, when it was computed last; 0: never
   bool records_changed = false;        // of a table that it reads, since then
   struct Input {
-    std::string slug;                   // as the expression names the layer
-    std::optional<std::int64_t> layer;  // nothing: it was deleted
-    std::optional<std::int64_t> table;  // whose records it reads by the layer's keys
+    std::string slug;              // as the expression names the layer
+    std::optional<LayerId> layer;  // nothing: it was deleted
+    std::optional<TableId> table;  // whose records it reads by the layer's keys
     bool operator==(const Input&) const = default;
   };
   std::vector<Input> inputs;  // by slug
@@ -36,8 +37,8 @@ struct LayerFormula {
 enum class LayerOrigin { expression, shape };
 
 struct Layer {
-  std::int64_t id = 0;
-  std::int64_t model_id = 0;
+  LayerId id = 0;
+  ModelId model_id = 0;
   std::string name;
   std::string slug;  // unique in the model, never all digits
   LayerKind kind = LayerKind::numeric;
@@ -57,8 +58,8 @@ struct Layer {
   // edits of those below curator are provisional until a curator accepts or rejects them
   bool review = false;
   Visibility visibility = Visibility::everyone;
-  int order = 0;                      // drawn ascending: higher is on top
-  std::optional<std::int64_t> table;  // database: the project's table whose keys the texels hold
+  int order = 0;                 // drawn ascending: higher is on top
+  std::optional<TableId> table;  // database: the project's table whose keys the texels hold
   std::optional<LayerFormula> formula;
   std::optional<LayerOrigin> origin;
   // with an origin: it was unlocked since, so that its values need not be those that were computed

@@ -13,9 +13,9 @@ constexpr std::array<std::string_view, 12> kColors = {"#aa3333", "#0066dd", "#11
 
 }  // namespace
 
-std::string_view person_color(std::int64_t account) {
+std::string_view person_color(PersonId account) {
   const auto count = static_cast<std::int64_t>(kColors.size());
-  return kColors[static_cast<std::size_t>(((account - 1) % count + count) % count)];
+  return kColors[static_cast<std::size_t>(((account.number() - 1) % count + count) % count)];
 }
 
 }  // namespace strata

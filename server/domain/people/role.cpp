@@ -17,7 +17,7 @@ std::optional<Role> parse_role(std::string_view text) {
 
 std::string_view name(Role role) { return kNames[static_cast<std::size_t>(role)]; }
 
-Role Roles::in(std::int64_t project) const {
+Role Roles::in(ProjectId project) const {
   const auto own = in_projects.find(project);
   return own == in_projects.end() ? everywhere : std::max(everywhere, own->second);
 }

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "core/ids.h"
+
 namespace strata {
 
 // Ascending: each may do what the ones before may. A guest sees nothing of any project.
@@ -24,9 +26,9 @@ struct Author {
 // What somebody may do.
 struct Roles {
   Role everywhere = Role::guest;
-  std::map<std::int64_t, Role> in_projects{};  // by the project's id
+  std::map<ProjectId, Role> in_projects{};  // by the project's id
 
-  Role in(std::int64_t project) const;  // the higher one
+  Role in(ProjectId project) const;  // the higher one
   Role highest() const;
   Roles at_most(Role role) const;
   bool operator==(const Roles&) const = default;

@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "domain/people/role.h"
 
 namespace strata {
 
 struct Project {
-  std::int64_t id = 0;
+  ProjectId id = 0;
   std::string name;
   std::string slug;
   std::string description;
@@ -87,8 +88,8 @@ struct SourceFile {
 };
 
 struct Model {
-  std::int64_t id = 0;
-  std::int64_t project_id = 0;
+  ModelId id = 0;
+  ProjectId project_id = 0;
   std::string name;
   std::string slug;
   Unit unit = Unit::m;

@@ -4,13 +4,15 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "core/ids.h"
+
 namespace strata {
 
 // A picture of the model's surface on its texture coordinates (uv origin bottom left: the picture's
 // top row is v = 1).
 struct SurfaceImage {
-  std::int64_t id = 0;
-  std::int64_t model_id = 0;
+  SurfaceImageId id = 0;
+  ModelId model_id = 0;
   std::string name;
   std::string slug;  // unique in the model, never all digits
   std::string description;

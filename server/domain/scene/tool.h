@@ -4,13 +4,15 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "core/ids.h"
+
 namespace strata {
 
 // A shape for the brush, of the whole site (media/shape_texture.h). Its shape never changes, so
 // that a stroke's record means the same for ever; a deleted tool is no longer listed or found by
 // its slug, but its id still names its shape.
 struct Tool {
-  std::int64_t id = 0;
+  ToolId id = 0;
   std::string name;
   // unique among those that are not deleted; neither all digits nor `disc` nor `square`
   std::string slug;

@@ -5,14 +5,15 @@
 #include <optional>
 #include <string>
 
+#include "core/ids.h"
 #include "domain/people/visibility.h"
 
 namespace strata {
 
 // A file that records of a table have. Its content never changes.
 struct Attachment {
-  std::int64_t id = 0;
-  std::int64_t table_id = 0;
+  AttachmentId id = 0;
+  TableId table_id = 0;
   std::string name;        // a file's, without folders
   std::string media_type;  // by its bytes
   std::uint64_t bytes = 0;

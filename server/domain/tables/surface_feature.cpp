@@ -44,9 +44,11 @@ class FeatureReader {
       skip_blank();
       if (rest_.empty() && !features.empty()) break;  // a semicolon at the end
       SurfaceFeature feature;
-      if (features.size() == kMaxFeatures || !number(feature.model) ||
+      std::int64_t model = 0;
+      if (features.size() == kMaxFeatures || !number(model) ||
           !word(lines_ ? "LINESTRING" : "POINT") || !word("Z") || !sign('('))
         return std::nullopt;
+      feature.model = ModelId(model);
       do {
         glm::dvec3 place(0);
         if (!number(place.x) || !number(place.y) || !number(place.z) ||
@@ -106,7 +108,7 @@ std::optional<std::vector<SurfaceFeature>> read_features(const json& value, bool
     if (model == item.end() || coordinates == item.end() || !model->is_number_integer() ||
         !coordinates->is_array() || coordinates->size() > kMaxFeaturePlaces)
       return std::nullopt;
-    SurfaceFeature feature{model->get<std::int64_t>(), {}};
+    SurfaceFeature feature{model->get<ModelId>(), {}};
     for (const json& place : *coordinates) {
       if (!is_place(place)) return std::nullopt;
       feature.places.push_back(place_of(place));
@@ -137,7 +139,7 @@ json to_json(std::span<const SurfaceFeature> features) {
 std::string print_features(std::span<const SurfaceFeature> features, bool lines) {
   std::string text;
   for (const SurfaceFeature& feature : features) {
-    text += (text.empty() ? "" : "; ") + std::to_string(feature.model) +
+    text += (text.empty() ? "" : "; ") + to_string(feature.model) +
             (lines ? " LINESTRING Z (" : " POINT Z (");
     for (std::size_t i = 0; i < feature.places.size(); ++i) {
       if (i > 0) text += ", ";

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/ids.h"
 #include "domain/tables/table.h"
 
 namespace strata {
@@ -18,7 +19,7 @@ namespace strata {
 // "coordinates": [[x, y, z], …]}]`. Places are world coordinates in the model's unit, those of a
 // line as near to each other as the surface between them is straight.
 struct SurfaceFeature {
-  std::int64_t model = 0;
+  ModelId model = 0;
   std::vector<glm::dvec3> places;  // of a point one, of a line two or more
   bool operator==(const SurfaceFeature&) const = default;
 };

@@ -243,7 +243,7 @@ std::string record_name(const Record& record, const Table& table) {
 const Column* find_column(const std::vector<Column>& columns, const std::string& ref) {
   const bool by_id = is_all_digits(ref);
   for (const Column& column : columns)
-    if (by_id ? std::to_string(column.id) == ref : column.slug == ref) return &column;
+    if (by_id ? to_string(column.id) == ref : column.slug == ref) return &column;
   return nullptr;
 }
 

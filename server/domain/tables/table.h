@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "domain/people/visibility.h"
 #include "domain/tables/labels.h"
 
@@ -46,7 +47,7 @@ inline bool holds_lists(ColumnKind kind) {
 
 // A column of a project's table. Its id is given once and never again.
 struct Column {
-  std::int64_t id = 0;
+  ColumnId id = 0;
   std::string name;
   std::string slug;  // unique among the table's columns that are not hidden; never all digits
   Labels labels;
@@ -58,7 +59,7 @@ struct Column {
   nlohmann::json default_value;
   std::string comment;
   std::vector<std::string> choices;        // enumeration: at least one
-  std::optional<std::int64_t> target;      // term and relation: a table of the project
+  std::optional<TableId> target;           // term and relation: a table of the project
   std::optional<double> minimum, maximum;  // integer and numeric
   int order = 0;
   Visibility visibility = Visibility::everyone;
@@ -67,8 +68,8 @@ struct Column {
 
 // A table of a project: what the keys of database layers stand for, on any of its models.
 struct Table {
-  std::int64_t id = 0;
-  std::int64_t project_id = 0;
+  TableId id = 0;
+  ProjectId project_id = 0;
   std::string name;
   std::string slug;  // unique in the project, never all digits
   Labels labels;
@@ -76,7 +77,7 @@ struct Table {
   // those that are not hidden, by order; where it is read for somebody, those that they see
   std::vector<Column> columns;
   // id of the column that says what a record is called, as people chose it
-  std::optional<std::int64_t> title_column;
+  std::optional<ColumnId> title_column;
   std::int64_t records = 0;   // how many
   std::int64_t sequence = 0;  // of the last change of records or columns
   std::int64_t version = 1;   // of everything but the records, for ETag and If-Match
@@ -84,7 +85,7 @@ struct Table {
 
 inline constexpr std::int64_t kMaxRecordKey = 0xffffffff;
 // target of a column of a table that is being made: that table
-inline constexpr std::int64_t kOwnTable = 0;
+inline constexpr TableId kOwnTable = 0;
 inline constexpr int kMaxColumns = 256;
 inline constexpr int kMaxChoices = 1000;
 // bytes of a unit, a choice, a label, a comment
@@ -94,7 +95,7 @@ inline constexpr std::size_t kMaxColumnTextLength = 2000;
 struct Record {
   std::int64_t key = 0;
   std::int64_t version = 1;
-  std::map<std::int64_t, nlohmann::json> values;
+  std::map<ColumnId, nlohmann::json> values;
 };
 
 // What a column says of itself fits together: choices, target and limits belong to its kind, the

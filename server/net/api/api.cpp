@@ -33,12 +33,12 @@ bool changes(Method method) {
   return method != Method::get && method != Method::head && method != Method::options;
 }
 
-Result<void> check_record(store::Store& store, std::int64_t project_id,
+Result<void> check_record(store::Store& store, ProjectId project_id,
                           const app::RecordEditLocks::Record& record) {
-  const auto table = store.tables().find(std::to_string(record.table), Role::viewer);
+  const auto table = store.tables().find(to_string(record.table), Role::viewer);
   if (!table && table.error().code != ErrorCode::not_found) return tl::unexpected(table.error());
   if (!table || table->project_id != project_id)
-    return no_such("table", std::to_string(record.table), "table");
+    return no_such("table", to_string(record.table), "table");
   const auto missing = STRATA_TRY(store.records().missing(record.table, std::vector{record.key}));
   if (!missing.empty()) return no_such("record", std::to_string(record.key), "key");
   return {};
@@ -55,7 +55,7 @@ std::shared_ptr<LiveShared> make_shared_state(const ServerOptions& options, stor
   shared->store = &store;
   shared->limits = options.live;
   shared->find_tool = [tools](const std::string& ref) { return tools->find(ref); };
-  shared->check_record = [&store](std::int64_t project_id,
+  shared->check_record = [&store](ProjectId project_id,
                                   const app::RecordEditLocks::Record& record) {
     return check_record(store, project_id, record);
   };
@@ -386,7 +386,7 @@ Result<Api::LiveEntry> Api::admit_live(Request& request) {
   STRATA_TRY(check_upgrade_origin(request, options_.allowed_origins));
   auto room = rooms_.open(request.segments[3], request.role());
   if (!room) return tl::unexpected(room.error());
-  auto project = STRATA_TRY(store_.projects().find(std::to_string((*room)->model().project_id)));
+  auto project = STRATA_TRY(store_.projects().find(to_string((*room)->model().project_id)));
   // What the others read of them. A person who is gone will be sent out anyway.
   auto person = store_.accounts().find(request.user());
   if (!person && person.error().code != ErrorCode::not_found) return tl::unexpected(person.error());
@@ -402,7 +402,7 @@ Result<Api::LiveEntry> Api::admit_live(Request& request) {
                    std::move(view),    Authenticator::secret_of(request)};
 }
 
-bool Api::is_still_welcome(const std::string& secret, std::int64_t project_id, Role role) {
+bool Api::is_still_welcome(const std::string& secret, ProjectId project_id, Role role) {
   return net::is_still_welcome(auth_, secret, project_id, role);
 }
 

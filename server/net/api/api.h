@@ -9,6 +9,7 @@
 #include "app/strokes/brush_shape_cache.h"
 #include "app/template_registry.h"
 #include "app/trash_purger.h"
+#include "core/ids.h"
 #include "domain/people/role.h"
 #include "jobs/job_queue.h"
 #include "net/api/metrics.h"
@@ -72,7 +73,7 @@ class Api {
   std::shared_ptr<LiveSession> make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket);
   // Whether who came in with this may stay in the project as who it was (blocks). While the
   // database is away nobody is sent out.
-  bool is_still_welcome(const std::string& secret, std::int64_t project_id, Role role);
+  bool is_still_welcome(const std::string& secret, ProjectId project_id, Role role);
   LiveSockets& live_sockets() { return *shared_->sockets; }
 
   void stop_workers();

@@ -90,14 +90,14 @@ void add_sequences(Response& response, std::int64_t shown, std::int64_t durable)
 Uuid edit_id(const Request& request, const Layer& layer, std::string_view operation) {
   const auto key = request.header("idempotency-key");
   if (key.empty()) return random_uuid();
-  return uuid_of_text(request.user() + '\n' + std::to_string(layer.id) + '\n' +
-                      std::string(operation) + '\n' + std::string(key));
+  return uuid_of_text(request.user() + '\n' + to_string(layer.id) + '\n' + std::string(operation) +
+                      '\n' + std::string(key));
 }
 
 void apply_edit(const RouteContext& context, const Request& request,
                 const std::shared_ptr<room::Room>& room, room::EditRequest edit,
                 const Respond& respond, std::function<nlohmann::json(nlohmann::json)> body_of) {
-  const auto layer = room->layers().find(std::to_string(edit.layer_id));
+  const auto layer = room->layers().find(to_string(edit.layer_id));
   if (!layer) return respond(layer.error());
   if (auto known = app::check_keys(context.store, *layer, room::painted_by(*layer, edit)); !known)
     return respond(known.error());
@@ -162,7 +162,7 @@ Result<void> check_source_download(const Request& request, const Model& model) {
                   " and above in its project; a curator may change that (`source_download`).");
 }
 
-Response job_response(const RouteContext& context, std::int64_t job) {
+Response job_response(const RouteContext& context, JobId job) {
   const auto status = context.jobs.status(job);
   return json_response(status ? to_json(*status)
                               : nlohmann::json{{"id", job},
@@ -170,7 +170,7 @@ Response job_response(const RouteContext& context, std::int64_t job) {
                                                {"progress", 0},
                                                {"message", ""}},
                        202)
-      .with("Location", "/api/v1/jobs/" + std::to_string(job));
+      .with("Location", "/api/v1/jobs/" + to_string(job));
 }
 
 Result<std::string> slug_of(const std::optional<std::string>& wish, const std::string& text) {

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/ids.h"
 #include "core/uuid.h"
 #include "net/api/route_context.h"
 #include "net/http/router.h"
@@ -77,7 +78,7 @@ Result<void> check_no_script(const Request& request);
 // come back by themselves.
 void roles_changed(const RouteContext& context, const std::vector<std::string>& people);
 // Their live connections are over, and the links are looked up anew.
-void end_kiosks(const RouteContext& context, const std::vector<std::int64_t>& kiosks,
+void end_kiosks(const RouteContext& context, const std::vector<KioskId>& kiosks,
                 const std::string& reason);
 // Who made something, as who asks is told: kiosks hear no names.
 std::string told_name(const Request& request, const std::string& user);
@@ -89,7 +90,7 @@ std::string agent_of(const Request& request);
 Result<void> check_source_download(const Request& request, const Model& model);
 
 // 202 with the job and its address.
-Response job_response(const RouteContext& context, std::int64_t job);
+Response job_response(const RouteContext& context, JobId job);
 
 // Slug of a wish or of the name; a wished slug of digits only is refused.
 Result<std::string> slug_of(const std::optional<std::string>& wish, const std::string& name);

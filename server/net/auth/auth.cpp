@@ -40,7 +40,7 @@ std::string cookie_of(std::string_view name, const std::string& value,
 
 }  // namespace
 
-std::string kiosk_name(std::int64_t id) { return std::string(kKioskPrefix) + std::to_string(id); }
+std::string kiosk_name(KioskId id) { return std::string(kKioskPrefix) + to_string(id); }
 bool is_kiosk_name(const std::string& user) { return user.starts_with(kKioskPrefix); }
 
 Authenticator::Authenticator(store::Store& store, std::string owner_token)

@@ -6,6 +6,7 @@
 #include <string>
 #include <unordered_map>
 
+#include "core/ids.h"
 #include "net/http/http_types.h"
 #include "store/store.h"
 
@@ -20,7 +21,7 @@ constexpr std::chrono::hours kKioskLifetime{24 * 365};
 constexpr std::size_t kMinOwnerTokenLength = 32;
 
 // What a kiosk is called among people, whose names have no blanks.
-std::string kiosk_name(std::int64_t id);
+std::string kiosk_name(KioskId id);
 bool is_kiosk_name(const std::string& user);
 
 // Tells who sends a request: by bearer token, or by the session cookie, or, where the request is

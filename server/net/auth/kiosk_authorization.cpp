@@ -41,22 +41,22 @@ constexpr std::string_view kOpen[] = {
     "/api/v1/attachments/{attachment}",
 };
 
-using Tables = std::set<std::int64_t>;
+using Tables = std::set<TableId>;
 
 // Tables of the model's public layers and of the tour, and the lists whose terms their public
 // columns hold.
 Result<Tables> tables_of(const RouteContext& context, const KioskPass& kiosk) {
   const auto layers = STRATA_TRY(context.store.layers().of_model(kiosk.model, Role::viewer));
-  const auto tour = STRATA_TRY(context.store.tours().find(kiosk.model, std::to_string(kiosk.tour)));
+  const auto tour = STRATA_TRY(context.store.tours().find(kiosk.model, to_string(kiosk.tour)));
   Tables tables;
   for (const Layer& layer : layers)
     if (layer.table) tables.insert(*layer.table);
   for (const nlohmann::json& stop : tour.content.at("stops"))
     for (const nlohmann::json& records : stop.at("records"))
-      tables.insert(records.at("table").get<std::int64_t>());
+      tables.insert(records.at("table").get<TableId>());
   Tables with_terms = tables;
-  for (const std::int64_t id : tables) {
-    const auto table = context.store.tables().find(std::to_string(id), Role::viewer);
+  for (const TableId id : tables) {
+    const auto table = context.store.tables().find(to_string(id), Role::viewer);
     if (!table && table.error().code == ErrorCode::not_found) continue;
     if (!table) return tl::unexpected(table.error());
     for (const Column& column : table->columns)
@@ -103,12 +103,13 @@ constexpr Place kPlaces[] = {
         const std::string& ref) -> Result<bool> {
        const auto id = parse_integer(ref, 1, std::numeric_limits<std::int64_t>::max(), {});
        if (!id) return false;
-       const auto attachment = context.store.attachments().find(*id, {{}, Role::viewer});
+       const auto attachment =
+           context.store.attachments().find(AttachmentId(*id), {{}, Role::viewer});
        if (!attachment)
          return attachment.error().code == ErrorCode::not_found
                     ? Result<bool>(false)
                     : tl::unexpected(attachment.error());
-       return has_table(context, kiosk, std::to_string(attachment->table_id));
+       return has_table(context, kiosk, to_string(attachment->table_id));
      }},
 };
 

@@ -16,24 +16,25 @@ namespace strata::net {
 namespace {
 
 template <class T>
-Result<std::int64_t> project_id_of(const Result<T>& found) {
+Result<ProjectId> project_id_of(const Result<T>& found) {
   if (!found) return tl::unexpected(found.error());
   return found->project_id;
 }
 
 struct Place {
   const char* param;  // of a route
-  Result<std::int64_t> (*project)(const RouteContext& context, const std::string& ref);
+  Result<ProjectId> (*project)(const RouteContext& context, const std::string& ref);
 };
 
-Result<std::int64_t> project_of_number(
-    const std::string& ref, const std::function<Result<std::int64_t>(std::int64_t id)>& project) {
+template <class Id>
+Result<ProjectId> project_of(const std::string& ref,
+                             const std::function<Result<ProjectId>(Id id)>& project) {
   const auto id = parse_integer(ref, 1, std::numeric_limits<std::int64_t>::max(), {});
-  return id ? project(*id) : fail(ErrorCode::not_found, {}, {});
+  return id ? project(Id(*id)) : fail(ErrorCode::not_found, {}, {});
 }
 
 constexpr Place kProject = {
-    "project", [](const RouteContext& context, const std::string& ref) -> Result<std::int64_t> {
+    "project", [](const RouteContext& context, const std::string& ref) -> Result<ProjectId> {
       const auto project = STRATA_TRY(context.store.projects().find(ref));
       return project.id;
     }};
@@ -51,23 +52,23 @@ constexpr Place kPlaces[] = {
      }},
     {"attachment",
      [](const RouteContext& context, const std::string& ref) {
-       return project_of_number(ref, [&](std::int64_t id) -> Result<std::int64_t> {
+       return project_of<AttachmentId>(ref, [&](AttachmentId id) -> Result<ProjectId> {
          const auto attachment =
              STRATA_TRY(context.store.attachments().find(id, {{}, Role::owner}));
          return project_id_of(
-             context.store.tables().find(std::to_string(attachment.table_id), Role::owner));
+             context.store.tables().find(to_string(attachment.table_id), Role::owner));
        });
      }},
     {"comment",
      [](const RouteContext& context, const std::string& ref) {
-       return project_of_number(ref, [&](std::int64_t id) -> Result<std::int64_t> {
+       return project_of<CommentId>(ref, [&](CommentId id) -> Result<ProjectId> {
          const auto comment = STRATA_TRY(context.store.comments().comment(id, Role::owner));
-         return project_id_of(context.store.models().find(std::to_string(comment.model_id)));
+         return project_id_of(context.store.models().find(to_string(comment.model_id)));
        });
      }},
     {"job",
      [](const RouteContext& context, const std::string& ref) {
-       return project_of_number(ref, [&](std::int64_t id) -> Result<std::int64_t> {
+       return project_of<JobId>(ref, [&](JobId id) -> Result<ProjectId> {
          const auto job = context.jobs.status(id);
          if (!job) return fail(ErrorCode::not_found, {}, {});
          return job->project;
@@ -75,7 +76,7 @@ constexpr Place kPlaces[] = {
      }},
     {"kiosk",
      [](const RouteContext& context, const std::string& ref) {
-       return project_of_number(ref, [&](std::int64_t id) -> Result<std::int64_t> {
+       return project_of<KioskId>(ref, [&](KioskId id) -> Result<ProjectId> {
          return project_id_of(context.store.kiosks().kiosk(id));
        });
      }},
@@ -100,8 +101,8 @@ bool depends_on_project(const Roles& roles) {
 
 }  // namespace
 
-Result<std::optional<std::int64_t>> addressed_project(const RouteContext& context,
-                                                      const Request& request) {
+Result<std::optional<ProjectId>> addressed_project(const RouteContext& context,
+                                                   const Request& request) {
   for (const Place& place : kPlaces) {
     const auto param = request.params.find(place.param);
     if (param == request.params.end()) continue;
@@ -113,7 +114,7 @@ Result<std::optional<std::int64_t>> addressed_project(const RouteContext& contex
   return std::nullopt;
 }
 
-Result<std::int64_t> id_of(const Request& request, const std::string& param) {
+Result<std::int64_t> number_of(const Request& request, const std::string& param) {
   const auto id =
       parse_integer(request.param(param), 1, std::numeric_limits<std::int64_t>::max(), {});
   return id ? id : no_such(param, request.param(param));

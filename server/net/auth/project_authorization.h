@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/ids.h"
 #include "core/no_such.h"
 #include "net/api/route_help.h"
 
@@ -13,10 +14,14 @@ Result<void> enter_project(const RouteContext& context, Request& request, bool i
 
 // That project, whatever who asks may do; nothing: the address leads into none, or what it names is
 // not there.
-Result<std::optional<std::int64_t>> addressed_project(const RouteContext& context,
-                                                      const Request& request);
+Result<std::optional<ProjectId>> addressed_project(const RouteContext& context,
+                                                   const Request& request);
 // The number in the path's `param`; 404 where it can be nobody's.
-Result<std::int64_t> id_of(const Request& request, const std::string& param);
+Result<std::int64_t> number_of(const Request& request, const std::string& param);
+template <class Id>
+Result<Id> id_of(const Request& request, const std::string& param) {
+  return Id(STRATA_TRY(number_of(request, param)));
+}
 
 // That who asks may see the project; otherwise 404 at `field`.
 Result<void> check_seen(const RouteContext& context, const Request& request,

@@ -12,7 +12,7 @@ tl::unexpected<Error> used_for_another() {
 
 }  // namespace
 
-Result<void> EditIdempotency::begin(std::int64_t model_id, const room::EditRequest& edit) {
+Result<void> EditIdempotency::begin(ModelId model_id, const room::EditRequest& edit) {
   {
     std::lock_guard lock(mutex_);
     AtWork& at_work = at_work_[edit.id];

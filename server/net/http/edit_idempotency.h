@@ -3,6 +3,7 @@
 #include <map>
 #include <mutex>
 
+#include "core/ids.h"
 #include "net/http/http_types.h"
 #include "room/edit.h"
 #include "store/store.h"
@@ -17,7 +18,7 @@ class EditIdempotency {
   explicit EditIdempotency(store::Store& store) : store_(store) {}
 
   // Then `end` must follow.
-  Result<void> begin(std::int64_t model_id, const room::EditRequest& edit);
+  Result<void> begin(ModelId model_id, const room::EditRequest& edit);
   void end(const Uuid& id);
 
  private:

@@ -43,6 +43,10 @@ void add(std::string& text, std::string_view part) {
 void add(std::string& text, std::int64_t number) {
   text.append(std::to_string(number)).append(",");
 }
+template <class Kind>
+void add(std::string& text, Id<Kind> id) {
+  add(text, id.number());
+}
 
 // The sequence of the model that the query names as `at`.
 std::optional<std::int64_t> past_sequence(const Request& request) {
@@ -77,7 +81,7 @@ bool add_room(std::string& text, const room::Room& room, std::optional<std::int6
   return true;
 }
 
-bool add_project(std::string& text, const RouteContext& context, std::int64_t project) {
+bool add_project(std::string& text, const RouteContext& context, ProjectId project) {
   const auto state = context.store.projects().state(project);
   if (!state) return false;
   add(text, *state);
@@ -133,7 +137,7 @@ std::string tag_of_state(const Request& request, std::string_view state) {
   if (request.principal) {
     add(text, request.principal->user);
     add(text, name(request.principal->role));
-    add(text, request.principal->kiosk ? request.principal->kiosk->id : 0);
+    add(text, request.principal->kiosk ? request.principal->kiosk->id : KioskId());
   }
   for (const std::string& segment : request.segments) add(text, segment);
   text += '?';
@@ -168,14 +172,14 @@ StateOf state_of_painted_table(const RouteContext& context) {
     if (!table) return std::nullopt;
     const auto layers = context.store.layers().of_table(table->id, request.role());
     if (!layers) return std::nullopt;
-    std::set<std::int64_t> models;
+    std::set<ModelId> models;
     std::string text;
     for (const Layer& layer : *layers) {
       add(text, layer.id);
       if (layer.sequence > 0) models.insert(layer.model_id);  // the others hold nothing yet
     }
-    for (const std::int64_t model : models) {
-      const auto room = context.rooms.open(std::to_string(model), request.role());
+    for (const ModelId model : models) {
+      const auto room = context.rooms.open(to_string(model), request.role());
       if (!room || !add_room(text, **room)) return std::nullopt;
     }
     return add_project(text, context, table->project_id) ? std::optional(std::move(text))
@@ -190,7 +194,9 @@ StateOf state_of_surface_image(const RouteContext& context) {
     const auto image = context.store.surface_images().find(model->id, request.param("look"));
     if (!image) return std::nullopt;
     std::string text;
-    for (const std::int64_t number : {model->id, model->version, image->id}) add(text, number);
+    add(text, model->id);
+    add(text, model->version);
+    add(text, image->id);
     return text;
   };
 }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "core/temporary_file.h"
 #include "core/text/ascii.h"
 #include "core/text/number_text.h"
@@ -29,7 +30,9 @@ std::string_view name(Method method);
 
 // What the link of a kiosk leads to, by ids.
 struct KioskPass {
-  std::int64_t id = 0, model = 0, tour = 0;
+  KioskId id = 0;
+  ModelId model = 0;
+  NamedPartId tour = 0;
 };
 
 // Who asks. `role`: what they may do where the address leads. `by_cookie`: the browser sent the
@@ -38,12 +41,12 @@ struct Principal {
   std::string user;
   Role role = Role::viewer;
   bool by_cookie = false;
-  bool is_script = false;   // it came with a token for scripts
-  std::int64_t secret = 0;  // id of the session or token; 0: the owner's token of the environment
+  bool is_script = false;  // it came with a token for scripts
+  TokenId secret = 0;      // id of the session or token; 0: the owner's token of the environment
   Roles roles{};
   std::optional<KioskPass> kiosk{};  // it is none of the people, but a screen that shows a tour
 
-  bool sees(std::int64_t project) const { return roles.in(project) >= Role::viewer; }
+  bool sees(ProjectId project) const { return roles.in(project) >= Role::viewer; }
 };
 
 using Headers = std::vector<std::pair<std::string, std::string>>;

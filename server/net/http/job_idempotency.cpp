@@ -4,7 +4,7 @@
 
 namespace strata::net {
 
-Result<std::optional<std::int64_t>> JobIdempotency::find(const Request& request) {
+Result<std::optional<JobId>> JobIdempotency::find(const Request& request) {
   std::lock_guard lock(mutex_);
   const auto found = started_.find(scoped_key(request));
   if (found == started_.end() || !jobs_.status(found->second.job)) return std::nullopt;
@@ -15,7 +15,7 @@ Result<std::optional<std::int64_t>> JobIdempotency::find(const Request& request)
   return found->second.job;
 }
 
-void JobIdempotency::started(const Request& request, std::int64_t job) {
+void JobIdempotency::started(const Request& request, JobId job) {
   const std::string key = scoped_key(request);
   if (key.empty()) return;
   std::lock_guard lock(mutex_);
@@ -23,8 +23,8 @@ void JobIdempotency::started(const Request& request, std::int64_t job) {
   started_[key] = {job, fingerprint(request)};
 }
 
-Result<std::int64_t> JobIdempotency::finished(const Request& request, std::int64_t project,
-                                              jobs::JobResult result) {
+Result<JobId> JobIdempotency::finished(const Request& request, ProjectId project,
+                                       jobs::JobResult result) {
   auto job = jobs_.add(project, [result = std::move(result)](Progress&) -> Result<jobs::JobResult> {
     return result;
   });

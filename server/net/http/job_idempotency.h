@@ -3,6 +3,7 @@
 #include <map>
 #include <mutex>
 
+#include "core/ids.h"
 #include "jobs/job_queue.h"
 #include "net/http/http_types.h"
 
@@ -16,15 +17,14 @@ class JobIdempotency {
   explicit JobIdempotency(jobs::JobQueue& jobs) : jobs_(jobs) {}
 
   // Nothing: the key is new, or its job is forgotten. 422: it was used with another body.
-  Result<std::optional<std::int64_t>> find(const Request& request);
-  void started(const Request& request, std::int64_t job);
+  Result<std::optional<JobId>> find(const Request& request);
+  void started(const Request& request, JobId job);
   // The job that an earlier server finished.
-  Result<std::int64_t> finished(const Request& request, std::int64_t project,
-                                jobs::JobResult result);
+  Result<JobId> finished(const Request& request, ProjectId project, jobs::JobResult result);
 
  private:
   struct Started {
-    std::int64_t job;
+    JobId job;
     std::string fingerprint;
   };
   jobs::JobQueue& jobs_;

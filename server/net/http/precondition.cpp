@@ -11,7 +11,7 @@ Result<void> check_precondition(const RouteContext& context, const Request& requ
   if (!route.needs_version || !request.header("if-match").empty()) return {};
   const auto id = STRATA_TRY(addressed_project(context, request));
   if (!id) return {};
-  const auto project = STRATA_TRY(context.store.projects().find(std::to_string(*id)));
+  const auto project = STRATA_TRY(context.store.projects().find(to_string(*id)));
   if (!project.require_if_match) return {};
   return fail(
       ErrorCode::version_required, "Version missing",

@@ -14,7 +14,7 @@ int questions_at_once() {
 
 std::string asker_of(const Request& request) {
   if (!request.principal) return "at " + request.peer;
-  if (request.principal->kiosk) return "kiosk " + std::to_string(request.principal->kiosk->id);
+  if (request.principal->kiosk) return "kiosk " + to_string(request.principal->kiosk->id);
   return request.user();
 }
 

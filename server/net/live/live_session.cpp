@@ -43,7 +43,7 @@ std::vector<protocol::RecordEditors> editor_messages(
     if (messages.empty() || messages.back().records.size() == kMaxEditorsTold)
       messages.emplace_back();
     protocol::RecordEditor& told = messages.back().records.emplace_back();
-    told.table = record.table;
+    told.table = record.table.number();
     told.key = record.key;
     if (!editor) continue;
     told.session = editor->session;
@@ -181,7 +181,7 @@ void LiveSession::on(const protocol::Hello& message) {
     member_ = std::move(joined);
   }
   shared_->editors->list(
-      project_id(), [this](std::int64_t, const std::vector<app::RecordEditLocks::Entry>& entries) {
+      project_id(), [this](ProjectId, const std::vector<app::RecordEditLocks::Entry>& entries) {
         for (const auto& each : editor_messages(entries)) send(each);
       });
   presence_changed();
@@ -295,14 +295,14 @@ LiveSession::Work LiveSession::on(const protocol::RecordEdit& message) {
   if (!may_edit(ref_of(message.id))) return {};
   // to look for the record blocks
   if (message.editing) return [self = shared_from_this(), message] { self->edit_record(message); };
-  shared_->editors->end({message.table, message.key}, member()->session(), tell_project());
+  shared_->editors->end({TableId(message.table), message.key}, member()->session(), tell_project());
   return {};
 }
 
 void LiveSession::edit_record(const protocol::RecordEdit& message) {
   const auto here = member();
   if (!here) return;
-  const app::RecordEditLocks::Record record{message.table, message.key};
+  const app::RecordEditLocks::Record record{TableId(message.table), message.key};
   auto begun = shared_->check_record(project_id(), record);
   if (begun)
     begun = shared_->editors->begin(project_id(), record, {here->session(), principal_.user},
@@ -486,7 +486,7 @@ void LiveSession::edit_applied(const Edit& edit) {
   }
   protocol::LayerEvent event;
   event.event = protocol::LayerEventEvent::edited;
-  event.layer_id = edit.layer_id;
+  event.layer_id = edit.layer_id.number();
   event.sequence = edit.sequence;
   event.user = edit.user;
   if (edit.answer.provisional) event.provisional = true;
@@ -501,13 +501,13 @@ void LiveSession::edit_applied(const Edit& edit) {
 
 void LiveSession::edits_unsaved(const std::vector<Edit>& edits, const Error&) {
   // Others see the layer go back; the authors hear of each id by the edit's own answer.
-  std::map<std::int64_t, std::int64_t> sequences;
+  std::map<LayerId, std::int64_t> sequences;
   for (const auto& edit : edits)
     sequences[edit.layer_id] = std::max(sequences[edit.layer_id], edit.sequence);
   for (const auto& [layer_id, sequence] : sequences) {
     protocol::LayerEvent event;
     event.event = protocol::LayerEventEvent::edited;
-    event.layer_id = layer_id;
+    event.layer_id = layer_id.number();
     event.sequence = sequence;
     send(event);
   }
@@ -515,7 +515,7 @@ void LiveSession::edits_unsaved(const std::vector<Edit>& edits, const Error&) {
 
 void LiveSession::layer_changed(LayerChange change, const Layer& layer) {
   protocol::LayerEvent event;
-  event.layer_id = layer.id;
+  event.layer_id = layer.id.number();
   event.event = named<protocol::LayerEventEvent>(change);
   if (change != LayerChange::deleted) event.layer = to_json(layer);
   send(event);
@@ -523,7 +523,7 @@ void LiveSession::layer_changed(LayerChange change, const Layer& layer) {
 
 void LiveSession::surface_image_changed(LayerChange change, const SurfaceImage& image) {
   protocol::LookEvent event;
-  event.look_id = image.id;
+  event.look_id = image.id.number();
   event.event = named<protocol::LookEventEvent>(change);
   if (change != LayerChange::deleted) event.look = to_json(image);
   send(event);
@@ -636,7 +636,7 @@ bool LiveSession::may_edit(const std::string& ref) {
 }
 
 app::RecordEditLocks::Tell LiveSession::tell_project() const {
-  return [sockets = shared_->sockets](std::int64_t project_id,
+  return [sockets = shared_->sockets](ProjectId project_id,
                                       const std::vector<app::RecordEditLocks::Entry>& entries) {
     for (const auto& message : editor_messages(entries)) sockets->tell_project(project_id, message);
   };

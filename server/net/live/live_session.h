@@ -13,6 +13,7 @@
 #include "app/strokes/brush_shape_cache.h"
 #include "app/strokes/record_edit_locks.h"
 #include "app/strokes/stroke_tracker.h"
+#include "core/ids.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
 #include "domain/scene/model.h"
@@ -48,8 +49,8 @@ class LiveSocket {
 class LiveSockets;
 
 // 404 (`table`, `key`) for a record that the project has not. May block.
-using CheckRecord = std::function<Result<void>(std::int64_t project_id,
-                                               const app::RecordEditLocks::Record& record)>;
+using CheckRecord =
+    std::function<Result<void>(ProjectId project_id, const app::RecordEditLocks::Record& record)>;
 
 // What all sessions share; outlives the rooms' callbacks by being shared.
 struct LiveShared {
@@ -80,8 +81,8 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   Work on_text(const std::string& text);
   void on_binary();
   void on_closed();
-  std::int64_t model_id() const { return owner_.model_id; }
-  std::int64_t project_id() const { return room_->model().project_id; }  // of the model; any thread
+  ModelId model_id() const { return owner_.model_id; }
+  ProjectId project_id() const { return room_->model().project_id; }  // of the model; any thread
   const std::string& user() const { return principal_.user; }
   Role role() const { return principal_.role; }  // in that project
   // What concerns the whole site or project; only who was welcomed hears it. Any thread.

@@ -17,11 +17,11 @@ void LiveSockets::tell_all(const protocol::ServerMessage& message) {
   tell_if([](const LiveSession&) { return true; }, message);
 }
 
-void LiveSockets::tell_model(std::int64_t model_id, const protocol::ServerMessage& message) {
+void LiveSockets::tell_model(ModelId model_id, const protocol::ServerMessage& message) {
   tell_if([&](const LiveSession& session) { return session.model_id() == model_id; }, message);
 }
 
-void LiveSockets::tell_model(std::int64_t model_id, Visibility visibility,
+void LiveSockets::tell_model(ModelId model_id, Visibility visibility,
                              const protocol::ServerMessage& message) {
   tell_if(
       [&](const LiveSession& session) {
@@ -30,7 +30,7 @@ void LiveSockets::tell_model(std::int64_t model_id, Visibility visibility,
       message);
 }
 
-void LiveSockets::tell_sight(std::int64_t model_id, Visibility sight,
+void LiveSockets::tell_sight(ModelId model_id, Visibility sight,
                              const protocol::ServerMessage& message) {
   tell_if(
       [&](const LiveSession& session) {
@@ -39,11 +39,11 @@ void LiveSockets::tell_sight(std::int64_t model_id, Visibility sight,
       message);
 }
 
-void LiveSockets::tell_project(std::int64_t project_id, const protocol::ServerMessage& message) {
+void LiveSockets::tell_project(ProjectId project_id, const protocol::ServerMessage& message) {
   tell_if([&](const LiveSession& session) { return session.project_id() == project_id; }, message);
 }
 
-void LiveSockets::tell_project(std::int64_t project_id, Visibility sight,
+void LiveSockets::tell_project(ProjectId project_id, Visibility sight,
                                const protocol::ServerMessage& message) {
   tell_if(
       [&](const LiveSession& session) {

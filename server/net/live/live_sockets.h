@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ids.h"
 #include "domain/people/visibility.h"
 #include "protocol/messages.h"
 
@@ -25,17 +26,15 @@ class LiveSockets {
   // Whichever model they look at.
   void tell_all(const protocol::ServerMessage& message);
   // Whoever looks at the model.
-  void tell_model(std::int64_t model_id, const protocol::ServerMessage& message);
+  void tell_model(ModelId model_id, const protocol::ServerMessage& message);
   // Whoever of them sees what is seen so.
-  void tell_model(std::int64_t model_id, Visibility visibility,
-                  const protocol::ServerMessage& message);
+  void tell_model(ModelId model_id, Visibility visibility, const protocol::ServerMessage& message);
   // Those of them who see what is seen so, and nothing that fewer see.
-  void tell_sight(std::int64_t model_id, Visibility sight, const protocol::ServerMessage& message);
+  void tell_sight(ModelId model_id, Visibility sight, const protocol::ServerMessage& message);
   // Whoever looks at a model of the project.
-  void tell_project(std::int64_t project_id, const protocol::ServerMessage& message);
+  void tell_project(ProjectId project_id, const protocol::ServerMessage& message);
   // The same, of those who see columns that are seen so and no others.
-  void tell_project(std::int64_t project_id, Visibility sight,
-                    const protocol::ServerMessage& message);
+  void tell_project(ProjectId project_id, Visibility sight, const protocol::ServerMessage& message);
   void close_all(int code, const std::string& reason);
   void close_those_of(const std::string& secret, int code, const std::string& reason);
   // Of a person; those that may stay come back by themselves, as who the person is now.

@@ -42,7 +42,7 @@ bool ModelEvents::is_still_welcome() {
   const auto now = std::chrono::steady_clock::now();
   if (now - checked_ < std::min(kCheckEvery, context_.options.timeouts.recheck)) return true;
   checked_ = now;
-  const auto model = context_.store.models().find(std::to_string(model_));
+  const auto model = context_.store.models().find(to_string(model_));
   if (!model) return model.error().code != ErrorCode::not_found;
   return model->project_id == project_ &&
          net::is_still_welcome(context_.auth, secret_, project_, role_);

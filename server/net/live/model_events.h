@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ids.h"
 #include "domain/people/role.h"
 #include "domain/scene/model.h"
 #include "net/api/route_help.h"
@@ -36,7 +37,8 @@ class ModelEvents {
   const RouteContext& context_;
   const std::string secret_;
   const Role role_;
-  const std::int64_t project_, model_;
+  const ProjectId project_;
+  const ModelId model_;
   // up to where is known; nothing: nobody has asked yet
   std::optional<store::ActivityPlace> last_;
   std::map<std::int64_t, std::int64_t> told_us_;  // lines by id, as they were told: their time

@@ -14,7 +14,7 @@ void tell_table(LiveSockets& sockets, protocol::TableEventEvent event, const Tab
                 const std::string& user) {
   protocol::TableEvent message;
   message.event = event;
-  message.table_id = table.id;
+  message.table_id = table.id.number();
   message.user = user;
   for (const Visibility sight : kSights) {
     if (event != protocol::TableEventEvent::deleted)
@@ -30,7 +30,7 @@ void TableEvents::records_changed(const store::TableChange& change, const std::s
   if (change.columns_changed || change.records.size() + change.deleted.size() > kMaxTold)
     return tell_table(sockets_, protocol::TableEventEvent::changed, change.table, user);
   protocol::RecordEvent message;
-  message.table = change.table.id;
+  message.table = change.table.id.number();
   message.user = user;
   for (const Record& record : change.records) {
     const bool is_new =

@@ -22,7 +22,7 @@ Result<app::RecordPlace> record_place(const RouteContext& context, const Request
   if (!layer.table)
     return fail(ErrorCode::invalid, "Numeric layer",
                 layer.name + " holds numbers; only database layers have records.", "layer");
-  auto table = context.store.tables().find(std::to_string(*layer.table), request.role());
+  auto table = context.store.tables().find(to_string(*layer.table), request.role());
   if (!table) return tl::unexpected(table.error());
   return app::RecordPlace{std::move(*table), std::move(model), std::move(layer)};
 }

@@ -7,7 +7,7 @@
 #include "store/tables/tables.h"
 
 namespace strata::net {
-Result<Table> table_of_project(store::Store& store, std::int64_t project_id,
+Result<Table> table_of_project(store::Store& store, ProjectId project_id,
                                const protocol::TableRef& ref, const std::string& field) {
   const std::string name = protocol::to_ref(ref);
   auto table = store.tables().find(name, Role::curator);
@@ -18,7 +18,7 @@ Result<Table> table_of_project(store::Store& store, std::int64_t project_id,
   return table;
 }
 
-Result<Column> new_column(store::Store& store, std::int64_t project_id,
+Result<Column> new_column(store::Store& store, ProjectId project_id,
                           const protocol::ColumnCreate& body, const std::string& target_field) {
   Column column;
   column.name = body.name;
@@ -41,7 +41,7 @@ Result<Column> new_column(store::Store& store, std::int64_t project_id,
   return column;
 }
 
-Result<std::vector<Column>> new_columns(store::Store& store, std::int64_t project_id,
+Result<std::vector<Column>> new_columns(store::Store& store, ProjectId project_id,
                                         const std::vector<protocol::ColumnCreate>& asked) {
   std::vector<Column> columns;
   for (std::size_t i = 0; i < asked.size(); ++i) {
@@ -53,10 +53,10 @@ Result<std::vector<Column>> new_columns(store::Store& store, std::int64_t projec
   return columns;
 }
 
-Result<std::map<std::int64_t, nlohmann::json>> values_by_column(const Table& table,
-                                                                const nlohmann::json& values,
-                                                                const std::string& field) {
-  std::map<std::int64_t, nlohmann::json> by_column;
+Result<std::map<ColumnId, nlohmann::json>> values_by_column(const Table& table,
+                                                            const nlohmann::json& values,
+                                                            const std::string& field) {
+  std::map<ColumnId, nlohmann::json> by_column;
   for (const auto& [ref, value] : values.items()) {
     const Column* column = find_column(table.columns, ref);
     const std::string shown = mended_utf8(ref.substr(0, 100));

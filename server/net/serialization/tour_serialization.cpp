@@ -20,8 +20,8 @@ std::string at(const std::string& list, std::size_t place) {
   return list + "[" + std::to_string(place) + "]";
 }
 
-Result<void> once(std::set<std::int64_t>& known, std::int64_t id, const char* what,
-                  const std::string& field) {
+template <class Id>
+Result<void> once(std::set<Id>& known, Id id, const char* what, const std::string& field) {
   if (known.insert(id).second) return {};
   return fail(ErrorCode::invalid, "Named twice",
               "This " + std::string(what) + " is named before already.", field);
@@ -31,7 +31,7 @@ Result<nlohmann::json> kept_columns(const Table& table,
                                     const std::vector<protocol::TourColumn>& columns,
                                     const std::string& field) {
   nlohmann::json kept = nlohmann::json::array();
-  std::set<std::int64_t> known;
+  std::set<ColumnId> known;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const std::string here = at(field, i) + ".column";
     const Column* column = find_column(table.columns, columns[i].column);
@@ -49,7 +49,7 @@ Result<nlohmann::json> kept_records(const RouteContext& context, const Model& mo
                                     const std::vector<protocol::TourRecords>& all,
                                     const std::string& field) {
   nlohmann::json kept = nlohmann::json::array();
-  std::set<std::int64_t> known;
+  std::set<TableId> known;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const protocol::TourRecords& asked = all[i];
     const std::string here = at(field, i);
@@ -75,7 +75,7 @@ Result<nlohmann::json> kept_records(const RouteContext& context, const Model& mo
 Result<nlohmann::json> kept_layers(const RouteContext& context, const Model& model, Role role,
                                    const std::vector<std::string>& refs, const std::string& field) {
   nlohmann::json kept = nlohmann::json::array();
-  std::set<std::int64_t> known;
+  std::set<LayerId> known;
   for (std::size_t i = 0; i < refs.size(); ++i) {
     const auto layer = context.store.layers().find(model.id, refs[i], role);
     if (!layer) return at_field(layer.error(), at(field, i));
@@ -120,7 +120,7 @@ Result<void> check_stop(const nlohmann::json& stop, const nlohmann::json& langua
 // Reads what tours name, each thing once.
 class Seen {
  public:
-  static Result<Seen> of(const RouteContext& context, std::int64_t model_id, Role role) {
+  static Result<Seen> of(const RouteContext& context, ModelId model_id, Role role) {
     auto views = STRATA_TRY(context.store.views().slugs(model_id));
     auto layers = STRATA_TRY(context.store.layers().of_model(model_id, role));
     Seen seen(context, role);
@@ -133,15 +133,15 @@ class Seen {
     nlohmann::json told = kept;
     told["layers"] = nlohmann::json::array();
     told["records"] = nlohmann::json::array();
-    if (const auto view = views_.find(kept.at("view").get<std::int64_t>()); view != views_.end())
+    if (const auto view = views_.find(kept.at("view").get<NamedPartId>()); view != views_.end())
       told["view"] = view->second;
     else
       told.erase("view");
     for (const nlohmann::json& id : kept.at("layers"))
-      if (const auto layer = layers_.find(id.get<std::int64_t>()); layer != layers_.end())
+      if (const auto layer = layers_.find(id.get<LayerId>()); layer != layers_.end())
         told["layers"].push_back(layer->second);
     for (const nlohmann::json& each : kept.at("records")) {
-      auto table = STRATA_TRY(find_table(each.at("table").get<std::int64_t>()));
+      auto table = STRATA_TRY(find_table(each.at("table").get<TableId>()));
       if (table) told["records"].push_back(records(each, *table));
     }
     return told;
@@ -154,7 +154,7 @@ class Seen {
     nlohmann::json told{
         {"table", table.slug}, {"keys", kept.at("keys")}, {"columns", nlohmann::json::array()}};
     for (const nlohmann::json& each : kept.at("columns")) {
-      const auto id = each.at("column").get<std::int64_t>();
+      const auto id = each.at("column").get<ColumnId>();
       const auto column = std::ranges::find(table.columns, id, &Column::id);
       if (column == table.columns.end()) continue;
       told["columns"].push_back(each);
@@ -164,18 +164,19 @@ class Seen {
   }
 
   // Nothing: it is gone.
-  Result<std::optional<Table>> find_table(std::int64_t id) {
+  Result<std::optional<Table>> find_table(TableId id) {
     const auto known = tables_.find(id);
     if (known != tables_.end()) return known->second;
-    auto table = context_->store.tables().find(std::to_string(id), role_);
+    auto table = context_->store.tables().find(to_string(id), role_);
     if (!table && table.error().code != ErrorCode::not_found) return tl::unexpected(table.error());
     return tables_[id] = table ? std::optional(std::move(*table)) : std::nullopt;
   }
 
   const RouteContext* context_;
   Role role_;
-  std::map<std::int64_t, std::string> views_, layers_;  // slugs, by id
-  std::map<std::int64_t, std::optional<Table>> tables_;
+  std::map<NamedPartId, std::string> views_;  // slugs, by id
+  std::map<LayerId, std::string> layers_;     // the same
+  std::map<TableId, std::optional<Table>> tables_;
 };
 
 }  // namespace

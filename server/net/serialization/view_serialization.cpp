@@ -17,11 +17,10 @@ namespace strata::net {
 namespace {
 
 // Takes out what names columns that are not there for the role.
-void leave_out_columns(store::Store& store, Role role, std::int64_t table_id,
-                       nlohmann::json& shown) {
+void leave_out_columns(store::Store& store, Role role, TableId table_id, nlohmann::json& shown) {
   if (const auto palette = shown.find("palette");
       palette != shown.end() && palette->contains("column")) {
-    const auto table = store.tables().find(std::to_string(table_id), role);
+    const auto table = store.tables().find(to_string(table_id), role);
     if (!table || !find_column(table->columns, palette->at("column").get<std::string>()))
       shown.erase(palette);
   }
@@ -41,9 +40,10 @@ template <class There>
 void leave_out(nlohmann::json& list, const char* member, const There& there) {
   list.erase(std::remove_if(list.begin(), list.end(),
                             [&](const nlohmann::json& entry) {
-                              const auto id = entry.at(member).template get<std::int64_t>();
-                              return std::ranges::none_of(
-                                  there, [&](const auto& each) { return each.id == id; });
+                              return std::ranges::none_of(there, [&](const auto& each) {
+                                return each.id ==
+                                       entry.at(member).template get<decltype(each.id)>();
+                              });
                             }),
              list.end());
 }
@@ -56,7 +56,7 @@ void leave_out_unseen(store::Store& store, Role role, const room::Room& room,
   leave_out(shown_layers, "layer", layers);
   for (nlohmann::json& shown : shown_layers)
     for (const Layer& layer : layers)
-      if (layer.table && layer.id == shown.at("layer").get<std::int64_t>())
+      if (layer.table && layer.id == shown.at("layer").get<LayerId>())
         leave_out_columns(store, role, *layer.table, shown);
 }
 

@@ -133,7 +133,7 @@ class WebSocketSession final : public LiveSocket,
   }
 
   // A session may be ended, or a token revoked, by another server or by its age.
-  asio::awaitable<void> watch_sign_in(std::string secret, std::int64_t project_id, Role role) {
+  asio::awaitable<void> watch_sign_in(std::string secret, ProjectId project_id, Role role) {
     auto self = shared_from_this();
     // First at once: accounts may have changed while the model was opened.
     while (!over_ && !closing_) {

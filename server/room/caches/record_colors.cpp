@@ -21,9 +21,9 @@ bool holds_numbers(ColumnKind kind) {
   return kind == ColumnKind::integer || kind == ColumnKind::numeric;
 }
 
-Result<Palette> by_column(store::Store& store, std::int64_t table_id, Role seen_by,
+Result<Palette> by_column(store::Store& store, TableId table_id, Role seen_by,
                           const Palette& palette) {
-  auto table = STRATA_TRY(store.tables().find(std::to_string(table_id), seen_by));
+  auto table = STRATA_TRY(store.tables().find(to_string(table_id), seen_by));
   const Column* column = find_column(table.columns, palette.column);
   if (!column)
     return fail(ErrorCode::invalid, "No such column",
@@ -48,7 +48,7 @@ Result<Palette> by_column(store::Store& store, std::int64_t table_id, Role seen_
 
 }  // namespace
 
-Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, std::int64_t table_id,
+Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, TableId table_id,
                                                     Role seen_by, const Highlight& highlight,
                                                     const std::string& field) {
   if (const auto* keys = std::get_if<std::vector<std::uint32_t>>(&highlight.records)) return *keys;
@@ -124,7 +124,7 @@ void RecordColors::run(const std::shared_ptr<Entry>& entry) {
   if (ready_) ready_();
 }
 
-void RecordColors::records_changed(std::int64_t table_id) {
+void RecordColors::records_changed(TableId table_id) {
   std::lock_guard lock(mutex_);
   for (const auto& entry : entries_) {
     if (entry->wanted.table != table_id) continue;

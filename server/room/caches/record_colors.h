@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/ids.h"
 #include "domain/layers/palette.h"
 #include "domain/people/role.h"
 #include "domain/people/visibility.h"
@@ -16,7 +17,7 @@
 namespace strata::room {
 
 // The keys that are meant, ascending. Refused (invalid at `field`): what the columns do not fit.
-Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, std::int64_t table_id,
+Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, TableId table_id,
                                                     Role seen_by, const Highlight& highlight,
                                                     const std::string& field);
 
@@ -30,7 +31,7 @@ class RecordColors : public std::enable_shared_from_this<RecordColors> {
 
   // What is asked for, told apart by the objects: nothing of it may change.
   struct Wanted {
-    std::int64_t table = 0;
+    TableId table = 0;
     Visibility sight = Visibility::everyone;  // the least seen of the columns that may be read
     std::shared_ptr<const Palette> palette;
     std::shared_ptr<const Highlight> highlight;  // null: none
@@ -52,7 +53,7 @@ class RecordColors : public std::enable_shared_from_this<RecordColors> {
     return highlight || !palette.column.empty();
   }
 
-  void records_changed(std::int64_t table_id);
+  void records_changed(TableId table_id);
   void stop();  // nothing more is made, and `ready` not called
 
  private:

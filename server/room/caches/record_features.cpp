@@ -18,7 +18,7 @@ struct RecordFeatures::Shown {
 RecordFeatures::~RecordFeatures() = default;
 
 RecordFeatures::RecordFeatures(store::Store& store, boost::asio::thread_pool& workers,
-                               std::int64_t model_id, std::function<void()> ready)
+                               ModelId model_id, std::function<void()> ready)
     : store_(store), workers_(workers), model_id_(model_id), ready_(std::move(ready)) {}
 
 Result<RecordFeatures::SurfaceFeatures> RecordFeatures::read(const Wanted& wanted,
@@ -29,14 +29,13 @@ Result<RecordFeatures::SurfaceFeatures> RecordFeatures::read(const Wanted& wante
                           : std::make_shared<const std::vector<KeyFeature>>(std::move(features));
 }
 
-Result<RecordFeatures::SurfaceFeatures> RecordFeatures::when(std::int64_t table_id,
-                                                             Visibility sight,
+Result<RecordFeatures::SurfaceFeatures> RecordFeatures::when(TableId table_id, Visibility sight,
                                                              std::int64_t sequence) const {
   const auto at = STRATA_TRY(store_.tables().sequence_when(table_id, model_id_, sequence));
   return read({table_id, sight}, at);
 }
 
-RecordFeatures::SurfaceFeatures RecordFeatures::find(std::int64_t table_id, Visibility sight) {
+RecordFeatures::SurfaceFeatures RecordFeatures::find(TableId table_id, Visibility sight) {
   const Wanted wanted{table_id, sight};
   std::lock_guard lock(mutex_);
   Entry& entry = entries_[wanted];
@@ -44,8 +43,7 @@ RecordFeatures::SurfaceFeatures RecordFeatures::find(std::int64_t table_id, Visi
   return entry.features;
 }
 
-Result<RecordFeatures::SurfaceFeatures> RecordFeatures::newest(std::int64_t table_id,
-                                                               Visibility sight) {
+Result<RecordFeatures::SurfaceFeatures> RecordFeatures::newest(TableId table_id, Visibility sight) {
   const Wanted wanted{table_id, sight};
   {
     std::lock_guard lock(mutex_);
@@ -78,7 +76,7 @@ void RecordFeatures::start(const Wanted& wanted, Entry& entry) {
 void RecordFeatures::run(const Wanted& wanted) {
   auto features = read(wanted);
   if (!features)
-    log::warning("lines and points of table " + std::to_string(wanted.first) + ": " +
+    log::warning("lines and points of table " + to_string(wanted.first) + ": " +
                  features.error().detail);
   bool differ = false;
   {
@@ -98,7 +96,7 @@ void RecordFeatures::run(const Wanted& wanted) {
   if (differ && ready_) ready_();
 }
 
-void RecordFeatures::records_changed(std::int64_t table_id) {
+void RecordFeatures::records_changed(TableId table_id) {
   std::lock_guard lock(mutex_);
   for (auto& [wanted, entry] : entries_) {
     if (wanted.first != table_id) continue;

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <vector>
 
+#include "core/ids.h"
 #include "domain/layers/palette.h"
 #include "domain/people/visibility.h"
 #include "domain/tables/surface_feature.h"
@@ -27,19 +28,18 @@ class RecordFeatures : public std::enable_shared_from_this<RecordFeatures> {
 
   // `ready` is called, on any thread, whenever marks that were asked for are there and differ from
   // before.
-  RecordFeatures(store::Store& store, boost::asio::thread_pool& workers, std::int64_t model_id,
+  RecordFeatures(store::Store& store, boost::asio::thread_pool& workers, ModelId model_id,
                  std::function<void()> ready);
   ~RecordFeatures();
 
   // The newest that are there; null: none are, as far as is known.
-  SurfaceFeatures find(std::int64_t table_id, Visibility sight);
+  SurfaceFeatures find(TableId table_id, Visibility sight);
   // Those of now, read on the calling thread where they are not known. While the database is away,
   // the last that were. Blocks.
-  Result<SurfaceFeatures> newest(std::int64_t table_id, Visibility sight);
+  Result<SurfaceFeatures> newest(TableId table_id, Visibility sight);
   // Those of when an edit of the model was made. Blocks.
-  Result<SurfaceFeatures> when(std::int64_t table_id, Visibility sight,
-                               std::int64_t sequence) const;
-  void records_changed(std::int64_t table_id);
+  Result<SurfaceFeatures> when(TableId table_id, Visibility sight, std::int64_t sequence) const;
+  void records_changed(TableId table_id);
   // `show_features`, as one object for all who show the same now: views are told by it whether they
   // have the same picture.
   render::FeaturesShown shown(const std::vector<LayerFeatures>& layers);
@@ -52,7 +52,7 @@ class RecordFeatures : public std::enable_shared_from_this<RecordFeatures> {
     bool reading = false;
     bool outdated = true;
   };
-  using Wanted = std::pair<std::int64_t, Visibility>;
+  using Wanted = std::pair<TableId, Visibility>;
   void start(const Wanted& wanted, Entry& entry);  // with the mutex held
   void run(const Wanted& wanted);
   // `at` of the table
@@ -60,7 +60,7 @@ class RecordFeatures : public std::enable_shared_from_this<RecordFeatures> {
 
   store::Store& store_;
   boost::asio::thread_pool& workers_;
-  const std::int64_t model_id_;
+  const ModelId model_id_;
   const std::function<void()> ready_;
   std::mutex mutex_;
   std::map<Wanted, Entry> entries_;

@@ -41,7 +41,7 @@ void SurfaceImageCache::put(const SurfaceImage& image) {
   slots_[image.id].image = image;
 }
 
-void SurfaceImageCache::drop(std::int64_t id) {
+void SurfaceImageCache::drop(SurfaceImageId id) {
   Slot gone;
   {
     std::lock_guard lock(mutex_);
@@ -71,7 +71,7 @@ std::vector<SurfaceImage> SurfaceImageCache::by_order() const {
 std::optional<SurfaceImage> SurfaceImageCache::find(const std::string& ref) const {
   std::lock_guard lock(mutex_);
   for (const auto& [id, slot] : slots_)
-    if (is_all_digits(ref) ? std::to_string(id) == ref : slot.image.slug == ref) return slot.image;
+    if (is_all_digits(ref) ? to_string(id) == ref : slot.image.slug == ref) return slot.image;
   return std::nullopt;
 }
 
@@ -95,7 +95,7 @@ std::vector<SurfaceImageView> SurfaceImageCache::shown(
 std::vector<render::SurfaceImageStyle> SurfaceImageCache::styles(
     const std::optional<std::vector<SurfaceImageView>>& wanted) {
   std::vector<render::SurfaceImageStyle> styles;
-  std::vector<std::int64_t> missing;
+  std::vector<SurfaceImageId> missing;
   {
     std::lock_guard lock(mutex_);
     for (const SurfaceImageView& view : shown(wanted)) {
@@ -107,7 +107,7 @@ std::vector<render::SurfaceImageStyle> SurfaceImageCache::styles(
         missing.push_back(view.surface_image_id);
     }
   }
-  for (const std::int64_t id : missing) request(id, {});
+  for (const SurfaceImageId id : missing) request(id, {});
   return styles;
 }
 
@@ -128,13 +128,13 @@ Result<std::vector<render::SurfaceImageStyle>> SurfaceImageCache::wait(
   return styles;
 }
 
-void SurfaceImageCache::request(std::int64_t id, const Loaded& loaded) {
+void SurfaceImageCache::request(SurfaceImageId id, const Loaded& loaded) {
   std::optional<Result<render::SurfaceImageHandle>> known;
   {
     std::lock_guard lock(mutex_);
     const auto found = slots_.find(id);
     if (stopped_ || found == slots_.end()) {
-      known = no_such("look", std::to_string(id), "looks");
+      known = no_such("look", to_string(id), "looks");
     } else if (Slot& slot = found->second; slot.handle) {
       known = slot.handle;
     } else if (slot.damage) {
@@ -152,13 +152,13 @@ void SurfaceImageCache::request(std::int64_t id, const Loaded& loaded) {
   load(id, gpu_side > 0 ? std::min(kMaxSide, gpu_side) : kMaxSide);
 }
 
-void SurfaceImageCache::load(std::int64_t id, int largest_side) {
+void SurfaceImageCache::load(SurfaceImageId id, int largest_side) {
   boost::asio::post(workers_, [self = shared_from_this(), id, largest_side] {
     self->add(id, largest_side, self->read(id, largest_side));
   });
 }
 
-Result<SurfaceImageCache::Bytes> SurfaceImageCache::encoded_bytes(std::int64_t id) {
+Result<SurfaceImageCache::Bytes> SurfaceImageCache::encoded_bytes(SurfaceImageId id) {
   {
     std::lock_guard lock(mutex_);
     if (const auto found = slots_.find(id); found != slots_.end() && found->second.encoded)
@@ -171,7 +171,7 @@ Result<SurfaceImageCache::Bytes> SurfaceImageCache::encoded_bytes(std::int64_t i
   return encoded;
 }
 
-Result<int> SurfaceImageCache::reserve_pixels(std::int64_t id, const PictureInfo& info) {
+Result<int> SurfaceImageCache::reserve_pixels(SurfaceImageId id, const PictureInfo& info) {
   for (int divisor = 1;; divisor *= 2) {
     // Four bytes a pixel, and a third more for the coarser levels.
     const auto pixels = static_cast<std::uint64_t>(info.width / divisor + 1) *
@@ -188,7 +188,7 @@ Result<int> SurfaceImageCache::reserve_pixels(std::int64_t id, const PictureInfo
   }
 }
 
-Result<std::shared_ptr<const render::MipmappedPicture>> SurfaceImageCache::read(std::int64_t id,
+Result<std::shared_ptr<const render::MipmappedPicture>> SurfaceImageCache::read(SurfaceImageId id,
                                                                                 int largest_side) {
   const auto bytes = STRATA_TRY(encoded_bytes(id));
   const std::vector<std::uint8_t>& encoded = *bytes;
@@ -201,7 +201,7 @@ Result<std::shared_ptr<const render::MipmappedPicture>> SurfaceImageCache::read(
       render::make_mipmaps(std::move(picture.rgba), picture.width, picture.height, largest_side));
 }
 
-void SurfaceImageCache::add(std::int64_t id, int largest_side,
+void SurfaceImageCache::add(SurfaceImageId id, int largest_side,
                             const Result<std::shared_ptr<const render::MipmappedPicture>>& image) {
   if (!image) return finish(id, tl::unexpected(image.error()));
   render::ModelHandle model;
@@ -217,7 +217,7 @@ void SurfaceImageCache::add(std::int64_t id, int largest_side,
                               });
 }
 
-void SurfaceImageCache::on_added(std::int64_t id, render::ModelHandle model, int largest_side,
+void SurfaceImageCache::on_added(SurfaceImageId id, render::ModelHandle model, int largest_side,
                                  const Result<render::SurfaceImageHandle>& handle) {
   {
     std::lock_guard lock(mutex_);
@@ -230,7 +230,8 @@ void SurfaceImageCache::on_added(std::int64_t id, render::ModelHandle model, int
   finish(id, handle);
 }
 
-void SurfaceImageCache::finish(std::int64_t id, const Result<render::SurfaceImageHandle>& handle) {
+void SurfaceImageCache::finish(SurfaceImageId id,
+                               const Result<render::SurfaceImageHandle>& handle) {
   std::vector<Loaded> waiting;
   bool kept = false;
   {
@@ -247,8 +248,7 @@ void SurfaceImageCache::finish(std::int64_t id, const Result<render::SurfaceImag
     }
   }
   if (handle && !kept) renderer_.remove_surface_image(*handle);  // deleted meanwhile
-  if (!handle)
-    log::warning("look " + std::to_string(id) + " cannot be shown: " + handle.error().detail);
+  if (!handle) log::warning("look " + to_string(id) + " cannot be shown: " + handle.error().detail);
   for (const Loaded& loaded : waiting) loaded(handle);
   if (kept && ready_) ready_();
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ids.h"
 #include "core/memory_ledger.h"
 #include "domain/scene/surface_image.h"
 #include "media/picture.h"
@@ -35,7 +36,7 @@ class SurfaceImageCache : public std::enable_shared_from_this<SurfaceImageCache>
                     std::function<void()> ready);
 
   void put(const SurfaceImage& image);
-  void drop(std::int64_t id);
+  void drop(SurfaceImageId id);
   std::vector<SurfaceImage> all() const;                           // by order
   std::optional<SurfaceImage> find(const std::string& ref) const;  // id or slug
   // Forgets the textures, which went with the old handle; they are made again when they are asked
@@ -68,17 +69,17 @@ class SurfaceImageCache : public std::enable_shared_from_this<SurfaceImageCache>
   // under the mutex
   std::vector<SurfaceImageView> shown(
       const std::optional<std::vector<SurfaceImageView>>& wanted) const;
-  void request(std::int64_t id, const Loaded& loaded);
-  void load(std::int64_t id, int largest_side);
-  Result<Bytes> encoded_bytes(std::int64_t id);
+  void request(SurfaceImageId id, const Loaded& loaded);
+  void load(SurfaceImageId id, int largest_side);
+  Result<Bytes> encoded_bytes(SurfaceImageId id);
   // what its sides are to be divided by
-  Result<int> reserve_pixels(std::int64_t id, const PictureInfo& info);
-  Result<std::shared_ptr<const render::MipmappedPicture>> read(std::int64_t id, int largest_side);
-  void add(std::int64_t id, int largest_side,
+  Result<int> reserve_pixels(SurfaceImageId id, const PictureInfo& info);
+  Result<std::shared_ptr<const render::MipmappedPicture>> read(SurfaceImageId id, int largest_side);
+  void add(SurfaceImageId id, int largest_side,
            const Result<std::shared_ptr<const render::MipmappedPicture>>& image);
-  void on_added(std::int64_t id, render::ModelHandle model, int largest_side,
+  void on_added(SurfaceImageId id, render::ModelHandle model, int largest_side,
                 const Result<render::SurfaceImageHandle>& handle);
-  void finish(std::int64_t id, const Result<render::SurfaceImageHandle>& handle);
+  void finish(SurfaceImageId id, const Result<render::SurfaceImageHandle>& handle);
 
   store::Store& store_;
   render::Renderer& renderer_;
@@ -86,7 +87,7 @@ class SurfaceImageCache : public std::enable_shared_from_this<SurfaceImageCache>
   MemoryLedger& memory_;
   const std::function<void()> ready_;
   mutable std::mutex mutex_;
-  std::map<std::int64_t, Slot> slots_;
+  std::map<SurfaceImageId, Slot> slots_;
   render::ModelHandle model_ = 0;
   bool stopped_ = false;
 };

@@ -31,7 +31,7 @@ Result<LayerState> read_layer_state(store::Store& store, Layer layer) {
   return state;
 }
 
-Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id,
+Result<JournalContents> read_journal(store::Store& store, ModelId model_id,
                                      const std::vector<LayerState>& held) {
   JournalContents contents;
   // Before the tiles: were they to hold more, the next commit would find out and have everything
@@ -64,7 +64,7 @@ Result<Level> decode(std::span<const std::uint8_t> bytes) {
   return std::make_shared<const mesh::Geometry>(std::move(geometry));
 }
 
-Result<std::vector<Level>> read_coarser_levels(store::Store& store, std::int64_t model_id) {
+Result<std::vector<Level>> read_coarser_levels(store::Store& store, ModelId model_id) {
   auto stored = STRATA_TRY(store.models().detail_levels(model_id));
   std::vector<Level> levels;
   for (auto& bytes : stored) {
@@ -77,7 +77,7 @@ Result<std::vector<Level>> read_coarser_levels(store::Store& store, std::int64_t
 
 }  // namespace
 
-Result<render::ModelGeometry> read_geometry(store::Store& store, std::int64_t model_id) {
+Result<render::ModelGeometry> read_geometry(store::Store& store, ModelId model_id) {
   // Together the coarser levels are about as much work as the full one.
   auto coarser_later =
       std::async(std::launch::async, [&] { return read_coarser_levels(store, model_id); });

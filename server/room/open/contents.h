@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/ids.h"
 #include "domain/layers/layer.h"
 #include "domain/layers/tile_mirror.h"
 #include "mesh/surface/geometry.h"
@@ -21,20 +22,20 @@ struct JournalContents {
   std::int64_t last_sequence = 0;
   std::vector<LayerState> layers;  // with mirrors, without handles
   // by layer: the tiles that `held` has otherwise
-  std::map<std::int64_t, std::vector<TileAddress>> differing;
+  std::map<LayerId, std::vector<TileAddress>> differing;
 };
-Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id,
+Result<JournalContents> read_journal(store::Store& store, ModelId model_id,
                                      const std::vector<LayerState>& held);
 
 // with mirrors, without handles
 Result<LayerState> read_layer_state(store::Store& store, Layer layer);
 
 // The model's mesh and its coarser copies.
-Result<render::ModelGeometry> read_geometry(store::Store& store, std::int64_t model_id);
+Result<render::ModelGeometry> read_geometry(store::Store& store, ModelId model_id);
 
 struct GpuContents {
   render::ModelHandle model = 0;
-  std::map<std::int64_t, LayerHandles> layers;  // by id
+  std::map<LayerId, LayerHandles> layers;  // by id
 };
 // A model and its layers, from their mirrors: all of it or nothing.
 Result<GpuContents> fill_gpu(render::Renderer& renderer, const render::ModelGeometry& geometry,

@@ -62,9 +62,9 @@ DurableState OpenRoom::EditsPart::durable_state() const {
   });
 }
 
-Result<void> OpenRoom::EditsPart::keep_sums(std::int64_t layer_id) {
+Result<void> OpenRoom::EditsPart::keep_sums(LayerId layer_id) {
   room_.touch();
-  const auto found = STRATA_TRY(room_.state(std::to_string(layer_id)));
+  const auto found = STRATA_TRY(room_.state(to_string(layer_id)));
   const auto map = room_.surface_map(found.layer.resolution);
   if (!map) return tl::unexpected(map.error());
   return room_.exclusively<void>(

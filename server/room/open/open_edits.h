@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/ids.h"
 #include "room/edit.h"
 #include "room/edits.h"
 #include "room/open/open_room.h"
@@ -13,7 +14,7 @@ class OpenRoom::EditsPart final : public Edits {
   std::int64_t sequence() const override { return room_.sequence_; }
   std::int64_t durable_sequence() const override { return room_.durable_; }
   DurableState durable_state() const override;
-  Result<void> keep_sums(std::int64_t layer_id) override;
+  Result<void> keep_sums(LayerId layer_id) override;
 
  private:
   Result<void> check_not_retired(const EditRequest& request) const;

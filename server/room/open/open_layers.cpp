@@ -112,9 +112,9 @@ Layer OpenRoom::LayersPart::replace(const Layer& stored) {
   return now;
 }
 
-Result<Layer> OpenRoom::LayersPart::mark_computed(
-    std::int64_t id, const std::string& expression, std::int64_t sequence,
-    const std::map<std::int64_t, std::int64_t>& tables) {
+Result<Layer> OpenRoom::LayersPart::mark_computed(LayerId id, const std::string& expression,
+                                                  std::int64_t sequence,
+                                                  const std::map<TableId, std::int64_t>& tables) {
   auto stored =
       STRATA_TRY(room_.services_.store.layers().set_computed(id, expression, sequence, tables));
   return run_on(room_.strand_, [&] { return replace(stored); });
@@ -134,15 +134,15 @@ void OpenRoom::LayersPart::outdate(const std::function<bool(const LayerFormula&)
   for (const Layer& layer : stale) room_.participants_part_->tell_layer(layer.visibility, layer);
 }
 
-void OpenRoom::LayersPart::records_changed(std::int64_t table_id) {
+void OpenRoom::LayersPart::records_changed(TableId table_id) {
   room_.record_colors_->records_changed(table_id);
   room_.record_features_->records_changed(table_id);
   // Layers that take their colours from the terms of the table.
   for (const Layer& layer : room_.layer_list()) {
     if (!layer.palette_of_terms || layer.table != table_id) continue;
     // One that is gone meanwhile, or cannot be read now, keeps the colours that it has.
-    if (auto stored = room_.services_.store.layers().find(room_.model_id_, std::to_string(layer.id),
-                                                          Role::owner))
+    if (auto stored =
+            room_.services_.store.layers().find(room_.model_id_, to_string(layer.id), Role::owner))
       run_on(room_.strand_, [&] { return replace(*stored); });
   }
   run_on(room_.strand_, [&] {
@@ -176,7 +176,7 @@ Result<Layer> OpenRoom::LayersPart::widen(const Layer& layer, ValueType type,
         "computed layers have the type that they were made with.",
         "type");
   return room_.exclusively<Layer>([this, layer, type, answer]() -> Result<Layer> {
-    const auto held = STRATA_TRY(room_.state(std::to_string(layer.id)));
+    const auto held = STRATA_TRY(room_.state(to_string(layer.id)));
     // The GPU first, as for a new layer. Nothing is on its way to the journal: the mirror is what
     // it holds.
     TileMirror::Snapshot content = held.mirror->snapshot();
@@ -210,19 +210,18 @@ Result<Layer> OpenRoom::LayersPart::widen(const Layer& layer, ValueType type,
   });
 }
 
-Result<void> OpenRoom::LayersPart::erase(std::int64_t id,
-                                         const store::IdempotentResponse<>& answer) {
+Result<void> OpenRoom::LayersPart::erase(LayerId id, const store::IdempotentResponse<>& answer) {
   return unload(id,
                 [this, id, answer] { return room_.services_.store.layers().remove(id, answer); });
 }
 
-Result<void> OpenRoom::LayersPart::put_in_trash(std::int64_t id,
+Result<void> OpenRoom::LayersPart::put_in_trash(LayerId id,
                                                 const store::IdempotentResponse<>& answer) {
   return unload(id,
                 [this, id, answer] { return room_.services_.store.trash().put_layer(id, answer); });
 }
 
-Result<void> OpenRoom::LayersPart::unload(std::int64_t id,
+Result<void> OpenRoom::LayersPart::unload(LayerId id,
                                           const std::function<Result<void>()>& in_store) {
   // In the order of edits: none of the layer's may be on its way to a journal that no longer knows
   // it.
@@ -258,7 +257,7 @@ Result<store::TrashRestored> OpenRoom::LayersPart::restore(
   auto restored = room_.exclusively<store::TrashRestored>(
       [this, entry, answer]() -> Result<store::TrashRestored> {
         auto back = STRATA_TRY(room_.services_.store.trash().restore(entry, answer));
-        if (auto known = load(entry.id); !known) {
+        if (auto known = load(LayerId(entry.id)); !known) {
           // It is there, as the database says: the room reads everything again until it has it.
           log::warning("layer " + std::to_string(entry.id) +
                        " was restored and could not be loaded: " + known.error().detail);
@@ -269,9 +268,9 @@ Result<store::TrashRestored> OpenRoom::LayersPart::restore(
   return restored;
 }
 
-Result<void> OpenRoom::LayersPart::load(std::int64_t id) {
-  auto layer = STRATA_TRY(
-      room_.services_.store.layers().find(room_.model_id_, std::to_string(id), Role::owner));
+Result<void> OpenRoom::LayersPart::load(LayerId id) {
+  auto layer =
+      STRATA_TRY(room_.services_.store.layers().find(room_.model_id_, to_string(id), Role::owner));
   auto state = STRATA_TRY(read_layer_state(room_.services_.store, std::move(layer)));
   auto handles = add_layer(room_.services_.renderer, room_.model_handle(), state);
   if (!handles) return tl::unexpected(room_.gpu_problem(handles.error()));
@@ -292,8 +291,8 @@ Result<void> OpenRoom::LayersPart::load(std::int64_t id) {
           return input.layer == id;
         }))
       continue;
-    if (auto stored = room_.services_.store.layers().find(room_.model_id_, std::to_string(other.id),
-                                                          Role::owner))
+    if (auto stored =
+            room_.services_.store.layers().find(room_.model_id_, to_string(other.id), Role::owner))
       run_on(room_.strand_, [&] { replace(*stored); });
   }
   return {};

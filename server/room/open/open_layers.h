@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ids.h"
 #include "room/layers.h"
 #include "room/open/open_room.h"
 
@@ -19,14 +20,14 @@ class OpenRoom::LayersPart final : public Layers {
   Result<Layer> update(Layer layer, const store::IdempotentResponse<Layer>& answer) override;
   Result<Layer> widen(const Layer& layer, ValueType type,
                       const store::IdempotentResponse<Layer>& answer) override;
-  Result<void> erase(std::int64_t id, const store::IdempotentResponse<>& answer) override;
-  Result<void> put_in_trash(std::int64_t id, const store::IdempotentResponse<>& answer) override;
+  Result<void> erase(LayerId id, const store::IdempotentResponse<>& answer) override;
+  Result<void> put_in_trash(LayerId id, const store::IdempotentResponse<>& answer) override;
   Result<store::TrashRestored> restore(
       const store::TrashEntry& entry,
       const store::IdempotentResponse<store::TrashRestored>& answer) override;
-  Result<Layer> mark_computed(std::int64_t id, const std::string& expression, std::int64_t sequence,
-                              const std::map<std::int64_t, std::int64_t>& tables) override;
-  void records_changed(std::int64_t table_id) override;
+  Result<Layer> mark_computed(LayerId id, const std::string& expression, std::int64_t sequence,
+                              const std::map<TableId, std::int64_t>& tables) override;
+  void records_changed(TableId table_id) override;
   Result<void> check_expression(const Expression& expression, const std::string& field,
                                 Visibility layer) const override;
 
@@ -36,9 +37,9 @@ class OpenRoom::LayersPart final : public Layers {
  private:
   // on the strand: what is stored becomes what is here; tells
   Layer replace(const Layer& stored);
-  Result<void> unload(std::int64_t id, const std::function<Result<void>()>& in_store);
+  Result<void> unload(LayerId id, const std::function<Result<void>()>& in_store);
   // that the store has again; alone, as `exclusively` runs it
-  Result<void> load(std::int64_t id);
+  Result<void> load(LayerId id);
 
   OpenRoom& room_;
 };

@@ -44,7 +44,7 @@ render::ViewStyle OpenParticipant::style(std::uint32_t view_id, View& view) cons
   style.unit_mm = room_->model().metres() * 1000;
   std::vector<LayerFeatures> marked;
   std::vector<LayerState> states = room_->layer_states();
-  sort_as_shown(states, [&](std::int64_t id) {
+  sort_as_shown(states, [&](LayerId id) {
     const auto own = view.overrides.find(id);
     return own == view.overrides.end() ? nullptr : &own->second;
   });
@@ -73,7 +73,7 @@ std::shared_ptr<const Palette> OpenParticipant::palette(std::uint32_t view_id, V
                                                         const LayerState& state) const {
   static const auto kUncolored = std::make_shared<const Palette>(
       Palette{PaletteMode::categorical, 0, 1, {}, {}, kNoValueColor});
-  const std::int64_t id = state.layer.id;
+  const LayerId id = state.layer.id;
   const auto own = view.palettes.find(id);
   const auto& palette = own == view.palettes.end() ? state.palette : own->second;
   const auto asked = view.highlights.find(id);
@@ -166,7 +166,7 @@ Presence OpenParticipant::presence() const {
           pointer_, leading_,  std::nullopt,        camera_};
 }
 
-void OpenParticipant::content_changed(std::int64_t layer_id,
+void OpenParticipant::content_changed(LayerId layer_id,
                                       const std::optional<render::FrameRequest::Box>& box,
                                       std::int64_t sequence) {
   const auto state = room_->layer_state(layer_id);

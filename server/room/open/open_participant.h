@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "core/ids.h"
 #include "core/uuid.h"
 #include "room/caches/record_features.h"
 #include "room/listener.h"
@@ -37,7 +38,7 @@ class OpenParticipant final : public Participant {
   Role role() const { return who_.role; }  // what they see follows from it
   Presence presence() const;               // whom they follow is the room's to say
   // Called by the room.
-  void content_changed(std::int64_t layer_id, const std::optional<render::FrameRequest::Box>& box,
+  void content_changed(LayerId layer_id, const std::optional<render::FrameRequest::Box>& box,
                        std::int64_t sequence);
   void styles_changed();
   void model_changed(render::ModelHandle model);
@@ -45,11 +46,11 @@ class OpenParticipant final : public Participant {
  private:
   struct View {
     std::shared_ptr<stream::Viewer> viewer;
-    std::map<std::int64_t, LayerView> overrides;
+    std::map<LayerId, LayerView> overrides;
     // Of overrides, by layer.
-    std::map<std::int64_t, std::shared_ptr<const Palette>> palettes;
-    std::map<std::int64_t, std::shared_ptr<const Highlight>> highlights;
-    std::map<std::int64_t, std::shared_ptr<const Palette>>
+    std::map<LayerId, std::shared_ptr<const Palette>> palettes;
+    std::map<LayerId, std::shared_ptr<const Highlight>> highlights;
+    std::map<LayerId, std::shared_ptr<const Palette>>
         by_record;                      // last made from records, drawn until the next is there
     std::vector<LayerFeatures> marked;  // what `marks` was made of
     render::FeaturesShown features;

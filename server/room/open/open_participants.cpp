@@ -65,8 +65,7 @@ void OpenRoom::ParticipantsPart::tell_unsaved(const std::vector<Listener::Edit>&
 }
 
 void OpenRoom::ParticipantsPart::content_changed(
-    std::int64_t layer_id, const std::optional<render::FrameRequest::Box>& box,
-    std::int64_t sequence) {
+    LayerId layer_id, const std::optional<render::FrameRequest::Box>& box, std::int64_t sequence) {
   std::lock_guard lock(mutex_);
   for (OpenParticipant* each : here_) each->content_changed(layer_id, box, sequence);
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/ids.h"
 #include "room/listener.h"
 #include "room/open/followers.h"
 #include "room/open/open_room.h"
@@ -40,7 +41,7 @@ class OpenRoom::ParticipantsPart final : public Participants {
   // nothing, where it is new.
   void tell_layer(std::optional<Visibility> before, const Layer& layer);
   void tell_unsaved(const std::vector<Listener::Edit>& edits, const Error& why);
-  void content_changed(std::int64_t layer_id, const std::optional<render::FrameRequest::Box>& box,
+  void content_changed(LayerId layer_id, const std::optional<render::FrameRequest::Box>& box,
                        std::int64_t sequence);
   void styles_changed();
   void model_changed(render::ModelHandle model);

@@ -60,7 +60,7 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomServices& services,
   if (!journal) return tl::unexpected(journal.error());
   auto images = STRATA_TRY(services.store.surface_images().of_model(room->model_id_));
   for (LayerState& state : journal->layers) {
-    const std::int64_t id = state.layer.id;
+    const LayerId id = state.layer.id;
     room->layers_.emplace(id, std::move(state));
   }
   auto mirrors = services.memory.reserve(room->mirror_bytes(), "what its layers hold");
@@ -125,11 +125,11 @@ std::vector<Layer> OpenRoom::layer_list() const {
 Result<LayerState> OpenRoom::state(const std::string& ref) const {
   std::lock_guard lock(mutex_);
   for (const auto& [id, state] : layers_)
-    if (is_all_digits(ref) ? std::to_string(id) == ref : state.layer.slug == ref) return state;
+    if (is_all_digits(ref) ? to_string(id) == ref : state.layer.slug == ref) return state;
   return no_such_layer(ref);
 }
 
-std::optional<LayerState> OpenRoom::layer_state(std::int64_t id) const {
+std::optional<LayerState> OpenRoom::layer_state(LayerId id) const {
   std::lock_guard lock(mutex_);
   auto found = layers_.find(id);
   return found == layers_.end() ? std::nullopt : std::optional(found->second);
@@ -180,7 +180,7 @@ Result<void> OpenRoom::settle() {
   return exclusively<void>([]() -> Result<void> { return {}; });
 }
 
-LayerState* OpenRoom::find_layer(std::int64_t id) {
+LayerState* OpenRoom::find_layer(LayerId id) {
   auto found = layers_.find(id);
   return found == layers_.end() ? nullptr : &found->second;
 }

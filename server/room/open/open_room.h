@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ids.h"
 #include "domain/layers/layer.h"
 #include "domain/layers/tile_mirror.h"
 #include "domain/scene/model.h"
@@ -66,7 +67,7 @@ class OpenRoom final : public Room,
   Result<void> settle();  // returns when every edit before is durable; blocks
 
   // --- PipelineHost (on the strand)
-  LayerState* find_layer(std::int64_t id) override;
+  LayerState* find_layer(LayerId id) override;
   std::vector<query::LayerView> layer_snapshots() override;
   render::ModelHandle model_handle() const override;  // also for participants
   const Model& pipeline_model() const override { return model_; }
@@ -88,7 +89,7 @@ class OpenRoom final : public Room,
   RecordColors& record_colors() const { return *record_colors_; }
   RecordFeatures& record_features() const { return *record_features_; }
   std::vector<LayerState> layer_states() const;  // in drawing order
-  std::optional<LayerState> layer_state(std::int64_t id) const;
+  std::optional<LayerState> layer_state(LayerId id) const;
 
   // --- for Rooms
   void gpu_lost();
@@ -106,7 +107,7 @@ class OpenRoom final : public Room,
   // refuses what waits and what comes, lets go of the GPU; blocks
   void close(const Error& why);
   void close_deleted();  // as the model was deleted: people are told first
-  std::int64_t id() const { return model_id_; }
+  ModelId id() const { return model_id_; }
 
  private:
   class LayersPart;
@@ -138,7 +139,7 @@ class OpenRoom final : public Room,
   Result<std::shared_ptr<const mesh::SurfaceMap>> surface_map(int resolution);
 
   const RoomServices services_;
-  const std::int64_t model_id_;
+  const ModelId model_id_;
   const std::shared_ptr<const mesh::Geometry> geometry_;
   // copies of it, for moving cameras
   const std::vector<std::shared_ptr<const mesh::Geometry>> coarser_;
@@ -154,7 +155,7 @@ class OpenRoom final : public Room,
   // it.
   mutable std::mutex mutex_;
   Model model_;
-  std::map<std::int64_t, LayerState> layers_;
+  std::map<LayerId, LayerState> layers_;
   MemoryLedger::Share geometry_share_, mirrors_share_;
   render::ModelHandle model_handle_ = 0;
   std::chrono::steady_clock::time_point last_used_;  // under `mutex_` everywhere

@@ -36,9 +36,9 @@ Result<SurfaceImage> OpenRoom::SurfaceImagesPart::update(
   return updated;
 }
 
-Result<void> OpenRoom::SurfaceImagesPart::erase(std::int64_t id,
+Result<void> OpenRoom::SurfaceImagesPart::erase(SurfaceImageId id,
                                                 const store::IdempotentResponse<>& answer) {
-  const auto known = room_.surface_image_cache_->find(std::to_string(id));
+  const auto known = room_.surface_image_cache_->find(to_string(id));
   STRATA_TRY(room_.services_.store.surface_images().remove(id, answer));
   room_.surface_image_cache_->drop(id);
   if (known) tell(Listener::LayerChange::deleted, *known);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ids.h"
 #include "room/listener.h"
 #include "room/open/open_room.h"
 #include "room/surface_images.h"
@@ -19,7 +20,7 @@ class OpenRoom::SurfaceImagesPart final : public SurfaceImages {
                               const store::IdempotentResponse<SurfaceImage>& answer) override;
   Result<SurfaceImage> update(const SurfaceImage& image,
                               const store::IdempotentResponse<SurfaceImage>& answer) override;
-  Result<void> erase(std::int64_t id, const store::IdempotentResponse<>& answer) override;
+  Result<void> erase(SurfaceImageId id, const store::IdempotentResponse<>& answer) override;
 
  private:
   void tell(Listener::LayerChange change, const SurfaceImage& image);

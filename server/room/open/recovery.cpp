@@ -58,7 +58,7 @@ void OpenRoom::on_journal_read(Result<JournalContents> contents) {
   if (!contents) return retry_recovery(contents.error());
   recovery_.journal_differs = false;
 
-  std::map<std::int64_t, LayerState> read, before;
+  std::map<LayerId, LayerState> read, before;
   for (LayerState& state : contents->layers) read.emplace(state.layer.id, std::move(state));
   {
     std::lock_guard lock(mutex_);
@@ -105,7 +105,7 @@ void OpenRoom::on_journal_read(Result<JournalContents> contents) {
     tell_layer(Change::deleted, state.layer);
   }
   participants_part_->styles_changed();
-  log::info("model " + std::to_string(model_id_) + " was read from the journal again, up to edit " +
+  log::info("model " + to_string(model_id_) + " was read from the journal again, up to edit " +
             std::to_string(contents->last_sequence));
   recover();
 }
@@ -131,7 +131,7 @@ void OpenRoom::on_gpu_filled(int losses_before, const Result<GpuContents>& conte
 }
 
 void OpenRoom::retry_recovery(const Error& why) {
-  log::warning("model " + std::to_string(model_id_) +
+  log::warning("model " + to_string(model_id_) +
                " could not be loaded again, trying again: " + why.title + ": " + why.detail);
   pipeline_->refuse_waiting({ErrorCode::unavailable,
                              "Model is reloading",

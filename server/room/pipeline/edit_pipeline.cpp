@@ -559,7 +559,7 @@ void EditPipeline::roll_back_when_answered() {
     TileMap tiles, provisional;
     std::int64_t sequence = 0;
   };
-  std::map<std::int64_t, Before> layers;  // what they were before their oldest pending edit
+  std::map<LayerId, Before> layers;  // what they were before their oldest pending edit
   for (auto pending = taken_back.rbegin(); pending != taken_back.rend(); ++pending) {
     Before& before = layers[pending->event.layer_id];
     before.sequence = pending->layer_sequence_before;
@@ -674,7 +674,7 @@ void EditPipeline::journal_read(std::int64_t last_sequence) {
   since_key_tile_.clear();
 }
 
-void EditPipeline::gpu_lacks(std::int64_t layer_id, const std::vector<TileAddress>& tiles) {
+void EditPipeline::gpu_lacks(LayerId layer_id, const std::vector<TileAddress>& tiles) {
   stale_[layer_id].insert(tiles.begin(), tiles.end());
 }
 

@@ -12,6 +12,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/ids.h"
 #include "room/caches/surface_maps.h"
 #include "room/edit.h"
 #include "room/edits.h"
@@ -29,7 +30,7 @@ namespace strata::room {
 class PipelineHost {
  public:
   virtual ~PipelineHost() = default;
-  virtual LayerState* find_layer(std::int64_t id) = 0;
+  virtual LayerState* find_layer(LayerId id) = 0;
   // of all layers, as their mirrors are now
   virtual std::vector<query::LayerView> layer_snapshots() = 0;
   virtual const Model& pipeline_model() const = 0;
@@ -106,7 +107,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   // While paused: the mirrors now hold what the journal has, up to `last_sequence`; the GPU has not
   // got `tiles` of a layer yet.
   void journal_read(std::int64_t last_sequence);
-  void gpu_lacks(std::int64_t layer_id, const std::vector<TileAddress>& tiles);
+  void gpu_lacks(LayerId layer_id, const std::vector<TileAddress>& tiles);
   void resume();
 
   void refuse_waiting(const Error& why);
@@ -183,15 +184,15 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   // commits failed: everything pending is taken back once it is answered
   std::optional<Error> failure_;
   std::deque<Pending> pending_;  // sequence order
-  std::map<std::int64_t, std::set<TileAddress>>
+  std::map<LayerId, std::set<TileAddress>>
       stale_;  // by layer: where the GPU may hold something else than the mirror
   // The same of what waits for review. It is tried again with the next of the layer, and holds back
   // no edit.
-  std::map<std::int64_t, std::set<TileAddress>> stale_marks_;
+  std::map<LayerId, std::set<TileAddress>> stale_marks_;
   boost::asio::steady_timer repair_timer_;
   bool repair_waits_ = false;  // for the timer
   // By layer: revisions since the last whole tile was stored, in this room.
-  std::map<std::int64_t, std::unordered_map<TileAddress, int>> since_key_tile_;
+  std::map<LayerId, std::unordered_map<TileAddress, int>> since_key_tile_;
   struct Running {
     std::string user;
     std::vector<Saved> followers;  // who repeated it

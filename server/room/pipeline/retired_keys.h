@@ -6,33 +6,35 @@
 #include <span>
 #include <utility>
 
+#include "core/ids.h"
+
 namespace strata::room {
 
 // Keys that nothing paints any more, since their records are being deleted or were. A stroke may
 // have begun before, when there was a record. Safe from any thread.
 class RetiredKeys {
  public:
-  void retire(std::int64_t table_id, std::int64_t key) {
+  void retire(TableId table_id, std::int64_t key) {
     std::lock_guard lock(mutex_);
     keys_.emplace(table_id, key);
   }
-  void admit(std::int64_t table_id, std::span<const std::int64_t> keys) {
+  void admit(TableId table_id, std::span<const std::int64_t> keys) {
     std::lock_guard lock(mutex_);
     for (const auto key : keys) keys_.erase({table_id, key});
   }
-  bool has_any_of(std::int64_t table_id) const {
+  bool has_any_of(TableId table_id) const {
     std::lock_guard lock(mutex_);
     const auto found = keys_.lower_bound({table_id, 0});
     return found != keys_.end() && found->first == table_id;
   }
-  bool holds(std::int64_t table_id, std::int64_t key) const {
+  bool holds(TableId table_id, std::int64_t key) const {
     std::lock_guard lock(mutex_);
     return keys_.contains({table_id, key});
   }
 
  private:
   mutable std::mutex mutex_;
-  std::set<std::pair<std::int64_t, std::int64_t>> keys_;  // of tables
+  std::set<std::pair<TableId, std::int64_t>> keys_;  // of tables
 };
 
 }  // namespace strata::room

@@ -36,12 +36,12 @@ glm::dvec3 point_at(const PgResult& rows, int row, int column) {
 
 Comment read_comment(const PgResult& rows, int i) {
   Comment comment;
-  comment.id = rows.integer(i, 0);
-  comment.model_id = rows.integer(i, 1);
-  comment.thread = id_at(rows, i, 2);
+  comment.id = rows.id<CommentId>(i, 0);
+  comment.model_id = rows.id<ModelId>(i, 1);
+  comment.thread = rows.id<std::optional<CommentId>>(i, 2);
   if (!rows.null(i, 3)) comment.place = {point_at(rows, i, 3), point_at(rows, i, 4)};
-  comment.layer_id = id_at(rows, i, 5);
-  comment.table_id = id_at(rows, i, 6);
+  comment.layer_id = rows.id<std::optional<LayerId>>(i, 5);
+  comment.table_id = rows.id<std::optional<TableId>>(i, 6);
   // A key says nothing without its table, which may have been deleted.
   if (comment.table_id) comment.record = id_at(rows, i, 7);
   comment.text = rows.text(i, 8);
@@ -81,22 +81,22 @@ Result<void> check_words(const std::string& text) {
 
 enum class Lock { none, keep, change };  // `keep`: it stays while this transaction lasts
 
-Result<Comment> load(PgConnection& connection, std::int64_t id, Lock lock) {
+Result<Comment> load(PgConnection& connection, CommentId id, Lock lock) {
   const char* sql = lock == Lock::none ? "SELECT " STRATA_COMMENT_COLUMNS " " STRATA_COMMENT
                     : lock == Lock::keep
                         ? "SELECT " STRATA_COMMENT_COLUMNS " " STRATA_COMMENT " FOR SHARE"
                         : "SELECT " STRATA_COMMENT_COLUMNS " " STRATA_COMMENT " FOR UPDATE";
-  auto rows = STRATA_TRY(connection.query(sql, Params().integer(id)));
-  if (rows.rows() == 0) return no_such("comment", std::to_string(id));
+  auto rows = STRATA_TRY(connection.query(sql, Params().id(id)));
+  if (rows.rows() == 0) return no_such("comment", to_string(id));
   return read_comment(rows, 0);
 }
 
-Result<Comment> load_thread(PgConnection& connection, std::int64_t id, Lock lock) {
+Result<Comment> load_thread(PgConnection& connection, CommentId id, Lock lock) {
   auto first = load(connection, id, lock);
   if (first && first->thread)
     return fail(ErrorCode::invalid, "A reply",
                 "Replies are to the first comment of a thread, which is " +
-                    std::to_string(*first->thread) + " here.");
+                    to_string(*first->thread) + " here.");
   return first;
 }
 
@@ -111,7 +111,7 @@ Result<Comments::Page> page_of(Result<PgResult> total, Result<PgResult> rows) {
 
 }  // namespace
 
-Result<Comments::Page> Comments::of_model(std::int64_t model_id, Role seen_by, const Query& query) {
+Result<Comments::Page> Comments::of_model(ModelId model_id, Role seen_by, const Query& query) {
 // Times are told in milliseconds: one that was read counts what was changed then.
 #define STRATA_ASKED_COMMENTS                                                                            \
   " FROM comments c JOIN comments first ON first.id = coalesce(c.thread_id, c.id) WHERE c.model_id = $1" \
@@ -123,14 +123,14 @@ Result<Comments::Page> Comments::of_model(std::int64_t model_id, Role seen_by, c
   return pool_.read([&](PgConnection& connection) {
     auto total = connection.query("SELECT count(*)" STRATA_ASKED_COMMENTS,
                                   Params()
-                                      .integer(model_id)
+                                      .id(model_id)
                                       .optional_text(state)
                                       .optional_text(query.since)
                                       .array(visibilities_seen_by(seen_by)));
     auto rows = connection.query("SELECT " STRATA_COMMENT_COLUMNS STRATA_ASKED_COMMENTS
                                  " AND c.id > $7 ORDER BY c.id LIMIT $5 OFFSET $6",
                                  Params()
-                                     .integer(model_id)
+                                     .id(model_id)
                                      .optional_text(state)
                                      .optional_text(query.since)
                                      .array(visibilities_seen_by(seen_by))
@@ -141,27 +141,26 @@ Result<Comments::Page> Comments::of_model(std::int64_t model_id, Role seen_by, c
   });
 }
 
-Result<Comments::Page> Comments::replies(std::int64_t thread, Role seen_by, int limit, int offset,
+Result<Comments::Page> Comments::replies(CommentId thread, Role seen_by, int limit, int offset,
                                          std::int64_t after) {
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
     auto first = load_thread(connection, thread, Lock::none);
-    if (first && !sees(seen_by, first->visibility))
-      return no_such("comment", std::to_string(thread));
+    if (first && !sees(seen_by, first->visibility)) return no_such("comment", to_string(thread));
     if (!first) return tl::unexpected(first.error());
-    auto total = connection.query("SELECT count(*) FROM comments WHERE thread_id = $1",
-                                  Params().integer(thread));
+    auto total =
+        connection.query("SELECT count(*) FROM comments WHERE thread_id = $1", Params().id(thread));
     auto rows = connection.query(
         "SELECT " STRATA_COMMENT_COLUMNS
         " FROM comments c WHERE thread_id = $1 AND c.id > $4 ORDER BY c.id LIMIT $2 OFFSET $3",
-        Params().integer(thread).integer(limit).integer(offset).integer(after));
+        Params().id(thread).integer(limit).integer(offset).integer(after));
     return page_of(std::move(total), std::move(rows));
   });
 }
 
-Result<Comment> Comments::comment(std::int64_t id, Role seen_by) {
+Result<Comment> Comments::comment(CommentId id, Role seen_by) {
   auto found =
       pool_.read([&](PgConnection& connection) { return load(connection, id, Lock::none); });
-  if (found && !sees(seen_by, found->visibility)) return no_such("comment", std::to_string(id));
+  if (found && !sees(seen_by, found->visibility)) return no_such("comment", to_string(id));
   return found;
 }
 
@@ -170,17 +169,17 @@ Result<Comment> Comments::create(const Comment& comment,
   STRATA_TRY(check_words(comment.text));
   STRATA_TRY(check_text(comment.user, "user"));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Comment> {
-    std::int64_t model_id = comment.model_id;
+    ModelId model_id = comment.model_id;
     if (comment.thread) {
       auto first = STRATA_TRY(load_thread(connection, *comment.thread, Lock::keep));
       model_id = first.model_id;
     }
     // Locked, so that of two at once the later one counts the earlier.
     auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
-                                             Params().integer(model_id)));
-    if (model.rows() == 0) return no_such("model", std::to_string(model_id));
+                                             Params().id(model_id)));
+    if (model.rows() == 0) return no_such("model", to_string(model_id));
     auto count = STRATA_TRY(connection.query("SELECT count(*) FROM comments WHERE model_id = $1",
-                                             Params().integer(model_id)));
+                                             Params().id(model_id)));
     if (count.integer(0, 0) >= kMaxComments)
       return fail(ErrorCode::conflict, "Too many comments",
                   "A model holds at most " + std::to_string(kMaxComments) +
@@ -194,12 +193,12 @@ Result<Comment> Comments::create(const Comment& comment,
         "INSERT INTO comments AS c (model_id, thread_id, position, normal, layer_id, table_id, record_key, text, user_name) "
         "VALUES ($1, $2, nullif($3, '{}'), nullif($4, '{}'), $5, $6, $7, $8, $9) RETURNING " STRATA_COMMENT_COLUMNS,
         Params()
-            .integer(model_id)
-            .optional_integer(comment.thread)
+            .id(model_id)
+            .optional_id(comment.thread)
             .array(position)
             .array(normal)
-            .optional_integer(comment.layer_id)
-            .optional_integer(comment.table_id)
+            .optional_id(comment.layer_id)
+            .optional_id(comment.table_id)
             .optional_integer(comment.record)
             .text(comment.text)
             .text(comment.user)));
@@ -220,7 +219,7 @@ Result<Comment> Comments::update(const Comment& comment,
         "changed = clock_timestamp(), version = version + 1 WHERE id = $1 AND version = $2 "
         "RETURNING " STRATA_COMMENT_COLUMNS,
         Params()
-            .integer(comment.id)
+            .id(comment.id)
             .integer(comment.version)
             .text(comment.text)
             .optional_text(resolver)));
@@ -233,7 +232,7 @@ Result<Comment> Comments::update(const Comment& comment,
 Result<Comments::Removal> Comments::remove(const Comment& comment,
                                            const IdempotentResponse<Removal>& answer) {
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Removal> {
-    const std::int64_t thread = comment.thread.value_or(comment.id);
+    const CommentId thread = comment.thread.value_or(comment.id);
     auto first = load(connection, thread, Lock::change);
     if (!first) return tl::unexpected(first.error());
     auto now = STRATA_TRY(comment.thread ? load(connection, comment.id, Lock::change) : first);
@@ -243,7 +242,7 @@ Result<Comments::Removal> Comments::remove(const Comment& comment,
                   "The comment was deleted; it stands there for its replies until they are.");
     auto others =
         connection.query("SELECT count(*) FROM comments WHERE thread_id = $1 AND id <> $2",
-                         Params().integer(thread).integer(comment.id));
+                         Params().id(thread).id(comment.id));
     if (!others) return tl::unexpected(others.error());
     const bool has_others = others->integer(0, 0) > 0;
     Removal removal{first->model_id, {}, {}};
@@ -251,14 +250,14 @@ Result<Comments::Removal> Comments::remove(const Comment& comment,
       auto emptied = STRATA_TRY(connection.query(
           "UPDATE comments AS c SET text = '', edited = NULL, deleted = clock_timestamp(), "
           "changed = clock_timestamp(), version = version + 1 WHERE id = $1 RETURNING " STRATA_COMMENT_COLUMNS,
-          Params().integer(comment.id)));
+          Params().id(comment.id)));
       removal.left = read_comment(emptied, 0);
       return removal;
     }
     removal.gone.push_back(comment.id);
     if (comment.thread && first->deleted && !has_others) removal.gone.push_back(thread);
     for (const auto id : removal.gone)
-      if (auto done = connection.query("DELETE FROM comments WHERE id = $1", Params().integer(id));
+      if (auto done = connection.query("DELETE FROM comments WHERE id = $1", Params().id(id));
           !done)
         return tl::unexpected(done.error());
     return removal;

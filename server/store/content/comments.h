@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "domain/people/visibility.h"
 #include "store/content/idempotent_response.h"
 
@@ -26,13 +27,15 @@ struct Comment {
     std::string user;
     std::chrono::system_clock::time_point time;
   };
-  std::int64_t id = 0;
-  std::int64_t model_id = 0;
+  CommentId id = 0;
+  ModelId model_id = 0;
   // of a reply: id of the thread's first comment, which has:
-  std::optional<std::int64_t> thread;
+  std::optional<CommentId> thread;
   std::optional<Place> place;  // always
   // what it is about; `record` is a key of the table
-  std::optional<std::int64_t> layer_id, table_id, record;
+  std::optional<LayerId> layer_id;
+  std::optional<TableId> table_id;
+  std::optional<std::int64_t> record;
   std::optional<Resolution> resolved;  // nothing: open
   std::string text;  // plain, UTF-8, at most 10 000 characters; empty where it was deleted
   std::string user;  // who wrote it
@@ -64,11 +67,11 @@ class Comments {
     std::int64_t total = 0;
   };
   // Those that the role sees; one that it does not see is not found.
-  Result<Page> of_model(std::int64_t model_id, Role seen_by, const Query& query);
+  Result<Page> of_model(ModelId model_id, Role seen_by, const Query& query);
   // invalid: the comment is a reply itself.
-  Result<Page> replies(std::int64_t thread, Role seen_by, int limit, int offset,
+  Result<Page> replies(CommentId thread, Role seen_by, int limit, int offset,
                        std::int64_t after = 0);
-  Result<Comment> comment(std::int64_t id, Role seen_by);
+  Result<Comment> comment(CommentId id, Role seen_by);
 
   // Id, times and version are given here; of a reply the model is that of its thread. Refused: text
   // that is blank or too long (invalid), a reply to a reply (invalid), one comment too many
@@ -80,8 +83,8 @@ class Comments {
   // What became of a thread when one of its comments was deleted: those that are gone, and the
   // first one where it stays without its text.
   struct Removal {
-    std::int64_t model_id = 0;
-    std::vector<std::int64_t> gone;
+    ModelId model_id = 0;
+    std::vector<CommentId> gone;
     std::optional<Comment> left;
   };
   // Where version equals. conflict: it is deleted and stands there for its replies.

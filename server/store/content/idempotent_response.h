@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/ids.h"
+
 namespace strata::store {
 
 // The answer to a call with an Idempotency-Key, kept in the transaction of the call's effect:
@@ -20,7 +22,7 @@ struct IdempotentResponse {
   std::string user{};
   // The job that does it, of the jobs that are kept: in the same transaction it is done, and `make`
   // says what it made. 0: no job.
-  std::int64_t job = 0;
+  JobId job = 0;
 };
 
 }  // namespace strata::store

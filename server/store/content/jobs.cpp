@@ -16,8 +16,8 @@ Result<std::vector<StoredJob>> Jobs::take_over(int most) {
         Params().integer(most)));
     std::vector<StoredJob> jobs;
     for (int i = 0; i < rows.rows(); ++i)
-      jobs.push_back({rows.integer(i, 0), rows.integer(i, 1), rows.text(i, 2), rows.text(i, 3),
-                      rows.text(i, 4), rows.json(i, 5), rows.json(i, 6)});
+      jobs.push_back({rows.id<JobId>(i, 0), rows.id<ProjectId>(i, 1), rows.text(i, 2),
+                      rows.text(i, 3), rows.text(i, 4), rows.json(i, 5), rows.json(i, 6)});
     return jobs;
   });
 }
@@ -26,9 +26,8 @@ Result<void> Jobs::begin(const StoredJob& job) {
   return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto kept = STRATA_TRY(connection.query(
         "INSERT INTO jobs (id, project_id, user_name, kind) SELECT $1, id, $3, $4 FROM projects WHERE id = $2",
-        Params().integer(job.id).integer(job.project_id).text(job.user).text(job.kind)));
-    return kept.affected() > 0 ? Result<void>()
-                               : no_such("project", std::to_string(job.project_id));
+        Params().id(job.id).id(job.project_id).text(job.user).text(job.kind)));
+    return kept.affected() > 0 ? Result<void>() : no_such("project", to_string(job.project_id));
   });
 }
 
@@ -37,17 +36,17 @@ Result<void> Jobs::end(const StoredJob& job) {
     auto kept = connection.query(
         "UPDATE jobs SET state = $2, problem = nullif($3, 'null'), result = nullif($4, 'null'), ended = now() "
         "WHERE id = $1 AND (state = 'begun' OR ($2 = 'done' AND state = 'done'))",
-        Params().integer(job.id).text(job.state).json(job.problem).json(job.result));
+        Params().id(job.id).text(job.state).json(job.problem).json(job.result));
     return kept ? Result<void>() : tl::unexpected(kept.error());
   });
 }
 
-Result<void> finish_job(PgConnection& connection, std::int64_t job, nlohmann::json result) {
+Result<void> finish_job(PgConnection& connection, JobId job, nlohmann::json result) {
   result.erase("request");
   STRATA_TRY(check_json(result, "result"));
   auto kept =
       connection.query("UPDATE jobs SET state = 'done', result = $2, ended = now() WHERE id = $1",
-                       Params().integer(job).json(result));
+                       Params().id(job).json(result));
   return kept ? Result<void>() : tl::unexpected(kept.error());
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 
 namespace strata::store {
 
@@ -13,7 +14,8 @@ class Pool;
 
 // A job as the database has it.
 struct StoredJob {
-  std::int64_t id = 0, project_id = 0;
+  JobId id = 0;
+  ProjectId project_id = 0;
   std::string user;  // who started it; empty: nobody in particular
   std::string kind;  // "import", "layers", "look", "figure"
   // "done", "failed", "cancelled"; "lost": the server ended before the job did

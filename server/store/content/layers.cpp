@@ -38,17 +38,22 @@ nlohmann::json palette_to_keep(const Layer& layer) {
   return to_json(terms_palette({}));
 }
 
+template <class Id>
+std::optional<Id> optional_id(const nlohmann::json& value) {
+  return value.is_null() ? std::nullopt : std::optional(value.get<Id>());
+}
+
 Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) {
   Layer layer;
-  layer.id = rows.integer(i, 0);
-  layer.model_id = rows.integer(i, 1);
+  layer.id = rows.id<LayerId>(i, 0);
+  layer.model_id = rows.id<ModelId>(i, 1);
   layer.name = rows.text(i, 2);
   layer.slug = rows.text(i, 3);
   layer.kind = rows.text(i, 4) == "database" ? LayerKind::database : LayerKind::numeric;
   const auto type = parse_value_type(rows.text(i, 5));
   if (!type)
     return fail(ErrorCode::internal, "Damaged layer",
-                "Layer " + std::to_string(layer.id) + " has an unknown value type.");
+                "Layer " + to_string(layer.id) + " has an unknown value type.");
   layer.type = *type;
   layer.resolution = static_cast<int>(rows.integer(i, 6));
   layer.unit = rows.text(i, 7);
@@ -59,7 +64,7 @@ Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) 
   layer.opacity = rows.real(i, 10);
   layer.visible = rows.boolean(i, 11);
   layer.order = static_cast<int>(rows.integer(i, 12));
-  if (!rows.null(i, 13)) layer.table = rows.integer(i, 13);
+  layer.table = rows.id<std::optional<TableId>>(i, 13);
   STRATA_TRY(take_term_colors(connection, layer));
   layer.sequence = rows.integer(i, 14);
   layer.version = rows.integer(i, 15);
@@ -77,20 +82,18 @@ Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) 
       rows.text(i, 16),   rows.boolean(i, 17), rows.integer(i, 18), rows.boolean(i, 20), {},
       rows.boolean(i, 21)};
   for (const nlohmann::json& input : rows.json(i, 19)) {
-    const auto id = [&](const char* member) {
-      const nlohmann::json& value = input.at(member);
-      return value.is_null() ? std::nullopt : std::optional(value.get<std::int64_t>());
-    };
-    formula.inputs.push_back({input.at("slug").get<std::string>(), id("layer"), id("table")});
+    formula.inputs.push_back({input.at("slug").get<std::string>(),
+                              optional_id<LayerId>(input.at("layer")),
+                              optional_id<TableId>(input.at("table"))});
   }
   layer.formula = std::move(formula);
   return layer;
 }
 
-Result<Layer> load_layer(PgConnection& connection, std::int64_t id) {
+Result<Layer> load_layer(PgConnection& connection, LayerId id) {
   auto row = STRATA_TRY(connection.query(
-      "SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE id = $1", Params().integer(id)));
-  if (row.rows() == 0) return no_such("layer", std::to_string(id));
+      "SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE id = $1", Params().id(id)));
+  if (row.rows() == 0) return no_such("layer", to_string(id));
   return read_layer(connection, row, 0);
 }
 
@@ -98,48 +101,44 @@ Result<Layer> load_layer(PgConnection& connection, std::int64_t id) {
 // a layer that is computed from itself, however many others stand between.
 Result<void> set_formula(PgConnection& connection, const Layer& layer) {
   auto gone =
-      connection.query("DELETE FROM layer_inputs WHERE layer_id = $1", Params().integer(layer.id));
+      connection.query("DELETE FROM layer_inputs WHERE layer_id = $1", Params().id(layer.id));
   if (!gone) return tl::unexpected(gone.error());
   if (!layer.formula) {
     auto plain = connection.query(
         "UPDATE layers SET expression = NULL, automatic = false, computed_sequence = 0 WHERE id = $1",
-        Params().integer(layer.id));
+        Params().id(layer.id));
     return plain ? Result<void>{} : tl::unexpected(plain.error());
   }
   // One at a time in a model: two changes that make a circle only together are not done together.
   STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
-                              Params().integer(layer.model_id)));
+                              Params().id(layer.model_id)));
   for (const LayerFormula::Input& input : layer.formula->inputs) {
     STRATA_TRY(connection.query(
         "INSERT INTO layer_inputs (layer_id, slug, input_id, table_id) VALUES ($1, $2, $3, $4)",
-        Params()
-            .integer(layer.id)
-            .text(input.slug)
-            .optional_integer(input.layer)
-            .optional_integer(input.table)));
+        Params().id(layer.id).text(input.slug).optional_id(input.layer).optional_id(input.table)));
   }
   auto circle = STRATA_TRY(connection.query(
       "WITH RECURSIVE reads (id) AS (SELECT input_id FROM layer_inputs WHERE layer_id = $1 UNION "
       "SELECT i.input_id FROM layer_inputs i JOIN reads r ON i.layer_id = r.id) SELECT 1 FROM reads WHERE id = $1",
-      Params().integer(layer.id)));
+      Params().id(layer.id)));
   if (circle.rows() > 0)
     return fail(ErrorCode::invalid, "Computed from itself",
                 "This expression reads layers that are computed from " + layer.name + ".",
                 "expression");
   auto set = connection.query(
       "UPDATE layers SET expression = $2, automatic = $3, computed_sequence = 0 WHERE id = $1",
-      Params().integer(layer.id).text(layer.formula->expression).boolean(layer.formula->automatic));
+      Params().id(layer.id).text(layer.formula->expression).boolean(layer.formula->automatic));
   return set ? Result<void>{} : tl::unexpected(set.error());
 }
 
 constexpr std::size_t kMaxDescriptionLength = 40000;  // bytes of 10000 characters
-Result<void> keep_origin(PgConnection& connection, std::int64_t layer_id, const Layer& layer) {
+Result<void> keep_origin(PgConnection& connection, LayerId layer_id, const Layer& layer) {
   if (!layer.origin) return {};
   auto kept = connection.query(
       "INSERT INTO layer_origins (layer_id, origin, edited_by_hand) VALUES ($1, $2, $3) ON CONFLICT (layer_id) "
       "DO UPDATE SET origin = excluded.origin, edited_by_hand = excluded.edited_by_hand",
       Params()
-          .integer(layer_id)
+          .id(layer_id)
           .text(*layer.origin == LayerOrigin::shape ? "shape" : "expression")
           .boolean(layer.edited_by_hand));
   return kept ? Result<void>{} : tl::unexpected(kept.error());
@@ -167,7 +166,7 @@ bool same_formula(const std::optional<LayerFormula>& a, const std::optional<Laye
 }
 
 // The table of a database layer: of its model's project, or a new one.
-Result<void> find_table(PgConnection& connection, Layer& layer, std::int64_t project_id,
+Result<void> find_table(PgConnection& connection, Layer& layer, ProjectId project_id,
                         const std::vector<Column>& columns) {
   if (!layer.table) {
     Table table;
@@ -180,23 +179,23 @@ Result<void> find_table(PgConnection& connection, Layer& layer, std::int64_t pro
   }
   auto known = STRATA_TRY(connection.query(
       "SELECT 1 FROM record_tables WHERE id = $1 AND project_id = $2 FOR KEY SHARE",
-      Params().integer(*layer.table).integer(project_id)));
+      Params().id(*layer.table).id(project_id)));
   if (known.rows() == 0)
     return fail(ErrorCode::invalid, "No such table",
-                "The model's project has no table " + std::to_string(*layer.table) + ".", "table");
+                "The model's project has no table " + to_string(*layer.table) + ".", "table");
   return {};
 }
 
 }  // namespace
 
-Result<std::vector<Layer>> Layers::of_model(std::int64_t model_id, Role seen_by) {
+Result<std::vector<Layer>> Layers::of_model(ModelId model_id, Role seen_by) {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<Layer>> {
-    auto known = STRATA_TRY(
-        connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(model_id)));
-    if (known.rows() == 0) return no_such("model", std::to_string(model_id));
+    auto known =
+        STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1", Params().id(model_id)));
+    if (known.rows() == 0) return no_such("model", to_string(model_id));
     auto rows = STRATA_TRY(connection.query(
         "SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE model_id = $1 ORDER BY draw_order, id",
-        Params().integer(model_id)));
+        Params().id(model_id)));
     std::vector<Layer> layers;
     for (int i = 0; i < rows.rows(); ++i) {
       auto layer = STRATA_TRY(read_layer(connection, rows, i));
@@ -206,16 +205,16 @@ Result<std::vector<Layer>> Layers::of_model(std::int64_t model_id, Role seen_by)
   });
 }
 
-Result<Layer> Layers::find(std::int64_t model_id, const std::string& ref, Role seen_by) {
+Result<Layer> Layers::find(ModelId model_id, const std::string& ref, Role seen_by) {
   if (!check_text(ref, "layer")) return no_such("layer", ref);
   return pool_.read([&](PgConnection& connection) -> Result<Layer> {
-    const auto id = id_of(ref);
+    const auto id = id_of<LayerId>(ref);
     auto rows = STRATA_TRY(id ? connection.query("SELECT " STRATA_LAYER_COLUMNS
                                                  " FROM layers WHERE model_id = $1 AND id = $2",
-                                                 Params().integer(model_id).integer(*id))
+                                                 Params().id(model_id).id(*id))
                               : connection.query("SELECT " STRATA_LAYER_COLUMNS
                                                  " FROM layers WHERE model_id = $1 AND slug = $2",
-                                                 Params().integer(model_id).text(ref)));
+                                                 Params().id(model_id).text(ref)));
     if (rows.rows() == 0) return no_such("layer", ref);
     auto layer = read_layer(connection, rows, 0);
     if (layer && !sees(seen_by, layer->visibility)) return no_such("layer", ref);
@@ -227,22 +226,22 @@ Result<Layer> Layers::create(Layer layer, const IdempotentResponse<Layer>& answe
                              std::vector<Column> columns) {
   STRATA_TRY(check(layer));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Layer> {
-    auto model =
-        STRATA_TRY(connection.query("SELECT project_id FROM models WHERE id = $1 FOR KEY SHARE",
-                                    Params().integer(layer.model_id)));
-    if (model.rows() == 0) return no_such("model", std::to_string(layer.model_id));
+    auto model = STRATA_TRY(connection.query(
+        "SELECT project_id FROM models WHERE id = $1 FOR KEY SHARE", Params().id(layer.model_id)));
+    if (model.rows() == 0) return no_such("model", to_string(layer.model_id));
     if (layer.kind == LayerKind::database)
-      STRATA_TRY(find_table(connection, layer, model.integer(0, 0), columns));
+      STRATA_TRY(find_table(connection, layer, model.id<ProjectId>(0, 0), columns));
     auto row = insert_with_slug(
         connection, "SELECT slug::text FROM layers WHERE slug LIKE $1 AND model_id = $2",
-        layer.model_id, layer.slug.empty() ? layer.name : layer.slug, [&](const std::string& slug) {
+        layer.model_id.number(), layer.slug.empty() ? layer.name : layer.slug,
+        [&](const std::string& slug) {
           return connection.query(
               "INSERT INTO layers (model_id, name, slug, kind, type, resolution, unit, description, palette, opacity, visible, "
               "draw_order, table_id, locked, visibility, review, labels, descriptions) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, "
               "$15, $16, $17, $18) "
               "ON CONFLICT DO NOTHING RETURNING " STRATA_LAYER_COLUMNS,
               Params()
-                  .integer(layer.model_id)
+                  .id(layer.model_id)
                   .text(layer.name)
                   .text(slug)
                   .text(layer.kind == LayerKind::database ? "database" : "numeric")
@@ -254,7 +253,7 @@ Result<Layer> Layers::create(Layer layer, const IdempotentResponse<Layer>& answe
                   .real(layer.opacity)
                   .boolean(layer.visible)
                   .integer(layer.order)
-                  .optional_integer(layer.table)
+                  .optional_id(layer.table)
                   .boolean(layer.locked)
                   .text(name(layer.visibility))
                   .boolean(layer.review)
@@ -263,7 +262,7 @@ Result<Layer> Layers::create(Layer layer, const IdempotentResponse<Layer>& answe
         });
     if (!row || (!layer.formula && !layer.origin))
       return row ? read_layer(connection, *row, 0) : tl::unexpected(row.error());
-    layer.id = row->integer(0, 0);
+    layer.id = row->id<LayerId>(0, 0);
     STRATA_TRY(keep_origin(connection, layer.id, layer));
     if (!layer.formula) return load_layer(connection, layer.id);
     STRATA_TRY(set_formula(connection, layer));
@@ -279,7 +278,7 @@ Result<Layer> Layers::update(Layer layer, const IdempotentResponse<Layer>& answe
         "draw_order = $10, locked = $11, visibility = $12, review = $13, labels = $14, descriptions = $15, version = version + 1 WHERE id = $1 AND version = $2 "
         "RETURNING " STRATA_LAYER_COLUMNS,
         Params()
-            .integer(layer.id)
+            .id(layer.id)
             .integer(layer.version)
             .text(layer.name)
             .text(layer.slug)
@@ -305,36 +304,36 @@ Result<Layer> Layers::update(Layer layer, const IdempotentResponse<Layer>& answe
       STRATA_TRY(set_formula(connection, layer));
       return load_layer(connection, layer.id);
     }
-    auto known = STRATA_TRY(
-        connection.query("SELECT 1 FROM layers WHERE id = $1", Params().integer(layer.id)));
-    if (known.rows() == 0) return no_such("layer", std::to_string(layer.id));
+    auto known =
+        STRATA_TRY(connection.query("SELECT 1 FROM layers WHERE id = $1", Params().id(layer.id)));
+    if (known.rows() == 0) return no_such("layer", to_string(layer.id));
     return stale("layer");
   });
 }
 
-Result<std::map<std::int64_t, std::int64_t>> Layers::table_sequences_of(std::int64_t layer_id) {
-  return pool_.read([&](PgConnection& connection) -> Result<std::map<std::int64_t, std::int64_t>> {
+Result<std::map<TableId, std::int64_t>> Layers::table_sequences_of(LayerId layer_id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::map<TableId, std::int64_t>> {
     auto rows = STRATA_TRY(connection.query(
         "SELECT t.id, t.sequence FROM layer_inputs i JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = $1",
-        Params().integer(layer_id)));
-    std::map<std::int64_t, std::int64_t> sequences;
-    for (int i = 0; i < rows.rows(); ++i) sequences[rows.integer(i, 0)] = rows.integer(i, 1);
+        Params().id(layer_id)));
+    std::map<TableId, std::int64_t> sequences;
+    for (int i = 0; i < rows.rows(); ++i) sequences[rows.id<TableId>(i, 0)] = rows.integer(i, 1);
     return sequences;
   });
 }
 
-Result<Layer> Layers::set_computed(std::int64_t layer_id, const std::string& expression,
+Result<Layer> Layers::set_computed(LayerId layer_id, const std::string& expression,
                                    std::int64_t sequence,
-                                   const std::map<std::int64_t, std::int64_t>& tables) {
+                                   const std::map<TableId, std::int64_t>& tables) {
   return pool_.write([&](PgConnection& connection) -> Result<Layer> {
     STRATA_TRY(connection.query(
         "UPDATE layers SET computed_sequence = $3 WHERE id = $1 AND expression = $2",
-        Params().integer(layer_id).text(expression).integer(sequence)));
+        Params().id(layer_id).text(expression).integer(sequence)));
     // What was edited by hand is overwritten, and as it was when it was made.
     STRATA_TRY(connection.query(
         "WITH whole AS (UPDATE layer_origins SET edited_by_hand = false WHERE layer_id = $1 AND edited_by_hand RETURNING layer_id) "
         "UPDATE layers SET locked = true, version = version + 1 FROM whole WHERE id = whole.layer_id",
-        Params().integer(layer_id)));
+        Params().id(layer_id)));
     PgArray ids(oid::kInt8), sequences(oid::kInt8);
     for (const auto& [table, at] : tables) {
       ids.add(table);
@@ -343,7 +342,7 @@ Result<Layer> Layers::set_computed(std::int64_t layer_id, const std::string& exp
     STRATA_TRY(connection.query(
         "UPDATE layer_inputs i SET table_sequence = v.at FROM unnest($2::bigint[], $3::bigint[]) v (id, at) "
         "WHERE i.layer_id = $1 AND i.table_id = v.id",
-        Params().integer(layer_id).array(ids).array(sequences)));
+        Params().id(layer_id).array(ids).array(sequences)));
     return load_layer(connection, layer_id);
   });
 }
@@ -377,8 +376,7 @@ Result<void> widen_revisions(PgConnection& connection, const Layer& layer, Value
     auto rows = STRATA_TRY(connection.query(
         "SELECT tile_y, tile_x, sequence, difference, key_tile FROM tile_revisions WHERE layer_id = $1 AND "
         "(tile_y, tile_x, sequence) > ($2, $3, $4) ORDER BY tile_y, tile_x, sequence LIMIT $5",
-        Params().integer(layer.id).integer(y).integer(x).integer(sequence).integer(
-            kRevisionsAtOnce)));
+        Params().id(layer.id).integer(y).integer(x).integer(sequence).integer(kRevisionsAtOnce)));
     if (rows.rows() == 0) return {};
     PgArray ys(oid::kInt8), xs(oid::kInt8), sequences(oid::kInt8), differences(oid::kBytea),
         keys(oid::kBytea);
@@ -400,13 +398,7 @@ Result<void> widen_revisions(PgConnection& connection, const Layer& layer, Value
         "UPDATE tile_revisions r SET difference = n.difference, key_tile = n.key_tile FROM "
         "unnest($2::bigint[], $3::bigint[], $4::bigint[], $5::bytea[], $6::bytea[]) AS n (y, x, sequence, difference, "
         "key_tile) WHERE r.layer_id = $1 AND r.tile_y = n.y AND r.tile_x = n.x AND r.sequence = n.sequence",
-        Params()
-            .integer(layer.id)
-            .array(ys)
-            .array(xs)
-            .array(sequences)
-            .array(differences)
-            .array(keys)));
+        Params().id(layer.id).array(ys).array(xs).array(sequences).array(differences).array(keys)));
   }
 }
 
@@ -417,7 +409,7 @@ Result<Layer> Layers::widen(const Layer& layer, ValueType type,
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Layer> {
     auto row = STRATA_TRY(connection.query(
         "UPDATE layers SET type = $3, version = version + 1 WHERE id = $1 AND version = $2 AND type = $4 RETURNING id",
-        Params().integer(layer.id).integer(layer.version).text(name(type)).text(name(layer.type))));
+        Params().id(layer.id).integer(layer.version).text(name(type)).text(name(layer.type))));
     if (row.rows() == 0) {
       auto known = load_layer(connection, layer.id);
       return known ? stale("layer") : tl::unexpected(known.error());
@@ -427,11 +419,11 @@ Result<Layer> Layers::widen(const Layer& layer, ValueType type,
   });
 }
 
-Result<void> Layers::remove(std::int64_t id, const IdempotentResponse<>& answer) {
+Result<void> Layers::remove(LayerId id, const IdempotentResponse<>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<void> {
     auto known =
-        STRATA_TRY(connection.query("SELECT 1 FROM layers WHERE id = $1", Params().integer(id)));
-    return known.rows() > 0 ? erase_layer(connection, id) : no_such("layer", std::to_string(id));
+        STRATA_TRY(connection.query("SELECT 1 FROM layers WHERE id = $1", Params().id(id)));
+    return known.rows() > 0 ? erase_layer(connection, id) : no_such("layer", to_string(id));
   };
   return change(pool_, answer, work, kBulkLimits);
 }

@@ -29,8 +29,8 @@ glm::dvec3 read_vec3(const PgResult& rows, int i, int column) {
 Model read_model(const PgResult& rows, int i) {
   Model m;
   int c = 0;
-  m.id = rows.integer(i, c++);
-  m.project_id = rows.integer(i, c++);
+  m.id = rows.id<ModelId>(i, c++);
+  m.project_id = rows.id<ProjectId>(i, c++);
   m.name = rows.text(i, c++);
   m.slug = rows.text(i, c++);
   m.unit = parse_unit(rows.text(i, c++)).value_or(Unit::m);
@@ -89,7 +89,7 @@ Params metadata(const Model& m, const std::string& slug) {
   Params params;
   params.text(m.name)
       .text(slug)
-      .integer(m.project_id)
+      .id(m.project_id)
       .text(name(m.unit))
       .boolean(m.unit_assumed)
       .boolean(m.scale_verified)
@@ -154,10 +154,10 @@ SurfaceImage surface_image_of(const NewModel::NewSurfaceImage& fresh, std::size_
   return image;
 }
 
-Result<Model> model_by_id(PgConnection& connection, std::int64_t id) {
+Result<Model> model_by_id(PgConnection& connection, ModelId id) {
   static const std::string sql = std::string(kSelectModels) + "WHERE m.id = $1";
-  auto rows = STRATA_TRY(connection.query(sql.c_str(), Params().integer(id)));
-  if (rows.rows() == 0) return no_such("model", std::to_string(id));
+  auto rows = STRATA_TRY(connection.query(sql.c_str(), Params().id(id)));
+  if (rows.rows() == 0) return no_such("model", to_string(id));
   return read_model(rows, 0);
 }
 
@@ -201,11 +201,11 @@ Result<Model> Models::create(const NewModel& fresh, const std::function<bool()>&
         connection, "SELECT slug::text FROM models WHERE slug LIKE $1", {},
         m.slug.empty() ? m.name : m.slug,
         [&](const std::string& slug) { return insert_model(connection, m, slug, geometry); }));
-    const std::int64_t id = row.integer(0, 0);
+    const ModelId id = row.id<ModelId>(0, 0);
     for (std::size_t i = 1; i < first_surface_image; ++i) {
       STRATA_TRY(connection.query(
           "INSERT INTO detail_levels (model_id, level, geometry) VALUES ($1, $2, $3)",
-          Params().integer(id).integer(static_cast<std::int64_t>(i)).bytes(contents[i].hash)));
+          Params().id(id).integer(static_cast<std::int64_t>(i)).bytes(contents[i].hash)));
     }
     for (std::size_t i = 0; i < fresh.images.size(); ++i) {
       SurfaceImage image = surface_image_of(fresh.images[i], i);
@@ -216,7 +216,7 @@ Result<Model> Models::create(const NewModel& fresh, const std::function<bool()>&
       STRATA_TRY(connection.query(
           "INSERT INTO model_sources (model_id, name, position, sha256) VALUES ($1, $2, $3, $4)",
           Params()
-              .integer(id)
+              .id(id)
               .text(fresh.sources[i].name)
               .integer(static_cast<std::int64_t>(i))
               .bytes(contents[first_source + i].hash)));
@@ -227,11 +227,11 @@ Result<Model> Models::create(const NewModel& fresh, const std::function<bool()>&
   return change(pool_, answer, work, kBulkLimits);
 }
 
-Result<std::vector<Model>> Models::all(std::optional<std::int64_t> project_id) {
+Result<std::vector<Model>> Models::all(std::optional<ProjectId> project_id) {
   static const std::string sql =
       std::string(kSelectModels) + "WHERE $1 IS NULL OR m.project_id = $1 ORDER BY m.id";
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<Model>> {
-    auto rows = STRATA_TRY(connection.query(sql.c_str(), Params().optional_integer(project_id)));
+    auto rows = STRATA_TRY(connection.query(sql.c_str(), Params().optional_id(project_id)));
     std::vector<Model> models;
     for (int i = 0; i < rows.rows(); ++i) models.push_back(read_model(rows, i));
     return models;
@@ -242,7 +242,7 @@ Result<Model> Models::find(const std::string& ref) {
   if (!check_text(ref, "model")) return no_such("model", ref);
   static const std::string by_slug = std::string(kSelectModels) + "WHERE m.slug = $1";
   return pool_.read([&](PgConnection& connection) -> Result<Model> {
-    if (const auto id = id_of(ref)) return model_by_id(connection, *id);
+    if (const auto id = id_of<ModelId>(ref)) return model_by_id(connection, *id);
     auto rows = STRATA_TRY(connection.query(by_slug.c_str(), Params().text(ref)));
     if (rows.rows() == 0) return no_such("model", ref);
     return read_model(rows, 0);
@@ -257,13 +257,13 @@ Result<Model> Models::update(Model m, const IdempotentResponse<Model>& answer) {
         "north = $8, crs = $9, default_resolution = $10, inventory_number = $11, owner = $12, creator = $13, captured = $14, "
         "method = $15, accuracy = $16, processing = $17, rights_uri = $18, credit = $19, source_download = $20, "
         "version = version + 1 WHERE id = $21 AND version = $22 RETURNING id",
-        metadata(m, m.slug).integer(m.id).integer(m.version)));
+        metadata(m, m.slug).id(m.id).integer(m.version)));
     auto now = STRATA_TRY(model_by_id(connection, m.id));
     if (row.rows() == 0) return stale("model");
     auto layer = STRATA_TRY(connection.query(
         "SELECT l.name FROM all_layers l JOIN record_tables t ON t.id = l.table_id WHERE l.model_id = $1 AND t.project_id <> $2 "
         "LIMIT 1",
-        Params().integer(m.id).integer(m.project_id)));
+        Params().id(m.id).id(m.project_id)));
     if (layer.rows() > 0)
       return fail(ErrorCode::conflict, "Tables stay",
                   "The keys of the layer " + layer.text(0, 0) +
@@ -273,32 +273,32 @@ Result<Model> Models::update(Model m, const IdempotentResponse<Model>& answer) {
   });
 }
 
-Result<void> Models::remove(std::int64_t id, const IdempotentResponse<>& answer) {
+Result<void> Models::remove(ModelId id, const IdempotentResponse<>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<void> {
     auto known =
-        STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(id)));
-    return known.rows() > 0 ? erase_model(connection, id) : no_such("model", std::to_string(id));
+        STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1", Params().id(id)));
+    return known.rows() > 0 ? erase_model(connection, id) : no_such("model", to_string(id));
   };
   return change(pool_, answer, work, kBulkLimits);
 }
 
-Result<std::vector<std::uint8_t>> Models::geometry(std::int64_t model_id) {
+Result<std::vector<std::uint8_t>> Models::geometry(ModelId model_id) {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<std::uint8_t>> {
     auto row = STRATA_TRY(connection.query(
         "SELECT b.sha256, b.bytes FROM models m JOIN blobs b ON b.sha256 = m.geometry WHERE m.id = $1",
-        Params().integer(model_id)));
-    if (row.rows() == 0) return no_such("model", std::to_string(model_id));
+        Params().id(model_id)));
+    if (row.rows() == 0) return no_such("model", to_string(model_id));
     return read_blob(connection, row.bytes(0, 0), row.integer(0, 1));
   });
 }
 
-Result<std::vector<std::vector<std::uint8_t>>> Models::detail_levels(std::int64_t model_id) {
+Result<std::vector<std::vector<std::uint8_t>>> Models::detail_levels(ModelId model_id) {
   using Levels = std::vector<std::vector<std::uint8_t>>;
   return pool_.read([&](PgConnection& connection) -> Result<Levels> {
     auto rows = STRATA_TRY(connection.query(
         "SELECT b.sha256, b.bytes FROM detail_levels d JOIN blobs b ON b.sha256 = d.geometry WHERE d.model_id = $1 "
         "ORDER BY d.level",
-        Params().integer(model_id)));
+        Params().id(model_id)));
     Levels levels;
     for (int i = 0; i < rows.rows(); ++i) {
       auto level = STRATA_TRY(read_blob(connection, rows.bytes(i, 0), rows.integer(i, 1)));
@@ -309,14 +309,14 @@ Result<std::vector<std::vector<std::uint8_t>>> Models::detail_levels(std::int64_
 }
 
 Result<SourceFile> Models::read_source(
-    std::int64_t model_id, const std::string& file,
+    ModelId model_id, const std::string& file,
     const std::function<bool(std::span<const std::uint8_t>)>& sink) {
   if (!check_text(file, "name")) return no_such("source file", file);
   auto known = STRATA_TRY(pool_.read([&](PgConnection& connection) {
     return connection.query(
         "SELECT b.sha256, b.bytes FROM model_sources s JOIN blobs b USING (sha256) "
         "WHERE s.model_id = $1 AND s.name = $2",
-        Params().integer(model_id).text(file));
+        Params().id(model_id).text(file));
   }));
   if (known.rows() == 0) return no_such("source file", file);
   const SourceFile source{file, to_hex(known.bytes(0, 0)),

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "domain/scene/model.h"
 #include "store/content/idempotent_response.h"
 
@@ -43,16 +44,16 @@ class Models {
 
   Result<Model> create(const NewModel& model, const std::function<bool()>& cancelled,
                        const IdempotentResponse<Model>& answer = {});  // one transaction
-  Result<std::vector<Model>> all(std::optional<std::int64_t> project_id = {});
+  Result<std::vector<Model>> all(std::optional<ProjectId> project_id = {});
   Result<Model> find(const std::string& ref);
   Result<Model> update(Model model, const IdempotentResponse<Model>& answer = {});
   // for ever; people's go by the Trash
-  Result<void> remove(std::int64_t id, const IdempotentResponse<>& answer = {});
-  Result<std::vector<std::uint8_t>> geometry(std::int64_t model_id);
+  Result<void> remove(ModelId id, const IdempotentResponse<>& answer = {});
+  Result<std::vector<std::uint8_t>> geometry(ModelId model_id);
   // finest first
-  Result<std::vector<std::vector<std::uint8_t>>> detail_levels(std::int64_t model_id);
+  Result<std::vector<std::vector<std::uint8_t>>> detail_levels(ModelId model_id);
   // Streams a source file in chunks ≤ 1 MiB; `sink` returns false to stop.
-  Result<SourceFile> read_source(std::int64_t model_id, const std::string& name,
+  Result<SourceFile> read_source(ModelId model_id, const std::string& name,
                                  const std::function<bool(std::span<const std::uint8_t>)>& sink);
 
  private:

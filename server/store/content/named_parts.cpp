@@ -6,9 +6,15 @@ namespace strata::store {
 namespace {
 
 NamedPart read_part(const PgResult& rows, int i) {
-  return {rows.integer(i, 0), rows.integer(i, 1), rows.text(i, 2),
-          rows.text(i, 3),    rows.text(i, 4),    rows.json(i, 5),
-          rows.text(i, 6),    rows.time(i, 7),    rows.integer(i, 8)};
+  return {rows.id<NamedPartId>(i, 0),
+          rows.id<ModelId>(i, 1),
+          rows.text(i, 2),
+          rows.text(i, 3),
+          rows.text(i, 4),
+          rows.json(i, 5),
+          rows.text(i, 6),
+          rows.time(i, 7),
+          rows.integer(i, 8)};
 }
 
 Result<void> check_part(const NamedPart& part) {
@@ -31,15 +37,15 @@ std::string NamedParts::sql(std::string text) const {
   return text;
 }
 
-Result<NamedParts::Page> NamedParts::of_model(std::int64_t model_id, int limit, int offset,
+Result<NamedParts::Page> NamedParts::of_model(ModelId model_id, int limit, int offset,
                                               std::int64_t after) {
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
     auto total = STRATA_TRY(connection.query(
-        sql("SELECT count(*) FROM TABLE WHERE model_id = $1").c_str(), Params().integer(model_id)));
+        sql("SELECT count(*) FROM TABLE WHERE model_id = $1").c_str(), Params().id(model_id)));
     auto rows = STRATA_TRY(connection.query(
         sql("SELECT PART FROM TABLE WHERE model_id = $1 AND id > $4 ORDER BY id LIMIT $2 OFFSET $3")
             .c_str(),
-        Params().integer(model_id).integer(limit).integer(offset).integer(after)));
+        Params().id(model_id).integer(limit).integer(offset).integer(after)));
     Page page;
     page.total = total.integer(0, 0);
     for (int i = 0; i < rows.rows(); ++i) page.parts.push_back(read_part(rows, i));
@@ -47,26 +53,26 @@ Result<NamedParts::Page> NamedParts::of_model(std::int64_t model_id, int limit, 
   });
 }
 
-Result<std::map<std::int64_t, std::string>> NamedParts::slugs(std::int64_t model_id) {
-  return pool_.read([&](PgConnection& connection) -> Result<std::map<std::int64_t, std::string>> {
+Result<std::map<NamedPartId, std::string>> NamedParts::slugs(ModelId model_id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::map<NamedPartId, std::string>> {
     auto rows = STRATA_TRY(connection.query(
-        sql("SELECT id, slug FROM TABLE WHERE model_id = $1").c_str(), Params().integer(model_id)));
-    std::map<std::int64_t, std::string> slugs;
-    for (int i = 0; i < rows.rows(); ++i) slugs[rows.integer(i, 0)] = rows.text(i, 1);
+        sql("SELECT id, slug FROM TABLE WHERE model_id = $1").c_str(), Params().id(model_id)));
+    std::map<NamedPartId, std::string> slugs;
+    for (int i = 0; i < rows.rows(); ++i) slugs[rows.id<NamedPartId>(i, 0)] = rows.text(i, 1);
     return slugs;
   });
 }
 
-Result<NamedPart> NamedParts::find(std::int64_t model_id, const std::string& ref) {
+Result<NamedPart> NamedParts::find(ModelId model_id, const std::string& ref) {
   if (!check_text(ref, kind_.name)) return no_such(kind_.name, ref);
   return pool_.read([&](PgConnection& connection) -> Result<NamedPart> {
-    const auto id = id_of(ref);
+    const auto id = id_of<NamedPartId>(ref);
     auto rows =
         id ? connection.query(sql("SELECT PART FROM TABLE WHERE model_id = $1 AND id = $2").c_str(),
-                              Params().integer(model_id).integer(*id))
+                              Params().id(model_id).id(*id))
            : connection.query(
                  sql("SELECT PART FROM TABLE WHERE model_id = $1 AND slug = $2").c_str(),
-                 Params().integer(model_id).text(ref));
+                 Params().id(model_id).text(ref));
     if (!rows) return tl::unexpected(rows.error());
     if (rows->rows() == 0) return no_such(kind_.name, ref);
     return read_part(*rows, 0);
@@ -79,11 +85,10 @@ Result<NamedPart> NamedParts::create(const NamedPart& part,
   return change(pool_, answer, [&](PgConnection& connection) -> Result<NamedPart> {
     // Locked, so that of two at once the later one counts the earlier.
     auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
-                                             Params().integer(part.model_id)));
-    if (model.rows() == 0) return no_such("model", std::to_string(part.model_id));
-    auto count =
-        STRATA_TRY(connection.query(sql("SELECT count(*) FROM TABLE WHERE model_id = $1").c_str(),
-                                    Params().integer(part.model_id)));
+                                             Params().id(part.model_id)));
+    if (model.rows() == 0) return no_such("model", to_string(part.model_id));
+    auto count = STRATA_TRY(connection.query(
+        sql("SELECT count(*) FROM TABLE WHERE model_id = $1").c_str(), Params().id(part.model_id)));
     if (count.integer(0, 0) >= kind_.most)
       return fail(ErrorCode::conflict, "Too many " + std::string(kind_.table),
                   "A model has at most " + std::to_string(kind_.most) + " " + kind_.table +
@@ -93,9 +98,9 @@ Result<NamedPart> NamedParts::create(const NamedPart& part,
         "INSERT INTO TABLE (model_id, slug, name, text, content, user_name) VALUES ($1, $2, $3, $4, $5, $6) "
         "ON CONFLICT (model_id, slug) DO NOTHING RETURNING PART");
     auto row = STRATA_TRY(insert_with_slug(
-        connection, taken.c_str(), part.model_id, part.name, [&](const std::string& slug) {
+        connection, taken.c_str(), part.model_id.number(), part.name, [&](const std::string& slug) {
           return connection.query(insert.c_str(), Params()
-                                                      .integer(part.model_id)
+                                                      .id(part.model_id)
                                                       .text(slug)
                                                       .text(part.name)
                                                       .text(part.text)
@@ -127,15 +132,15 @@ Result<NamedPart> NamedParts::update(const NamedPart& part,
             "WHERE id = $1 AND version = $2 RETURNING PART")
             .c_str(),
         Params()
-            .integer(part.id)
+            .id(part.id)
             .integer(part.version)
             .text(part.name)
             .text(part.text)
             .json(part.content)));
     if (row.rows() > 0) return read_part(row, 0);
-    return missed(connection.query(sql("SELECT 1 FROM TABLE WHERE id = $1").c_str(),
-                                   Params().integer(part.id)),
-                  kind_, part);
+    return missed(
+        connection.query(sql("SELECT 1 FROM TABLE WHERE id = $1").c_str(), Params().id(part.id)),
+        kind_, part);
   });
 }
 
@@ -143,11 +148,11 @@ Result<void> NamedParts::remove(const NamedPart& part, const IdempotentResponse<
   return change(pool_, answer, [&](PgConnection& connection) -> Result<void> {
     auto done =
         STRATA_TRY(connection.query(sql("DELETE FROM TABLE WHERE id = $1 AND version = $2").c_str(),
-                                    Params().integer(part.id).integer(part.version)));
+                                    Params().id(part.id).integer(part.version)));
     if (done.affected() > 0) return {};
-    return missed(connection.query(sql("SELECT 1 FROM TABLE WHERE id = $1").c_str(),
-                                   Params().integer(part.id)),
-                  kind_, part);
+    return missed(
+        connection.query(sql("SELECT 1 FROM TABLE WHERE id = $1").c_str(), Params().id(part.id)),
+        kind_, part);
   });
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "store/content/idempotent_response.h"
 
 namespace strata::store {
@@ -17,8 +18,8 @@ class Pool;
 // What people make of a model and come back to: a view (where from, and what is shown how) or a
 // tour of views.
 struct NamedPart {
-  std::int64_t id = 0;
-  std::int64_t model_id = 0;
+  NamedPartId id = 0;
+  ModelId model_id = 0;
   std::string slug;  // unique in the model; made of the name when it is empty
   std::string name;
   std::string text;  // plain, UTF-8, at most 10 000 characters
@@ -47,9 +48,9 @@ class NamedParts {
     std::int64_t total = 0;
   };
   // `after`: only those with higher ids.
-  Result<Page> of_model(std::int64_t model_id, int limit, int offset, std::int64_t after = 0);
-  Result<std::map<std::int64_t, std::string>> slugs(std::int64_t model_id);  // of all, by id
-  Result<NamedPart> find(std::int64_t model_id, const std::string& ref);
+  Result<Page> of_model(ModelId model_id, int limit, int offset, std::int64_t after = 0);
+  Result<std::map<NamedPartId, std::string>> slugs(ModelId model_id);  // of all, by id
+  Result<NamedPart> find(ModelId model_id, const std::string& ref);
 
   // Id, slug, time and version are given here. Refused: an empty name (malformed), one too many
   // (conflict).

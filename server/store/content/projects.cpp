@@ -5,8 +5,8 @@ namespace strata::store {
 namespace {
 
 Project read_project(const PgResult& rows, int i) {
-  return {rows.integer(i, 0), rows.text(i, 1),    rows.text(i, 2),
-          rows.text(i, 3),    rows.integer(i, 4), rows.boolean(i, 5)};
+  return {rows.id<ProjectId>(i, 0), rows.text(i, 1),    rows.text(i, 2),
+          rows.text(i, 3),          rows.integer(i, 4), rows.boolean(i, 5)};
 }
 
 Result<void> check(const Project& project) {
@@ -15,10 +15,11 @@ Result<void> check(const Project& project) {
 }
 
 // What is gone for ever keeps no project, though its content is not erased yet.
-Result<void> erase_models_of(PgConnection& connection, std::int64_t project_id) {
+Result<void> erase_models_of(PgConnection& connection, ProjectId project_id) {
   auto models = STRATA_TRY(connection.query(
-      "SELECT id FROM all_models WHERE project_id = $1 AND erasing", Params().integer(project_id)));
-  for (int i = 0; i < models.rows(); ++i) STRATA_TRY(erase_model(connection, models.integer(i, 0)));
+      "SELECT id FROM all_models WHERE project_id = $1 AND erasing", Params().id(project_id)));
+  for (int i = 0; i < models.rows(); ++i)
+    STRATA_TRY(erase_model(connection, models.id<ModelId>(i, 0)));
   return {};
 }
 
@@ -37,11 +38,11 @@ Result<std::vector<Project>> Projects::all() {
 Result<Project> Projects::find(const std::string& ref) {
   if (!check_text(ref, "project")) return no_such("project", ref);
   return pool_.read([&](PgConnection& connection) -> Result<Project> {
-    const auto id = id_of(ref);
+    const auto id = id_of<ProjectId>(ref);
     auto rows =
         id ? connection.query(
                  "SELECT id, name, slug::text, description, version, require_if_match FROM projects WHERE id = $1",
-                 Params().integer(*id))
+                 Params().id(*id))
            : connection.query(
                  "SELECT id, name, slug::text, description, version, require_if_match FROM projects WHERE slug = $1",
                  Params().text(ref));
@@ -67,7 +68,7 @@ Result<std::size_t> Projects::names_until(const NamedId& place, std::span<const 
   });
 }
 
-Result<std::string> Projects::state(std::int64_t id) {
+Result<std::string> Projects::state(ProjectId id) {
   return pool_.read([&](PgConnection& connection) -> Result<std::string> {
     // Ids and versions of the rows of a part, whose FROM clause follows.
     const auto versions = [](const std::string& part) {
@@ -81,7 +82,7 @@ Result<std::string> Projects::state(std::int64_t id) {
         versions("views" + of_models) +
         ", (SELECT string_agg(concat_ws('.', id, version, sequence), ',' ORDER BY id) "
         "FROM record_tables WHERE project_id = $1))";
-    auto row = STRATA_TRY(connection.query(sql.c_str(), Params().integer(id)));
+    auto row = STRATA_TRY(connection.query(sql.c_str(), Params().id(id)));
     return row.text(0, 0);
   });
 }
@@ -108,30 +109,29 @@ Result<Project> Projects::update(Project project, const IdempotentResponse<Proje
         "UPDATE projects SET name = $3, slug = $4, description = $5, require_if_match = $6, version = version + 1 "
         "WHERE id = $1 AND version = $2 RETURNING id, name, slug::text, description, version, require_if_match",
         Params()
-            .integer(project.id)
+            .id(project.id)
             .integer(project.version)
             .text(project.name)
             .text(project.slug)
             .text(project.description)
             .boolean(project.require_if_match)));
     if (row.rows() > 0) return read_project(row, 0);
-    auto known =
-        connection.query("SELECT 1 FROM projects WHERE id = $1", Params().integer(project.id));
+    auto known = connection.query("SELECT 1 FROM projects WHERE id = $1", Params().id(project.id));
     if (!known) return tl::unexpected(known.error());
-    if (known->rows() == 0) return no_such("project", std::to_string(project.id));
+    if (known->rows() == 0) return no_such("project", to_string(project.id));
     return stale("project");
   });
 }
 
-Result<void> Projects::remove(std::int64_t id, const IdempotentResponse<>& answer) {
+Result<void> Projects::remove(ProjectId id, const IdempotentResponse<>& answer) {
   return change(pool_, answer, [&](PgConnection& connection) -> Result<void> {
     auto row = STRATA_TRY(connection.query(
         "SELECT slug::text, (SELECT count(*) FROM models WHERE project_id = p.id), "
         "(SELECT count(*) FROM record_tables WHERE project_id = p.id), "
         "(SELECT count(*) FROM all_models WHERE project_id = p.id AND NOT erasing) "
         "FROM projects p WHERE id = $1 FOR UPDATE",
-        Params().integer(id)));
-    if (row.rows() == 0) return no_such("project", std::to_string(id));
+        Params().id(id)));
+    if (row.rows() == 0) return no_such("project", to_string(id));
     if (row.text(0, 0) == "default")
       return fail(ErrorCode::conflict, "Conflict",
                   "The project `default` stays: models without a project belong to it.");
@@ -148,7 +148,7 @@ Result<void> Projects::remove(std::int64_t id, const IdempotentResponse<>& answe
                   "The project still has " + std::to_string(row.integer(0, 2)) +
                       " tables. Delete them first.");
     STRATA_TRY(erase_models_of(connection, id));
-    auto done = connection.query("DELETE FROM projects WHERE id = $1", Params().integer(id));
+    auto done = connection.query("DELETE FROM projects WHERE id = $1", Params().id(id));
     return done ? Result<void>{} : tl::unexpected(done.error());
   });
 }

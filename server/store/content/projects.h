@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "domain/people/role.h"
 #include "domain/scene/model.h"
 #include "store/content/idempotent_response.h"
@@ -34,15 +35,15 @@ class Projects {
   // Where version equals; returns it with version + 1.
   Result<Project> update(Project project, const IdempotentResponse<Project>& answer = {});
   // refused (conflict) while it has models, and for `default`
-  Result<void> remove(std::int64_t id, const IdempotentResponse<>& answer = {});
+  Result<void> remove(ProjectId id, const IdempotentResponse<>& answer = {});
   Result<std::size_t> names_until(const NamedId& place, std::span<const NamedId> sorted);
   // Of all that is stored of it but edits, comments and people: another text whenever one of its
   // models, layers, looks, views or tables was changed, made or deleted, or a record of its tables.
   // For comparison alone.
-  Result<std::string> state(std::int64_t id);
+  Result<std::string> state(ProjectId id);
   // What was done in it, but for what is about layers that the role does not see; a page costs the
   // same however long its history is. An unknown project or model has none.
-  Result<ActivityPage> activity(std::int64_t project_id, Role seen_by, const ActivityQuery& query);
+  Result<ActivityPage> activity(ProjectId project_id, Role seen_by, const ActivityQuery& query);
 
  private:
   Pool& pool_;

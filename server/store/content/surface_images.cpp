@@ -14,8 +14,8 @@ namespace {
 SurfaceImage read_surface_image(const PgResult& rows, int i) {
   SurfaceImage image;
   int c = 0;
-  image.id = rows.integer(i, c++);
-  image.model_id = rows.integer(i, c++);
+  image.id = rows.id<SurfaceImageId>(i, c++);
+  image.model_id = rows.id<ModelId>(i, c++);
   image.name = rows.text(i, c++);
   image.slug = rows.text(i, c++);
   image.description = rows.text(i, c++);
@@ -51,13 +51,14 @@ Result<SurfaceImage> insert_surface_image(PgConnection& connection, const Surfac
                                           const Sha256& picture) {
   auto row = STRATA_TRY(insert_with_slug(
       connection, "SELECT slug::text FROM looks WHERE slug LIKE $1 AND model_id = $2",
-      image.model_id, image.slug.empty() ? image.name : image.slug, [&](const std::string& slug) {
+      image.model_id.number(), image.slug.empty() ? image.name : image.slug,
+      [&](const std::string& slug) {
         return connection.query(
             "INSERT INTO looks (model_id, name, slug, description, media_type, width, height, opacity, visible, draw_order, "
             "picture) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11) "
             "ON CONFLICT (model_id, slug) DO NOTHING RETURNING " STRATA_SURFACE_IMAGE_COLUMNS,
             Params()
-                .integer(image.model_id)
+                .id(image.model_id)
                 .text(image.name)
                 .text(slug)
                 .text(image.description)
@@ -72,31 +73,31 @@ Result<SurfaceImage> insert_surface_image(PgConnection& connection, const Surfac
   return read_surface_image(row, 0);
 }
 
-Result<std::vector<SurfaceImage>> SurfaceImages::of_model(std::int64_t model_id) {
+Result<std::vector<SurfaceImage>> SurfaceImages::of_model(ModelId model_id) {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<SurfaceImage>> {
-    auto known = STRATA_TRY(
-        connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(model_id)));
-    if (known.rows() == 0) return no_such("model", std::to_string(model_id));
+    auto known =
+        STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1", Params().id(model_id)));
+    if (known.rows() == 0) return no_such("model", to_string(model_id));
     auto rows =
         STRATA_TRY(connection.query("SELECT " STRATA_SURFACE_IMAGE_COLUMNS
                                     " FROM looks WHERE model_id = $1 ORDER BY draw_order, id",
-                                    Params().integer(model_id)));
+                                    Params().id(model_id)));
     std::vector<SurfaceImage> images;
     for (int i = 0; i < rows.rows(); ++i) images.push_back(read_surface_image(rows, i));
     return images;
   });
 }
 
-Result<SurfaceImage> SurfaceImages::find(std::int64_t model_id, const std::string& ref) {
+Result<SurfaceImage> SurfaceImages::find(ModelId model_id, const std::string& ref) {
   if (!check_text(ref, "look")) return no_such("look", ref);
   return pool_.read([&](PgConnection& connection) -> Result<SurfaceImage> {
-    const auto id = id_of(ref);
+    const auto id = id_of<SurfaceImageId>(ref);
     auto rows = STRATA_TRY(id ? connection.query("SELECT " STRATA_SURFACE_IMAGE_COLUMNS
                                                  " FROM looks WHERE model_id = $1 AND id = $2",
-                                                 Params().integer(model_id).integer(*id))
+                                                 Params().id(model_id).id(*id))
                               : connection.query("SELECT " STRATA_SURFACE_IMAGE_COLUMNS
                                                  " FROM looks WHERE model_id = $1 AND slug = $2",
-                                                 Params().integer(model_id).text(ref)));
+                                                 Params().id(model_id).text(ref)));
     if (rows.rows() == 0) return no_such("look", ref);
     return read_surface_image(rows, 0);
   });
@@ -110,10 +111,10 @@ Result<SurfaceImage> SurfaceImages::create(const SurfaceImage& image,
   const auto work = [&](PgConnection& connection) -> Result<SurfaceImage> {
     // Locked, so that of two at once the later one counts the earlier.
     auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
-                                             Params().integer(image.model_id)));
-    if (model.rows() == 0) return no_such("model", std::to_string(image.model_id));
+                                             Params().id(image.model_id)));
+    if (model.rows() == 0) return no_such("model", to_string(image.model_id));
     auto count = STRATA_TRY(connection.query("SELECT count(*) FROM looks WHERE model_id = $1",
-                                             Params().integer(image.model_id)));
+                                             Params().id(image.model_id)));
     if (count.integer(0, 0) >= kMaxSurfaceImages)
       return fail(ErrorCode::conflict, "Too many looks",
                   "A model holds at most " + std::to_string(kMaxSurfaceImages) +
@@ -132,7 +133,7 @@ Result<SurfaceImage> SurfaceImages::update(const SurfaceImage& image,
         "UPDATE looks SET name = $3, slug = $4, description = $5, opacity = $6, visible = $7, draw_order = $8, "
         "version = version + 1 WHERE id = $1 AND version = $2 RETURNING " STRATA_SURFACE_IMAGE_COLUMNS,
         Params()
-            .integer(image.id)
+            .id(image.id)
             .integer(image.version)
             .text(image.name)
             .text(image.slug)
@@ -141,31 +142,31 @@ Result<SurfaceImage> SurfaceImages::update(const SurfaceImage& image,
             .boolean(image.visible)
             .integer(image.order)));
     if (row.rows() > 0) return read_surface_image(row, 0);
-    auto known = STRATA_TRY(
-        connection.query("SELECT 1 FROM looks WHERE id = $1", Params().integer(image.id)));
-    if (known.rows() == 0) return no_such("look", std::to_string(image.id));
+    auto known =
+        STRATA_TRY(connection.query("SELECT 1 FROM looks WHERE id = $1", Params().id(image.id)));
+    if (known.rows() == 0) return no_such("look", to_string(image.id));
     return stale("look");
   });
 }
 
-Result<void> SurfaceImages::remove(std::int64_t id, const IdempotentResponse<>& answer) {
+Result<void> SurfaceImages::remove(SurfaceImageId id, const IdempotentResponse<>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<void> {
     auto done =
-        connection.query("DELETE FROM looks WHERE id = $1 RETURNING picture", Params().integer(id));
+        connection.query("DELETE FROM looks WHERE id = $1 RETURNING picture", Params().id(id));
     if (!done) return tl::unexpected(done.error());
-    if (done->rows() == 0) return no_such("look", std::to_string(id));
+    if (done->rows() == 0) return no_such("look", to_string(id));
     const Bytes hash = done->bytes(0, 0);
     return drop_unused(connection, {{hash.begin(), hash.end()}});
   };
   return change(pool_, answer, work, kBulkLimits);
 }
 
-Result<std::vector<std::uint8_t>> SurfaceImages::picture(std::int64_t id) {
+Result<std::vector<std::uint8_t>> SurfaceImages::picture(SurfaceImageId id) {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<std::uint8_t>> {
     auto row = STRATA_TRY(connection.query(
         "SELECT b.sha256, b.bytes FROM looks l JOIN blobs b ON b.sha256 = l.picture WHERE l.id = $1",
-        Params().integer(id)));
-    if (row.rows() == 0) return no_such("look", std::to_string(id));
+        Params().id(id)));
+    if (row.rows() == 0) return no_such("look", to_string(id));
     return read_blob(connection, row.bytes(0, 0), row.integer(0, 1));
   });
 }

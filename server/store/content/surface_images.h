@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "domain/scene/surface_image.h"
 #include "store/content/idempotent_response.h"
 
@@ -21,15 +22,15 @@ class SurfaceImages {
 
   static constexpr int kMaxSurfaceImages = 32;  // of a model
 
-  Result<std::vector<SurfaceImage>> of_model(std::int64_t model_id);  // by order
-  Result<SurfaceImage> find(std::int64_t model_id, const std::string& ref);
+  Result<std::vector<SurfaceImage>> of_model(ModelId model_id);  // by order
+  Result<SurfaceImage> find(ModelId model_id, const std::string& ref);
   Result<SurfaceImage> create(const SurfaceImage& image, std::span<const std::uint8_t> picture,
                               const IdempotentResponse<SurfaceImage>& answer = {});
   // all but its picture
   Result<SurfaceImage> update(const SurfaceImage& image,
                               const IdempotentResponse<SurfaceImage>& answer = {});
-  Result<void> remove(std::int64_t id, const IdempotentResponse<>& answer = {});
-  Result<std::vector<std::uint8_t>> picture(std::int64_t id);
+  Result<void> remove(SurfaceImageId id, const IdempotentResponse<>& answer = {});
+  Result<std::vector<std::uint8_t>> picture(SurfaceImageId id);
 
  private:
   Pool& pool_;

@@ -7,7 +7,7 @@ namespace {
 #define STRATA_TOOL_COLUMNS "id, name, slug::text, deleted IS NOT NULL, version"
 
 Tool read_tool(const PgResult& rows, int i) {
-  return {rows.integer(i, 0), rows.text(i, 1), rows.text(i, 2), rows.boolean(i, 3),
+  return {rows.id<ToolId>(i, 0), rows.text(i, 1), rows.text(i, 2), rows.boolean(i, 3),
           rows.integer(i, 4)};
 }
 
@@ -44,10 +44,10 @@ Result<std::vector<Tool>> Tools::all() {
 Result<Tool> Tools::find(const std::string& ref) {
   if (!check_text(ref, "tool")) return no_such("tool", ref);
   return pool_.read([&](PgConnection& connection) -> Result<Tool> {
-    const auto id = id_of(ref);
+    const auto id = id_of<ToolId>(ref);
     auto rows =
         id ? connection.query("SELECT " STRATA_TOOL_COLUMNS " FROM tool_shapes WHERE id = $1",
-                              Params().integer(*id))
+                              Params().id(*id))
            : connection.query("SELECT " STRATA_TOOL_COLUMNS
                               " FROM tool_shapes WHERE slug = $1 AND deleted IS NULL",
                               Params().text(ref));
@@ -90,31 +90,30 @@ Result<Tool> Tools::update(const Tool& tool, const IdempotentResponse<Tool>& ans
     auto row = STRATA_TRY(connection.query(
         "UPDATE tool_shapes SET name = $3, version = version + 1 WHERE id = $1 AND version = $2 AND deleted IS NULL "
         "RETURNING " STRATA_TOOL_COLUMNS,
-        Params().integer(tool.id).integer(tool.version).text(tool.name)));
+        Params().id(tool.id).integer(tool.version).text(tool.name)));
     if (row.rows() > 0) return read_tool(row, 0);
     auto known = STRATA_TRY(connection.query(
-        "SELECT 1 FROM tool_shapes WHERE id = $1 AND deleted IS NULL", Params().integer(tool.id)));
-    if (known.rows() == 0) return no_such("tool", std::to_string(tool.id));
+        "SELECT 1 FROM tool_shapes WHERE id = $1 AND deleted IS NULL", Params().id(tool.id)));
+    if (known.rows() == 0) return no_such("tool", to_string(tool.id));
     return stale("tool");
   });
 }
 
-Result<void> Tools::remove(std::int64_t id, const IdempotentResponse<>& answer) {
+Result<void> Tools::remove(ToolId id, const IdempotentResponse<>& answer) {
   return change(pool_, answer, [&](PgConnection& connection) -> Result<void> {
     auto done = STRATA_TRY(connection.query(
         "UPDATE tool_shapes SET deleted = now(), version = version + 1 WHERE id = $1 AND deleted IS NULL RETURNING id",
-        Params().integer(id)));
-    if (done.rows() == 0) return no_such("tool", std::to_string(id));
+        Params().id(id)));
+    if (done.rows() == 0) return no_such("tool", to_string(id));
     return {};
   });
 }
 
-Result<ShapeBits> Tools::shape(std::int64_t id) {
+Result<ShapeBits> Tools::shape(ToolId id) {
   return pool_.read([&](PgConnection& connection) -> Result<ShapeBits> {
-    auto row =
-        connection.query("SELECT cells FROM tool_shapes WHERE id = $1", Params().integer(id));
+    auto row = connection.query("SELECT cells FROM tool_shapes WHERE id = $1", Params().id(id));
     if (!row) return tl::unexpected(row.error());
-    if (row->rows() == 0) return no_such("tool", std::to_string(id));
+    if (row->rows() == 0) return no_such("tool", to_string(id));
     return bits_of(row->bytes(0, 0));
   });
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "domain/scene/tool.h"
 #include "media/shape_texture.h"
 #include "store/content/idempotent_response.h"
@@ -26,8 +27,8 @@ class Tools {
   Result<Tool> create(const Tool& tool, const ShapeBits& shape,
                       const IdempotentResponse<Tool>& answer = {});
   Result<Tool> update(const Tool& tool, const IdempotentResponse<Tool>& answer = {});  // its name
-  Result<void> remove(std::int64_t id, const IdempotentResponse<>& answer = {});
-  Result<ShapeBits> shape(std::int64_t id);  // deleted or not
+  Result<void> remove(ToolId id, const IdempotentResponse<>& answer = {});
+  Result<ShapeBits> shape(ToolId id);  // deleted or not
 
  private:
   Pool& pool_;

@@ -29,9 +29,9 @@ constexpr int kRowsAtOnce = 2000;
   "AND c.after -> 'exists' = 'false' AND NOT EXISTS (SELECT 1 FROM table_changes n WHERE n.table_id = c.table_id "      \
   "AND n.subject = 'record' AND n.subject_id = c.subject_id AND n.sequence > c.sequence AND n.after ? 'exists')) bin "
 
-Params seen_in(std::int64_t project_id, const Trash::Sight& sight) {
+Params seen_in(ProjectId project_id, const Trash::Sight& sight) {
   Params params;
-  params.integer(project_id)
+  params.id(project_id)
       .array(visibilities_seen_by(sight.role))
       .boolean(sight.role >= Role::curator)
       .integer(sight.role >= Role::annotator ? sight.records.count() : 0);
@@ -44,9 +44,9 @@ TrashEntry read_entry(const PgResult& rows, int i) {
   entry.kind = kind == "layer" ? Kind::layer : kind == "model" ? Kind::model : Kind::record;
   entry.id = rows.integer(i, 1);
   entry.name = rows.text(i, 2);
-  entry.model_id = rows.integer(i, 3);
+  entry.model_id = rows.id<ModelId>(i, 3);
   entry.model_name = rows.text(i, 4);
-  entry.table_id = rows.integer(i, 5);
+  entry.table_id = rows.id<TableId>(i, 5);
   entry.table_name = rows.text(i, 6);
   entry.user = rows.text(i, 7);
   entry.deleted = rows.time(i, 8);
@@ -72,12 +72,12 @@ Result<void> changed_one(const Result<PgResult>& done, Kind kind, std::int64_t i
 
 }  // namespace
 
-Result<void> erase_layer(PgConnection& connection, std::int64_t id) {
+Result<void> erase_layer(PgConnection& connection, LayerId id) {
   // What was written about it is seen by no more people than before.
   STRATA_TRY(connection.query(
       "UPDATE comments c SET visibility = l.visibility FROM all_layers l WHERE l.id = $1 AND c.layer_id = l.id",
-      Params().integer(id)));
-  auto done = connection.query("DELETE FROM all_layers WHERE id = $1", Params().integer(id));
+      Params().id(id)));
+  auto done = connection.query("DELETE FROM all_layers WHERE id = $1", Params().id(id));
   return done ? Result<void>{} : tl::unexpected(done.error());
 }
 
@@ -87,18 +87,18 @@ Result<void> erase_layer(PgConnection& connection, std::int64_t id) {
   "SELECT sha256 FROM model_sources WHERE model_id = $1 UNION SELECT picture FROM looks WHERE model_id = $1 UNION " \
   "SELECT geometry FROM detail_levels WHERE model_id = $1"
 
-Result<void> erase_model(PgConnection& connection, std::int64_t id) {
-  auto used = STRATA_TRY(connection.query(STRATA_BLOBS_OF_MODEL, Params().integer(id)));
+Result<void> erase_model(PgConnection& connection, ModelId id) {
+  auto used = STRATA_TRY(connection.query(STRATA_BLOBS_OF_MODEL, Params().id(id)));
   std::vector<std::vector<std::uint8_t>> hashes;
   for (int i = 0; i < used.rows(); ++i) {
     const Bytes hash = used.bytes(i, 0);
     hashes.emplace_back(hash.begin(), hash.end());
   }
-  STRATA_TRY(connection.query("DELETE FROM all_models WHERE id = $1", Params().integer(id)));
+  STRATA_TRY(connection.query("DELETE FROM all_models WHERE id = $1", Params().id(id)));
   return drop_unused(connection, hashes);
 }
 
-Result<Trash::Page> Trash::of_project(std::int64_t project_id, const Sight& sight, int limit,
+Result<Trash::Page> Trash::of_project(ProjectId project_id, const Sight& sight, int limit,
                                       int offset, const std::optional<Place>& after) {
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
     auto total = STRATA_TRY(
@@ -115,7 +115,7 @@ Result<Trash::Page> Trash::of_project(std::int64_t project_id, const Sight& sigh
             .integer(place.deleted_us)
             .boolean(after.has_value())
             .text(name_of(place.kind))
-            .integer(place.table_id)
+            .id(place.table_id)
             .integer(place.id)));
     Page page;
     page.total = total.integer(0, 0);
@@ -124,12 +124,12 @@ Result<Trash::Page> Trash::of_project(std::int64_t project_id, const Sight& sigh
   });
 }
 
-Result<TrashEntry> Trash::entry(std::int64_t project_id, Kind kind, std::int64_t id,
-                                std::int64_t table_id, const Sight& sight) {
+Result<TrashEntry> Trash::entry(ProjectId project_id, Kind kind, std::int64_t id, TableId table_id,
+                                const Sight& sight) {
   return pool_.read([&](PgConnection& connection) -> Result<TrashEntry> {
     auto rows = STRATA_TRY(connection.query(
         "SELECT * FROM " STRATA_TRASH "WHERE kind = $5 AND id = $6 AND table_id = $7",
-        seen_in(project_id, sight).text(name_of(kind)).integer(id).integer(table_id)));
+        seen_in(project_id, sight).text(name_of(kind)).integer(id).id(table_id)));
     if (rows.rows() == 0)
       return fail(ErrorCode::not_found, "Not in the Bin",
                   "The project's Bin has no such " + std::string(name_of(kind)) + ": " +
@@ -138,20 +138,20 @@ Result<TrashEntry> Trash::entry(std::int64_t project_id, Kind kind, std::int64_t
   });
 }
 
-Result<void> Trash::put_layer(std::int64_t id, const IdempotentResponse<>& answer) {
+Result<void> Trash::put_layer(LayerId id, const IdempotentResponse<>& answer) {
   const auto work = [&](PgConnection& connection) {
     return changed_one(
         connection.query(
             "UPDATE all_layers SET binned = clock_timestamp(), binned_by = activity_author(), binned_bytes = "
             "(SELECT coalesce(sum(octet_length(difference) + coalesce(octet_length(key_tile), 0)), 0) FROM tile_revisions "
             "WHERE layer_id = $1) WHERE id = (SELECT id FROM layers WHERE id = $1) AND binned IS NULL",
-            Params().integer(id)),
-        Kind::layer, id);
+            Params().id(id)),
+        Kind::layer, id.number());
   };
   return change(pool_, answer, work, kBulkLimits);
 }
 
-Result<void> Trash::put_model(std::int64_t id, const IdempotentResponse<>& answer) {
+Result<void> Trash::put_model(ModelId id, const IdempotentResponse<>& answer) {
   const auto work = [&](PgConnection& connection) {
     return changed_one(
         connection.query(
@@ -160,8 +160,8 @@ Result<void> Trash::put_model(std::int64_t id, const IdempotentResponse<>& answe
             "FROM tile_revisions r JOIN all_layers l ON l.id = r.layer_id WHERE l.model_id = $1) + "
             "(SELECT coalesce(sum(b.bytes), 0) FROM blobs b WHERE b.sha256 IN "
             "(" STRATA_BLOBS_OF_MODEL ")) WHERE id = $1 AND binned IS NULL",
-            Params().integer(id)),
-        Kind::model, id);
+            Params().id(id)),
+        Kind::model, id.number());
   };
   return change(pool_, answer, work, kBulkLimits);
 }
@@ -174,7 +174,7 @@ Result<TrashRestored> Trash::restore(const TrashEntry& entry,
     // that short name.
     if (is_layer) {
       auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR UPDATE",
-                                               Params().integer(entry.model_id)));
+                                               Params().id(entry.model_id)));
       if (model.rows() == 0) return not_in_trash(entry);
     }
     auto known = STRATA_TRY(connection.query(
@@ -187,7 +187,7 @@ Result<TrashRestored> Trash::restore(const TrashEntry& entry,
     auto taken =
         is_layer
             ? connection.query("SELECT slug::text FROM layers WHERE slug LIKE $1 AND model_id = $2",
-                               Params().text(former + "%").integer(entry.model_id))
+                               Params().text(former + "%").id(entry.model_id))
             : connection.query("SELECT slug::text FROM models WHERE slug LIKE $1",
                                Params().text(former + "%"));
     if (!taken) return tl::unexpected(taken.error());
@@ -214,7 +214,7 @@ Result<TableChange> Trash::restore_record(const TrashEntry& entry, const std::st
     auto last = STRATA_TRY(connection.query(
         "SELECT before FROM table_changes WHERE table_id = $1 AND subject = 'record' AND subject_id = $2 "
         "AND after ? 'exists' ORDER BY sequence DESC LIMIT 1",
-        Params().integer(entry.table_id).integer(entry.id)));
+        Params().id(entry.table_id).integer(entry.id)));
     if (last.rows() == 0 || !last.json(0, 0).value("exists", false)) return not_in_trash(entry);
     const nlohmann::json before = last.json(0, 0);
     TableEdit edit{user, "restore", {{"records", 1}, {"keys", nlohmann::json::array({entry.id})}},
@@ -222,7 +222,7 @@ Result<TableChange> Trash::restore_record(const TrashEntry& entry, const std::st
     Cells& cells = edit.records[entry.id];
     cells["exists"] = true;
     for (const Column& column : open.all)
-      if (const auto cell = before.find(std::to_string(column.id)); cell != before.end())
+      if (const auto cell = before.find(to_string(column.id)); cell != before.end())
         cells[cell.key()] = *cell;
     auto done = apply_edit(connection, open, std::move(edit));
     if (done && !done->problems.empty())
@@ -261,12 +261,12 @@ Result<bool> Trash::erase_some() {
     auto layer = STRATA_TRY(connection.query(
         "SELECT l.id FROM all_layers l JOIN all_models m ON m.id = l.model_id WHERE l.erasing OR m.erasing ORDER BY l.id LIMIT 1"));
     if (layer.rows() > 0) {
-      const std::int64_t id = layer.integer(0, 0);
+      const LayerId id = layer.id<LayerId>(0, 0);
       for (
           const char* sql :
           {"DELETE FROM tile_revisions WHERE ctid = any(ARRAY(SELECT ctid FROM tile_revisions WHERE layer_id = $1 LIMIT $2))",
            "DELETE FROM edits WHERE ctid = any(ARRAY(SELECT ctid FROM edits WHERE layer_id = $1 LIMIT $2))"}) {
-        auto some = STRATA_TRY(connection.query(sql, Params().integer(id).integer(kRowsAtOnce)));
+        auto some = STRATA_TRY(connection.query(sql, Params().id(id).integer(kRowsAtOnce)));
         if (some.affected() > 0) return true;
       }
       STRATA_TRY(erase_layer(connection, id));
@@ -275,7 +275,7 @@ Result<bool> Trash::erase_some() {
     auto model =
         STRATA_TRY(connection.query("SELECT id FROM all_models WHERE erasing ORDER BY id LIMIT 1"));
     if (model.rows() == 0) return false;
-    STRATA_TRY(erase_model(connection, model.integer(0, 0)));
+    STRATA_TRY(erase_model(connection, model.id<ModelId>(0, 0)));
     return true;
   });
 }

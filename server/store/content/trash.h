@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "domain/people/role.h"
 #include "store/content/idempotent_response.h"
 #include "store/tables/table_changes.h"
@@ -21,11 +22,11 @@ struct TrashEntry {
   Kind kind = Kind::layer;
   std::int64_t id = 0;  // of the layer or model; key of the record
   std::string name;
-  std::int64_t model_id = 0;  // where a layer lay; of a model its own
-  std::string model_name;     // of a layer
-  std::int64_t table_id = 0;  // of a record
-  std::string table_name;     // the same
-  std::string user;           // who deleted it; empty: the server itself
+  ModelId model_id = 0;    // where a layer lay; of a model its own
+  std::string model_name;  // of a layer
+  TableId table_id = 0;    // of a record
+  std::string table_name;  // the same
+  std::string user;        // who deleted it; empty: the server itself
   std::chrono::system_clock::time_point deleted;
   std::uint64_t bytes = 0;  // of its files and history, about
 };
@@ -56,19 +57,20 @@ class Trash {
   struct Place {
     std::int64_t deleted_us = 0;  // since 1970
     TrashEntry::Kind kind = TrashEntry::Kind::layer;
-    std::int64_t table_id = 0, id = 0;
+    TableId table_id = 0;
+    std::int64_t id = 0;
   };
   // Layers that lie on a model in the Trash come back with it, and are no entries. `after`: only
   // those that follow it.
-  Result<Page> of_project(std::int64_t project_id, const Sight& sight, int limit, int offset,
+  Result<Page> of_project(ProjectId project_id, const Sight& sight, int limit, int offset,
                           const std::optional<Place>& after = {});
   // `table_id` is of a record.
-  Result<TrashEntry> entry(std::int64_t project_id, TrashEntry::Kind kind, std::int64_t id,
-                           std::int64_t table_id, const Sight& sight);
+  Result<TrashEntry> entry(ProjectId project_id, TrashEntry::Kind kind, std::int64_t id,
+                           TableId table_id, const Sight& sight);
 
   // Into it, by whom the answer is for.
-  Result<void> put_layer(std::int64_t id, const IdempotentResponse<>& answer);
-  Result<void> put_model(std::int64_t id, const IdempotentResponse<>& answer);
+  Result<void> put_layer(LayerId id, const IdempotentResponse<>& answer);
+  Result<void> put_model(ModelId id, const IdempotentResponse<>& answer);
   // A layer or model out of it, with the short name that it had where that is free. A room that is
   // open does not know it yet.
   Result<TrashRestored> restore(const TrashEntry& entry,

@@ -29,18 +29,18 @@ Result<std::vector<std::int64_t>> sequences(PgConnection& connection, const char
 
 }  // namespace
 
-Result<HistoryPage> Journal::history(std::int64_t layer_id, int limit, int offset,
+Result<HistoryPage> Journal::history(LayerId layer_id, int limit, int offset,
                                      std::optional<std::int64_t> before) {
   return pool_.read([&](PgConnection& connection) -> Result<HistoryPage> {
     auto total = STRATA_TRY(connection.query(
         "SELECT (SELECT count(*) FROM edits WHERE layer_id = l.id) FROM layers l WHERE id = $1",
-        Params().integer(layer_id)));
-    if (total.rows() == 0) return no_such("layer", std::to_string(layer_id));
+        Params().id(layer_id)));
+    if (total.rows() == 0) return no_such("layer", to_string(layer_id));
     auto rows = STRATA_TRY(connection.query(
         "SELECT " STRATA_EDIT_COLUMNS
         "WHERE e.layer_id = $1 AND e.sequence < $4 ORDER BY e.sequence DESC LIMIT $2 OFFSET $3",
         Params()
-            .integer(layer_id)
+            .id(layer_id)
             .integer(std::max(limit, 0))
             .integer(std::max(offset, 0))
             .integer(before.value_or(INT64_MAX))));
@@ -51,26 +51,26 @@ Result<HistoryPage> Journal::history(std::int64_t layer_id, int limit, int offse
   });
 }
 
-Result<JournalState> Journal::state(std::int64_t model_id, std::span<const Uuid> ids) {
+Result<JournalState> Journal::state(ModelId model_id, std::span<const Uuid> ids) {
   PgArray wanted(oid::kUuid);
   for (const Uuid& id : ids) wanted.add(id);
   return pool_.read([&](PgConnection& connection) -> Result<JournalState> {
     auto model =
-        connection.query("SELECT sequence FROM models WHERE id = $1", Params().integer(model_id));
+        connection.query("SELECT sequence FROM models WHERE id = $1", Params().id(model_id));
     if (!model) return tl::unexpected(model.error());
-    if (model->rows() == 0) return no_such("model", std::to_string(model_id));
+    if (model->rows() == 0) return no_such("model", to_string(model_id));
     JournalState state{model->integer(0, 0), {}};
     if (ids.empty()) return state;
     auto rows =
         connection.query("SELECT " STRATA_EDIT_COLUMNS "WHERE e.model_id = $1 AND e.id = any($2)",
-                         Params().integer(model_id).array(wanted));
+                         Params().id(model_id).array(wanted));
     if (!rows) return tl::unexpected(rows.error());
     for (int i = 0; i < rows->rows(); ++i) state.known.push_back(read_row(*rows, i));
     return state;
   });
 }
 
-Result<std::vector<std::int64_t>> Journal::undoable(std::int64_t layer_id, const std::string& user,
+Result<std::vector<std::int64_t>> Journal::undoable(LayerId layer_id, const std::string& user,
                                                     bool pending_only) {
   STRATA_TRY(check_text(user, "user"));
   return pool_.read([&](PgConnection& connection) {
@@ -80,14 +80,14 @@ Result<std::vector<std::int64_t>> Journal::undoable(std::int64_t layer_id, const
         "AND (NOT $3 OR review = 'pending') AND stroke = "
         "(SELECT stroke FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer AND in_force "
         "AND (NOT $3 OR review = 'pending') ORDER BY sequence DESC LIMIT 1) ORDER BY sequence",
-        Params().integer(layer_id).text(user).boolean(pending_only));
+        Params().id(layer_id).text(user).boolean(pending_only));
   });
 }
 
 // The batches that the newest undo took, unless paint made after that undo is in force. (Strokes
 // that redo brought back are older than it, so that undo, undo, redo, redo works.) What was
 // rejected only a curator brings back.
-Result<std::vector<std::int64_t>> Journal::redoable(std::int64_t layer_id, const std::string& user,
+Result<std::vector<std::int64_t>> Journal::redoable(LayerId layer_id, const std::string& user,
                                                     bool pending_only) {
   STRATA_TRY(check_text(user, "user"));
   return pool_.read([&](PgConnection& connection) {
@@ -100,27 +100,26 @@ Result<std::vector<std::int64_t>> Journal::redoable(std::int64_t layer_id, const
         "WHERE e.layer_id = $1 AND e.user_name = $2 AND e.writer AND NOT e.in_force AND NOT EXISTS "
         "(SELECT 1 FROM edits n WHERE n.layer_id = $1 AND n.user_name = $2 AND n.writer AND n.in_force "
         "AND n.sequence > u.undone_by) ORDER BY e.sequence",
-        Params().integer(layer_id).text(user).boolean(pending_only));
+        Params().id(layer_id).text(user).boolean(pending_only));
   });
 }
 
-Result<std::int64_t> Journal::sequence_at(std::int64_t model_id, const std::string& utc) {
+Result<std::int64_t> Journal::sequence_at(ModelId model_id, const std::string& utc) {
   return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
     // Times are told in milliseconds: one that was read counts its own edit.
     auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(max(sequence), 0) FROM edits "
         "WHERE model_id = $1 AND date_trunc('milliseconds', time) <= $2::timestamptz",
-        Params().integer(model_id).text(utc)));
+        Params().id(model_id).text(utc)));
     return row.integer(0, 0);
   });
 }
 
-Result<std::int64_t> Journal::last_sequence(std::int64_t model_id) {
+Result<std::int64_t> Journal::last_sequence(ModelId model_id) {
   return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
-    auto row =
-        connection.query("SELECT sequence FROM models WHERE id = $1", Params().integer(model_id));
+    auto row = connection.query("SELECT sequence FROM models WHERE id = $1", Params().id(model_id));
     if (!row) return tl::unexpected(row.error());
-    if (row->rows() == 0) return no_such("model", std::to_string(model_id));
+    if (row->rows() == 0) return no_such("model", to_string(model_id));
     return row->integer(0, 0);
   });
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ids.h"
 #include "core/uuid.h"
 #include "domain/layers/review.h"
 #include "domain/layers/tile.h"
@@ -30,8 +31,8 @@ struct TileKeys {
 
 // One edit with everything that becomes durable with it, in one transaction.
 struct JournalEntry {
-  std::int64_t model_id = 0;
-  std::int64_t layer_id = 0;
+  ModelId model_id = 0;
+  LayerId layer_id = 0;
   std::int64_t sequence = 0;  // in the model, from 1, without gaps
   Uuid id;                    // of the message; unique per model
   std::string user;           // display name of the author

@@ -30,8 +30,8 @@ struct Span {
 };
 
 // The run of sequences of each model; they must be consecutive.
-Result<std::map<std::int64_t, Span>> model_spans(std::span<const JournalEntry* const> entries) {
-  std::map<std::int64_t, Span> spans;
+Result<std::map<ModelId, Span>> model_spans(std::span<const JournalEntry* const> entries) {
+  std::map<ModelId, Span> spans;
   for (const JournalEntry* entry : entries) {
     const auto [span, fresh] =
         spans.try_emplace(entry->model_id, Span{entry->sequence, entry->sequence});
@@ -44,7 +44,7 @@ Result<std::map<std::int64_t, Span>> model_spans(std::span<const JournalEntry* c
 
 using Statements = std::deque<PgConnection::Statement>;
 
-void advance_models(const std::map<std::int64_t, Span>& spans, Statements& out) {
+void advance_models(const std::map<ModelId, Span>& spans, Statements& out) {
   PgArray ids(oid::kInt8), firsts(oid::kInt8), lasts(oid::kInt8);
   for (const auto& [model, span] : spans) {
     ids.add(model);
@@ -60,7 +60,7 @@ void advance_models(const std::map<std::int64_t, Span>& spans, Statements& out) 
 }
 
 std::size_t advance_layers(std::span<const JournalEntry* const> entries, Statements& out) {
-  std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t> lasts;
+  std::map<std::pair<LayerId, ModelId>, std::int64_t> lasts;
   for (const JournalEntry* entry : entries)
     lasts[{entry->layer_id, entry->model_id}] = entry->sequence;
   PgArray ids(oid::kInt8), models(oid::kInt8), sequences(oid::kInt8);
@@ -166,7 +166,7 @@ void switch_edits(std::span<const JournalEntry* const> entries, Statements& out)
       PgArray list(oid::kInt8);
       for (const std::int64_t sequence : *sequences) list.add(sequence);
       Params params;
-      params.integer(entry->layer_id).integer(entry->model_id).array(list);
+      params.id(entry->layer_id).id(entry->model_id).array(list);
       params.optional_integer(disable ? std::optional(entry->sequence) : std::nullopt);
       out.push_back(
           {"UPDATE edits SET in_force = $4::bigint IS NULL, undone_by = $4 "
@@ -182,7 +182,7 @@ void keep_decisions(std::span<const JournalEntry* const> entries, Statements& ou
     for (const std::int64_t sequence : entry->reviewed->edits) list.add(sequence);
     const Review becomes = entry->reviewed->becomes;
     Params params;
-    params.integer(entry->layer_id).integer(entry->model_id).array(list).text(name(becomes));
+    params.id(entry->layer_id).id(entry->model_id).array(list).text(name(becomes));
     params.optional_integer(becomes == Review::pending ? std::nullopt
                                                        : std::optional(entry->sequence));
     out.push_back(

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "core/uuid.h"
 #include "domain/layers/history.h"
 #include "domain/layers/layer.h"
@@ -51,28 +52,28 @@ class Journal {
   Result<std::vector<WrittenTiles>> written_by(const Layer& layer,
                                                std::span<const std::int64_t> sequences);
   // The newest first; `before`: only those with lower sequences.
-  Result<HistoryPage> history(std::int64_t layer_id, int limit, int offset,
+  Result<HistoryPage> history(LayerId layer_id, int limit, int offset,
                               std::optional<std::int64_t> before = {});
-  Result<JournalState> state(std::int64_t model_id, std::span<const Uuid> ids);
+  Result<JournalState> state(ModelId model_id, std::span<const Uuid> ids);
   // The sequences (ascending) of the newest stroke of `user` on the layer that is in force / that
   // is undone and not followed by a newer in-force stroke of the same user; empty when there is
   // none. `pending_only`: of those that wait for review.
-  Result<std::vector<std::int64_t>> undoable(std::int64_t layer_id, const std::string& user,
+  Result<std::vector<std::int64_t>> undoable(LayerId layer_id, const std::string& user,
                                              bool pending_only = false);
-  Result<std::vector<std::int64_t>> redoable(std::int64_t layer_id, const std::string& user,
+  Result<std::vector<std::int64_t>> redoable(LayerId layer_id, const std::string& user,
                                              bool pending_only = false);
   // review.cpp: strokes and other edits in force on a layer that wait for review, the oldest first.
   // `after`: only those that begin with a higher sequence.
-  Result<ReviewQueue> review_queue(std::int64_t layer_id, const std::optional<std::string>& user,
+  Result<ReviewQueue> review_queue(LayerId layer_id, const std::optional<std::string>& user,
                                    int limit, int offset, std::int64_t after = 0);
   // The edits that a decision is about: those that wait, in force, and with `reopen` those that
   // were accepted or rejected. Batches of a stroke belong together: one of them stands for all.
-  Result<std::vector<UnderReview>> under_review(std::int64_t layer_id, Decision decision,
+  Result<std::vector<UnderReview>> under_review(LayerId layer_id, Decision decision,
                                                 const Reviewees& which);
-  Result<std::int64_t> last_sequence(std::int64_t model_id);
+  Result<std::int64_t> last_sequence(ModelId model_id);
   // Of the last edit until a time (core/text/timestamp.h's text); 0 before the first.
-  Result<std::int64_t> sequence_at(std::int64_t model_id, const std::string& utc);
-  Result<std::uint64_t> revision_bytes(std::int64_t model_id);
+  Result<std::int64_t> sequence_at(ModelId model_id, const std::string& utc);
+  Result<std::uint64_t> revision_bytes(ModelId model_id);
 
  private:
   Pool& pool_;

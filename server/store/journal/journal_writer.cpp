@@ -176,7 +176,7 @@ struct JournalWriter::Impl {
       std::int64_t sequence;
       Error problem;
     };
-    std::map<std::int64_t, Broken> broken;
+    std::map<ModelId, Broken> broken;
     while (!group.empty()) {
       const JournalEntry* entry = &group.front().entry;
       if (const auto before = broken.find(entry->model_id);

@@ -3,15 +3,14 @@
 
 namespace strata::store {
 
-Result<ReviewQueue> Journal::review_queue(std::int64_t layer_id,
-                                          const std::optional<std::string>& user, int limit,
-                                          int offset, std::int64_t after) {
+Result<ReviewQueue> Journal::review_queue(LayerId layer_id, const std::optional<std::string>& user,
+                                          int limit, int offset, std::int64_t after) {
   if (user) STRATA_TRY(check_text(*user, "user"));
   return pool_.read([&](PgConnection& connection) -> Result<ReviewQueue> {
     auto people = STRATA_TRY(connection.query(
         "SELECT user_name, count(DISTINCT stroke) FROM edits WHERE layer_id = $1 AND review = 'pending' AND in_force "
         "GROUP BY user_name ORDER BY user_name",
-        Params().integer(layer_id)));
+        Params().id(layer_id)));
     ReviewQueue queue;
     for (int i = 0; i < people.rows(); ++i) {
       queue.people.push_back({people.text(i, 0), people.integer(i, 1)});
@@ -28,7 +27,7 @@ Result<ReviewQueue> Journal::review_queue(std::int64_t layer_id,
         "HAVING min(sequence) > $5 ORDER BY min(sequence) LIMIT $3 OFFSET $4) w "
         "JOIN edits e ON e.model_id = w.model_id AND e.sequence = w.first ORDER BY w.first",
         Params()
-            .integer(layer_id)
+            .id(layer_id)
             .optional_text(user)
             .integer(std::max(limit, 0))
             .integer(std::max(offset, 0))
@@ -42,7 +41,7 @@ Result<ReviewQueue> Journal::review_queue(std::int64_t layer_id,
   });
 }
 
-Result<std::vector<UnderReview>> Journal::under_review(std::int64_t layer_id, Decision decision,
+Result<std::vector<UnderReview>> Journal::under_review(LayerId layer_id, Decision decision,
                                                        const Reviewees& which) {
   if (which.user) STRATA_TRY(check_text(*which.user, "user"));
   PgArray named(oid::kInt8);
@@ -59,7 +58,7 @@ Result<std::vector<UnderReview>> Journal::under_review(std::int64_t layer_id, De
         "(stroke, user_name, coalesce(reviewed_by, 0)) IN (SELECT stroke, user_name, coalesce(reviewed_by, 0) "
         "FROM edits WHERE layer_id = $1 AND sequence = any($3))) ORDER BY sequence";
     auto rows = STRATA_TRY(connection.query(
-        sql.c_str(), Params().integer(layer_id).optional_text(which.user).array(named)));
+        sql.c_str(), Params().id(layer_id).optional_text(which.user).array(named)));
     std::vector<UnderReview> found;
     for (int i = 0; i < rows.rows(); ++i)
       found.push_back({rows.integer(i, 0), rows.uuid(i, 1), rows.text(i, 2)});

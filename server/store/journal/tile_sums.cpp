@@ -68,7 +68,7 @@ void write_tile_sums(const TileKeysByPlace& tiles, std::deque<PgConnection::Stat
 void write_tile_sums(std::span<const JournalEntry* const> entries,
                      std::deque<PgConnection::Statement>& out) {
   TileKeysByPlace tiles;
-  std::set<std::int64_t> unknown;
+  std::set<LayerId> unknown;
   for (const JournalEntry* entry : entries) {
     if (entry->revisions.empty()) continue;
     if (!entry->sum_tiles) {
@@ -81,7 +81,7 @@ void write_tile_sums(std::span<const JournalEntry* const> entries,
   write_tile_sums(tiles, out);
   if (unknown.empty()) return;
   PgArray layers(oid::kInt8);
-  for (const std::int64_t layer : unknown) layers.add(layer);
+  for (const LayerId layer : unknown) layers.add(layer);
   Params params;
   params.array(layers);
   out.push_back(
@@ -89,34 +89,33 @@ void write_tile_sums(std::span<const JournalEntry* const> entries,
 }
 
 Result<std::vector<Layer>> Layers::to_sum() {
-  auto ids = pool_.read(
-      [](PgConnection& connection) -> Result<std::vector<std::pair<std::int64_t, std::int64_t>>> {
+  auto ids =
+      pool_.read([](PgConnection& connection) -> Result<std::vector<std::pair<ModelId, LayerId>>> {
         auto rows =
             connection.query("SELECT model_id, id FROM layers WHERE NOT summed ORDER BY id");
         if (!rows) return tl::unexpected(rows.error());
-        std::vector<std::pair<std::int64_t, std::int64_t>> found;
+        std::vector<std::pair<ModelId, LayerId>> found;
         for (int i = 0; i < rows->rows(); ++i)
-          found.emplace_back(rows->integer(i, 0), rows->integer(i, 1));
+          found.emplace_back(rows->id<ModelId>(i, 0), rows->id<LayerId>(i, 1));
         return found;
       });
   if (!ids) return tl::unexpected(ids.error());
   std::vector<Layer> layers;
   for (const auto& [model, id] : *ids)
-    if (auto found = find(model, std::to_string(id), Role::owner))
-      layers.push_back(std::move(*found));
+    if (auto found = find(model, to_string(id), Role::owner)) layers.push_back(std::move(*found));
   return layers;
 }
 
-Result<void> Layers::keep_sums(std::int64_t layer_id, std::vector<TileKeys> tiles) {
+Result<void> Layers::keep_sums(LayerId layer_id, std::vector<TileKeys> tiles) {
   TileKeysByPlace by_place;
   for (TileKeys& tile : tiles) by_place[{layer_id, tile.tile}] = std::move(tile.keys);
   return pool_.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<void> {
     std::deque<PgConnection::Statement> statements;
     statements.push_back({"DELETE FROM tile_sums WHERE layer_id = $1", {}});
-    statements.back().params.integer(layer_id);
+    statements.back().params.id(layer_id);
     write_tile_sums(by_place, statements);
     statements.push_back({"UPDATE layers SET summed = true WHERE id = $1", {}});
-    statements.back().params.integer(layer_id);
+    statements.back().params.id(layer_id);
     STRATA_TRY(connection.pipeline(statements));
     return {};
   });

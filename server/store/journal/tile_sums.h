@@ -4,13 +4,14 @@
 #include <map>
 #include <span>
 
+#include "core/ids.h"
 #include "store/journal/journal.h"
 #include "store/pg/pg.h"
 
 namespace strata::store {
 
 // By layer and tile.
-using TileKeysByPlace = std::map<std::pair<std::int64_t, TileAddress>, std::vector<KeySum>>;
+using TileKeysByPlace = std::map<std::pair<LayerId, TileAddress>, std::vector<KeySum>>;
 
 // The statements that write them in place of what was there.
 void write_tile_sums(const TileKeysByPlace& tiles, std::deque<PgConnection::Statement>& out);

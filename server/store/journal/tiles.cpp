@@ -130,14 +130,14 @@ Result<TileMirror::Snapshot> Journal::load_tiles(const Layer& layer,
     auto last = STRATA_TRY(connection.query(
         "SELECT (SELECT coalesce(max(sequence), 0) FROM edits WHERE layer_id = l.id AND sequence <= $2) "
         "FROM layers l WHERE id = $1",
-        Params().integer(layer.id).integer(
+        Params().id(layer.id).integer(
             at_sequence.value_or(std::numeric_limits<std::int64_t>::max()))));
-    if (last.rows() == 0) return no_such("layer", std::to_string(layer.id));
+    if (last.rows() == 0) return no_such("layer", to_string(layer.id));
     // The journal only grows, so everything up to this sequence is one consistent state.
     const std::int64_t sequence = last.integer(0, 0);
     TileLoader loader(layer.type);
     STRATA_TRY(connection.each_row(
-        kLoadTiles, Params().integer(layer.id).integer(sequence), [&](const PgResult& row) {
+        kLoadTiles, Params().id(layer.id).integer(sequence), [&](const PgResult& row) {
           return loader.add(read_address(row, 0), row.integer(0, 2),
                             !row.null(0, 3) && row.boolean(0, 3), row.bytes(0, 4));
         }));
@@ -154,8 +154,8 @@ Result<std::vector<PastRevision>> Journal::tile_history(const Layer& layer, Tile
         "JOIN edits e ON e.model_id = $2 AND e.sequence = r.sequence "
         "WHERE r.layer_id = $1 AND r.tile_y = $3 AND r.tile_x = $4 AND r.sequence < $5 ORDER BY r.sequence DESC LIMIT $6",
         Params()
-            .integer(layer.id)
-            .integer(layer.model_id)
+            .id(layer.id)
+            .id(layer.model_id)
             .integer(tile.y)
             .integer(tile.x)
             .integer(before)
@@ -179,7 +179,7 @@ Result<std::vector<WrittenTiles>> Journal::written_by(const Layer& layer,
     STRATA_TRY(connection.each_row(
         "SELECT tile_y, tile_x, difference FROM tile_revisions WHERE layer_id = $1 AND sequence = any($2) "
         "ORDER BY tile_y, tile_x",
-        Params().integer(layer.id).array(list), [&](const PgResult& row) -> Result<void> {
+        Params().id(layer.id).array(list), [&](const PgResult& row) -> Result<void> {
           const TileAddress address = read_address(row, 0);
           auto revision = decode_revision(address, layer.type, row.bytes(0, 2));
           if (!revision) return tl::unexpected(revision.error());
@@ -192,12 +192,12 @@ Result<std::vector<WrittenTiles>> Journal::written_by(const Layer& layer,
   });
 }
 
-Result<std::uint64_t> Journal::revision_bytes(std::int64_t model_id) {
+Result<std::uint64_t> Journal::revision_bytes(ModelId model_id) {
   return pool_.read([&](PgConnection& connection) -> Result<std::uint64_t> {
     auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(sum(octet_length(r.difference) + coalesce(octet_length(r.key_tile), 0)), 0)::bigint "
         "FROM layers l JOIN tile_revisions r ON r.layer_id = l.id WHERE l.model_id = $1",
-        Params().integer(model_id)));
+        Params().id(model_id)));
     return static_cast<std::uint64_t>(row.integer(0, 0));
   });
 }

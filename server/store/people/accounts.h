@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "domain/people/role.h"
 #include "store/people/people.h"
 
@@ -30,9 +31,9 @@ class Accounts {
   // (`former-7`). They are in these groups at once (invalid: there is no such group; conflict: it
   // is full), by whom the projects' activity tells; empty: it does not.
   Result<Person> create(const std::string& name, const std::string& full_name, Role role,
-                        const std::vector<std::int64_t>& groups = {}, const std::string& by = {});
+                        const std::vector<GroupId>& groups = {}, const std::string& by = {});
   // Who is disabled is signed out everywhere, and their invitations are worthless.
-  Result<Person> update(std::int64_t id, const PersonChange& change);
+  Result<Person> update(PersonId id, const PersonChange& change);
   // Their account ends, and what they did stays under a name that tells nothing, here and in all
   // journals. Disable them first.
   Result<void> remove(const std::string& name);
@@ -41,7 +42,7 @@ class Accounts {
   Result<std::string> password_of(const std::string& name);
   // Ends all sessions but `kept`, and makes all links worthless.
   Result<void> set_password(const std::string& name, const std::string& hash,
-                            std::optional<std::int64_t> kept);
+                            std::optional<TokenId> kept);
   // Sets the password, uses the invitation up, and opens a session, whose secret is told. Nothing:
   // it is none.
   Result<std::optional<std::string>> accept_invitation(const std::string& invitation,

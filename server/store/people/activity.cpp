@@ -57,10 +57,10 @@ Activity read_line(const PgResult& rows, int i) {
   line.kind = rows.text(i, 4);
   line.op = rows.text(i, 5);
   line.name = rows.text(i, 6);
-  line.model = integer_at(rows, i, 7);
-  line.layer = integer_at(rows, i, 8);
-  line.table = integer_at(rows, i, 9);
-  line.comment = integer_at(rows, i, 10);
+  line.model = rows.id<std::optional<ModelId>>(i, 7);
+  line.layer = rows.id<std::optional<LayerId>>(i, 8);
+  line.table = rows.id<std::optional<TableId>>(i, 9);
+  line.comment = rows.id<std::optional<CommentId>>(i, 10);
   line.model_name = text_at(rows, i, 11);
   if (line.table) line.record = integer_at(rows, i, 12);
   line.text = text_at(rows, i, 13);
@@ -76,13 +76,13 @@ Activity read_line(const PgResult& rows, int i) {
 
 }  // namespace
 
-Result<ActivityPage> Projects::activity(std::int64_t project_id, Role seen_by,
+Result<ActivityPage> Projects::activity(ProjectId project_id, Role seen_by,
                                         const ActivityQuery& query) {
   return pool_.read([&](PgConnection& connection) -> Result<ActivityPage> {
     const ActivityPlace before = query.before.value_or(kAfterAll);
     const int limit = std::max(query.limit, 1);
     Params params;
-    params.integer(query.model.value_or(project_id))
+    params.integer(query.model ? query.model->number() : project_id.number())
         .integer(before.time_us)
         .integer(before.id)
         .boolean(query.with_members)

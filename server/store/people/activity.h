@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/ids.h"
+
 namespace strata::store {
 
 // A line of what was done in a project: what one person did to one thing, each time within ten
@@ -22,7 +24,10 @@ struct Activity {
   std::string op;
   std::string name;  // of what it was done to, as it is called now, or was last; empty: a comment
   // What is still there.
-  std::optional<std::int64_t> model, layer, table, comment;
+  std::optional<ModelId> model;
+  std::optional<LayerId> layer;
+  std::optional<TableId> table;
+  std::optional<CommentId> comment;
   std::string model_name;
   // where all of the line is about this one, which may be deleted
   std::optional<std::int64_t> record;
@@ -44,7 +49,7 @@ struct ActivityPlace {
 
 struct ActivityQuery {
   // Only of this one of the project's, and of the tables whose records lie on it.
-  std::optional<std::int64_t> model{};
+  std::optional<ModelId> model{};
   std::optional<ActivityPlace> before{};
   bool with_members = false;  // also who was given which role
   int limit = 100;

@@ -18,39 +18,39 @@ constexpr std::size_t kMaxGroupNameLength = 100;  // characters
   "(SELECT count(*) FROM project_groups r WHERE r.group_id = g.id)"
 
 Group read_group(const PgResult& rows, int i) {
-  return {rows.integer(i, 0), rows.text(i, 1), rows.integer(i, 2), rows.integer(i, 3)};
+  return {rows.id<GroupId>(i, 0), rows.text(i, 1), rows.integer(i, 2), rows.integer(i, 3)};
 }
 
 Role read_role(const PgResult& rows, int row, int column) {
   return parse_role(rows.text(row, column)).value_or(Role::viewer);
 }
 
-Result<Group> load(PgConnection& connection, std::int64_t id, bool lock) {
+Result<Group> load(PgConnection& connection, GroupId id, bool lock) {
   auto rows = STRATA_TRY(connection.query(
       lock ? "SELECT " STRATA_GROUP_COLUMNS " FROM groups g WHERE g.id = $1 FOR UPDATE"
            : "SELECT " STRATA_GROUP_COLUMNS " FROM groups g WHERE g.id = $1",
-      Params().integer(id)));
-  if (rows.rows() == 0) return no_such("group", std::to_string(id));
+      Params().id(id)));
+  if (rows.rows() == 0) return no_such("group", to_string(id));
   return read_group(rows, 0);
 }
-Result<Group> lock_group(PgConnection& connection, std::int64_t id) {
+Result<Group> lock_group(PgConnection& connection, GroupId id) {
   return load(connection, id, true);
 }
 
-Result<GroupDetail> load_detail(PgConnection& connection, std::int64_t id) {
+Result<GroupDetail> load_detail(PgConnection& connection, GroupId id) {
   auto group = STRATA_TRY(load(connection, id, false));
   GroupDetail detail;
   detail.group = std::move(group);
   auto members = STRATA_TRY(connection.query(
       "SELECT u.name, u.full_name FROM group_people p JOIN users u ON u.id = p.user_id WHERE p.group_id = $1 "
       "ORDER BY lower(u.name)",
-      Params().integer(id)));
+      Params().id(id)));
   for (int i = 0; i < members.rows(); ++i)
     detail.members.push_back({members.text(i, 0), members.text(i, 1)});
   auto projects = STRATA_TRY(connection.query(
       "SELECT p.slug::text, p.name, r.role FROM project_groups r JOIN projects p ON p.id = r.project_id "
       "WHERE r.group_id = $1 ORDER BY lower(p.name), p.id",
-      Params().integer(id)));
+      Params().id(id)));
   for (int i = 0; i < projects.rows(); ++i)
     detail.projects.push_back(
         {projects.text(i, 0), projects.text(i, 1), read_role(projects, i, 2)});
@@ -62,15 +62,15 @@ Result<GroupDetail> load_detail(PgConnection& connection, std::int64_t id) {
       "role_rank(g.role) > role_rank(u.role) AND NOT EXISTS (SELECT 1 FROM project_roles r WHERE "
       "r.project_id = g.project_id AND r.user_id = u.id AND r.group_id IS DISTINCT FROM $1 AND "
       "role_rank(r.role) >= role_rank(g.role)))",
-      Params().integer(id)));
+      Params().id(id)));
   detail.losing = losing.integer(0, 0);
   return detail;
 }
 
-Result<std::vector<std::string>> people_in(PgConnection& connection, std::int64_t id) {
+Result<std::vector<std::string>> people_in(PgConnection& connection, GroupId id) {
   auto rows = STRATA_TRY(connection.query(
       "SELECT u.name FROM group_people p JOIN users u ON u.id = p.user_id WHERE p.group_id = $1",
-      Params().integer(id)));
+      Params().id(id)));
   std::vector<std::string> people;
   for (int i = 0; i < rows.rows(); ++i) people.push_back(rows.text(i, 0));
   return people;
@@ -78,11 +78,11 @@ Result<std::vector<std::string>> people_in(PgConnection& connection, std::int64_
 
 // For whoever makes or renames one: the names and their number are those of now until it is
 // written.
-Result<void> check_name(PgConnection& connection, const std::string& name, std::int64_t own_id) {
+Result<void> check_name(PgConnection& connection, const std::string& name, GroupId own_id) {
   STRATA_TRY(connection.query("LOCK TABLE groups IN SHARE ROW EXCLUSIVE MODE"));
   auto taken =
       connection.query("SELECT name FROM groups WHERE lower(name) = lower($1) AND id <> $2",
-                       Params().text(name).integer(own_id));
+                       Params().text(name).id(own_id));
   if (!taken) return tl::unexpected(taken.error());
   if (taken->rows() > 0)
     return fail(ErrorCode::conflict, "Name taken",
@@ -117,24 +117,23 @@ Result<std::vector<Person>> lock_people(PgConnection& connection,
 }
 
 // Of a group that is locked. True: they were not in it.
-Result<bool> put_person(PgConnection& connection, std::int64_t group_id, std::int64_t person_id) {
+Result<bool> put_person(PgConnection& connection, GroupId group_id, PersonId person_id) {
   auto put = STRATA_TRY(connection.query(
       "INSERT INTO group_people (group_id, user_id) VALUES ($1, $2) ON CONFLICT DO NOTHING RETURNING 1",
-      Params().integer(group_id).integer(person_id)));
+      Params().id(group_id).id(person_id)));
   return put.rows() > 0;
 }
 
-Result<void> check_not_too_full(PgConnection& connection, std::int64_t group_id,
-                                const char* field) {
+Result<void> check_not_too_full(PgConnection& connection, GroupId group_id, const char* field) {
   auto count = STRATA_TRY(connection.query("SELECT count(*) FROM group_people WHERE group_id = $1",
-                                           Params().integer(group_id)));
+                                           Params().id(group_id)));
   if (count.integer(0, 0) > Groups::kMaxPeople)
     return fail(ErrorCode::conflict, "Too many people",
                 "A group has at most " + std::to_string(Groups::kMaxPeople) + " people.", field);
   return {};
 }
 
-Result<std::vector<std::string>> put_people(PgConnection& connection, std::int64_t id,
+Result<std::vector<std::string>> put_people(PgConnection& connection, GroupId id,
                                             const std::vector<std::string>& names,
                                             const char* field) {
   const auto people = STRATA_TRY(lock_people(connection, names, field));
@@ -147,31 +146,31 @@ Result<std::vector<std::string>> put_people(PgConnection& connection, std::int64
   return put;
 }
 
-Result<std::vector<std::string>> take_people(PgConnection& connection, std::int64_t id,
+Result<std::vector<std::string>> take_people(PgConnection& connection, GroupId id,
                                              const std::vector<std::string>& names) {
   const auto people = STRATA_TRY(lock_people(connection, names, "remove"));
   std::vector<std::string> taken;
   for (const Person& person : people) {
     auto gone = STRATA_TRY(connection.query(
         "DELETE FROM group_people WHERE group_id = $1 AND user_id = $2 RETURNING 1",
-        Params().integer(id).integer(person.id)));
+        Params().id(id).id(person.id)));
     if (gone.rows() > 0) taken.push_back(person.name);
   }
   return taken;
 }
 
-Result<void> rename(PgConnection& connection, std::int64_t id, const std::string& name) {
+Result<void> rename(PgConnection& connection, GroupId id, const std::string& name) {
   STRATA_TRY(check_name(connection, name, id));
-  auto done = connection.query("UPDATE groups SET name = $2 WHERE id = $1",
-                               Params().integer(id).text(name));
+  auto done =
+      connection.query("UPDATE groups SET name = $2 WHERE id = $1", Params().id(id).text(name));
   return done ? Result<void>() : tl::unexpected(done.error());
 }
 
 }  // namespace
 
-Result<void> join_groups(PgConnection& connection, std::int64_t person_id,
-                         const std::vector<std::int64_t>& groups) {
-  for (const std::int64_t id : std::set<std::int64_t>(groups.begin(), groups.end())) {
+Result<void> join_groups(PgConnection& connection, PersonId person_id,
+                         const std::vector<GroupId>& groups) {
+  for (const GroupId id : std::set<GroupId>(groups.begin(), groups.end())) {
     const auto group = lock_group(connection, id);
     if (!group && group.error().code == ErrorCode::not_found)
       return fail(ErrorCode::invalid, "No such group", group.error().detail, "groups");
@@ -193,7 +192,7 @@ Result<std::vector<Group>> Groups::all() {
   });
 }
 
-Result<GroupDetail> Groups::group(std::int64_t id) {
+Result<GroupDetail> Groups::group(GroupId id) {
   return pool_.read([&](PgConnection& connection) { return load_detail(connection, id); });
 }
 
@@ -210,13 +209,13 @@ Result<GroupDetail> Groups::create(const std::string& name,
     auto made =
         connection.query("INSERT INTO groups (name) VALUES ($1) RETURNING id", Params().text(name));
     if (!made) return tl::unexpected(made.error());
-    const std::int64_t id = made->integer(0, 0);
+    const GroupId id = made->id<GroupId>(0, 0);
     STRATA_TRY(put_people(connection, id, people, "members"));
     return load_detail(connection, id);
   });
 }
 
-Result<Regrouped<GroupDetail>> Groups::change(std::int64_t id, const GroupChange& change,
+Result<Regrouped<GroupDetail>> Groups::change(GroupId id, const GroupChange& change,
                                               const std::string& by) {
   if (change.name) STRATA_TRY(check_spelling(*change.name));
   return pool_.write([&](PgConnection& connection) -> Result<Regrouped<GroupDetail>> {
@@ -233,7 +232,7 @@ Result<Regrouped<GroupDetail>> Groups::change(std::int64_t id, const GroupChange
   });
 }
 
-Result<std::vector<std::string>> Groups::remove(std::int64_t id, const std::string& by) {
+Result<std::vector<std::string>> Groups::remove(GroupId id, const std::string& by) {
   return pool_.write([&](PgConnection& connection) -> Result<std::vector<std::string>> {
     STRATA_TRY(act_as(connection, by));
     STRATA_TRY(lock_group(connection, id));
@@ -241,18 +240,18 @@ Result<std::vector<std::string>> Groups::remove(std::int64_t id, const std::stri
     // The roles first: what the projects' activity tells is that they end.
     for (const char* sql :
          {"DELETE FROM project_groups WHERE group_id = $1", "DELETE FROM groups WHERE id = $1"})
-      STRATA_TRY(connection.query(sql, Params().integer(id)));
+      STRATA_TRY(connection.query(sql, Params().id(id)));
     return people;
   });
 }
 
-Result<std::vector<ProjectGroup>> Groups::of_project(std::int64_t project_id) {
+Result<std::vector<ProjectGroup>> Groups::of_project(ProjectId project_id) {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<ProjectGroup>> {
     auto rows =
         connection.query("SELECT " STRATA_GROUP_COLUMNS
                          ", i.role FROM project_groups i JOIN groups g ON g.id = i.group_id "
                          "WHERE i.project_id = $1 ORDER BY lower(g.name)",
-                         Params().integer(project_id));
+                         Params().id(project_id));
     if (!rows) return tl::unexpected(rows.error());
     std::vector<ProjectGroup> groups;
     for (int i = 0; i < rows->rows(); ++i)
@@ -261,7 +260,7 @@ Result<std::vector<ProjectGroup>> Groups::of_project(std::int64_t project_id) {
   });
 }
 
-Result<Regrouped<ProjectGroup>> Groups::put(std::int64_t project_id, std::int64_t id, Role role,
+Result<Regrouped<ProjectGroup>> Groups::put(ProjectId project_id, GroupId id, Role role,
                                             const std::string& by) {
   STRATA_TRY(check_project_role(role));
   return pool_.write([&](PgConnection& connection) -> Result<Regrouped<ProjectGroup>> {
@@ -271,32 +270,32 @@ Result<Regrouped<ProjectGroup>> Groups::put(std::int64_t project_id, std::int64_
     STRATA_TRY(connection.query(
         "INSERT INTO project_groups (project_id, group_id, role) VALUES ($1, $2, $3) "
         "ON CONFLICT (group_id, project_id) DO UPDATE SET role = excluded.role",
-        Params().integer(project_id).integer(id).text(strata::name(role))));
+        Params().id(project_id).id(id).text(strata::name(role))));
     auto people = STRATA_TRY(people_in(connection, id));
     return Regrouped<ProjectGroup>{{std::move(group), role}, std::move(people)};
   });
 }
 
-Result<std::vector<std::string>> Groups::take(std::int64_t project_id, std::int64_t id,
+Result<std::vector<std::string>> Groups::take(ProjectId project_id, GroupId id,
                                               const std::string& by) {
   return pool_.write([&](PgConnection& connection) -> Result<std::vector<std::string>> {
     STRATA_TRY(lock_group(connection, id));
     STRATA_TRY(act_as(connection, by));
     auto gone = STRATA_TRY(connection.query(
         "DELETE FROM project_groups WHERE project_id = $1 AND group_id = $2 RETURNING 1",
-        Params().integer(project_id).integer(id)));
-    if (gone.rows() == 0) return no_such("group of the project", std::to_string(id));
+        Params().id(project_id).id(id)));
+    if (gone.rows() == 0) return no_such("group of the project", to_string(id));
     return people_in(connection, id);
   });
 }
 
-Result<std::vector<std::int64_t>> Groups::people_with_role(std::int64_t project_id) {
-  return pool_.read([&](PgConnection& connection) -> Result<std::vector<std::int64_t>> {
+Result<std::vector<PersonId>> Groups::people_with_role(ProjectId project_id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<PersonId>> {
     auto rows = STRATA_TRY(
         connection.query("SELECT DISTINCT user_id FROM project_roles WHERE project_id = $1",
-                         Params().integer(project_id)));
-    std::vector<std::int64_t> ids;
-    for (int i = 0; i < rows.rows(); ++i) ids.push_back(rows.integer(i, 0));
+                         Params().id(project_id)));
+    std::vector<PersonId> ids;
+    for (int i = 0; i < rows.rows(); ++i) ids.push_back(rows.id<PersonId>(i, 0));
     return ids;
   });
 }
@@ -310,7 +309,7 @@ Result<std::vector<GivenRole>> Groups::roles_of(const std::string& user) {
         Params().text(user)));
     std::vector<GivenRole> roles;
     for (int i = 0; i < rows.rows(); ++i)
-      roles.push_back({rows.integer(i, 0), read_role(rows, i, 1), rows.text(i, 2)});
+      roles.push_back({rows.id<ProjectId>(i, 0), read_role(rows, i, 1), rows.text(i, 2)});
     return roles;
   });
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "domain/people/role.h"
 
 namespace strata::store {
@@ -15,7 +16,7 @@ class Pool;
 
 // People who are given roles in projects together; of the whole site.
 struct Group {
-  std::int64_t id = 0;
+  GroupId id = 0;
   std::string name;           // 1 to 100 characters; unique in any case
   std::int64_t people = 0;    // in it
   std::int64_t projects = 0;  // in which it has a role
@@ -44,7 +45,7 @@ struct ProjectGroup {
 
 // What a group gives one person, above their own role there.
 struct GivenRole {
-  std::int64_t project_id = 0;
+  ProjectId project_id = 0;
   Role role = Role::viewer;
   std::string group;
 };
@@ -71,27 +72,26 @@ class Groups {
   explicit Groups(Pool& pool) : pool_(pool) {}
 
   Result<std::vector<Group>> all();  // by name
-  Result<GroupDetail> group(std::int64_t id);
+  Result<GroupDetail> group(GroupId id);
   // Refused: a name that is empty or too long (invalid) or taken (conflict), nobody of a name
   // (invalid), too many groups or people (conflict).
   Result<GroupDetail> create(const std::string& name, const std::vector<std::string>& people);
   // The same. Who is in it already, or not in it, stays so.
-  Result<Regrouped<GroupDetail>> change(std::int64_t id, const GroupChange& change,
+  Result<Regrouped<GroupDetail>> change(GroupId id, const GroupChange& change,
                                         const std::string& by);
   // With the roles that it has.
-  Result<std::vector<std::string>> remove(std::int64_t id, const std::string& by);
+  Result<std::vector<std::string>> remove(GroupId id, const std::string& by);
 
   // --- in projects
-  Result<std::vector<ProjectGroup>> of_project(std::int64_t project_id);  // by name
+  Result<std::vector<ProjectGroup>> of_project(ProjectId project_id);  // by name
   // Gives the role (viewer, annotator or curator) in place of the one it had there.
-  Result<Regrouped<ProjectGroup>> put(std::int64_t project_id, std::int64_t id, Role role,
+  Result<Regrouped<ProjectGroup>> put(ProjectId project_id, GroupId id, Role role,
                                       const std::string& by);
   // not_found: it has none there.
-  Result<std::vector<std::string>> take(std::int64_t project_id, std::int64_t id,
-                                        const std::string& by);
+  Result<std::vector<std::string>> take(ProjectId project_id, GroupId id, const std::string& by);
 
   // Who has a role there, of their own or by a group.
-  Result<std::vector<std::int64_t>> people_with_role(std::int64_t project_id);
+  Result<std::vector<PersonId>> people_with_role(ProjectId project_id);
   // by groups, by the name of these
   Result<std::vector<GivenRole>> roles_of(const std::string& user);
 

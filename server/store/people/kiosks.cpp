@@ -18,11 +18,11 @@ namespace {
 
 Kiosk read_kiosk(const PgResult& rows, int i) {
   Kiosk kiosk;
-  kiosk.id = rows.integer(i, 0);
+  kiosk.id = rows.id<KioskId>(i, 0);
   kiosk.name = rows.text(i, 1);
-  kiosk.tour_id = rows.integer(i, 2);
-  kiosk.model_id = rows.integer(i, 3);
-  kiosk.project_id = rows.integer(i, 4);
+  kiosk.tour_id = rows.id<NamedPartId>(i, 2);
+  kiosk.model_id = rows.id<ModelId>(i, 3);
+  kiosk.project_id = rows.id<ProjectId>(i, 4);
   kiosk.tour = rows.text(i, 5);
   kiosk.tour_name = rows.text(i, 6);
   kiosk.model = rows.text(i, 7);
@@ -37,20 +37,20 @@ Kiosk read_kiosk(const PgResult& rows, int i) {
   return kiosk;
 }
 
-Result<Kiosk> load(PgConnection& connection, std::int64_t id) {
-  auto rows = STRATA_TRY(connection.query(STRATA_KIOSKS "WHERE k.id = $1", Params().integer(id)));
-  if (rows.rows() == 0) return no_such("kiosk", std::to_string(id));
+Result<Kiosk> load(PgConnection& connection, KioskId id) {
+  auto rows = STRATA_TRY(connection.query(STRATA_KIOSKS "WHERE k.id = $1", Params().id(id)));
+  if (rows.rows() == 0) return no_such("kiosk", to_string(id));
   return read_kiosk(rows, 0);
 }
 
 }  // namespace
 
-Result<Kiosks::Page> Kiosks::all(const std::optional<std::vector<std::int64_t>>& projects,
-                                 int limit, int offset, std::int64_t after) {
+Result<Kiosks::Page> Kiosks::all(const std::optional<std::vector<ProjectId>>& projects, int limit,
+                                 int offset, std::int64_t after) {
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
     PgArray ids(oid::kInt8);
     if (projects)
-      for (const std::int64_t project : *projects) ids.add(project);
+      for (const ProjectId project : *projects) ids.add(project);
     auto total = STRATA_TRY(connection.query(
         "SELECT count(*) FROM kiosks k JOIN tours t ON t.id = k.tour_id JOIN models m ON m.id = t.model_id "
         "WHERE ($1 OR m.project_id = any($2)) AND " STRATA_LISTED_KIOSK,
@@ -66,22 +66,21 @@ Result<Kiosks::Page> Kiosks::all(const std::optional<std::vector<std::int64_t>>&
   });
 }
 
-Result<Kiosk> Kiosks::kiosk(std::int64_t id) {
+Result<Kiosk> Kiosks::kiosk(KioskId id) {
   return pool_.read([&](PgConnection& connection) { return load(connection, id); });
 }
 
-Result<std::vector<std::int64_t>> Kiosks::of_tour(std::int64_t tour_id) {
-  return pool_.read([&](PgConnection& connection) -> Result<std::vector<std::int64_t>> {
-    auto rows =
-        connection.query("SELECT id FROM kiosks WHERE tour_id = $1", Params().integer(tour_id));
+Result<std::vector<KioskId>> Kiosks::of_tour(NamedPartId tour_id) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<KioskId>> {
+    auto rows = connection.query("SELECT id FROM kiosks WHERE tour_id = $1", Params().id(tour_id));
     if (!rows) return tl::unexpected(rows.error());
-    std::vector<std::int64_t> ids;
-    for (int i = 0; i < rows->rows(); ++i) ids.push_back(rows->integer(i, 0));
+    std::vector<KioskId> ids;
+    for (int i = 0; i < rows->rows(); ++i) ids.push_back(rows->id<KioskId>(i, 0));
     return ids;
   });
 }
 
-Result<NewKiosk> Kiosks::create(std::int64_t tour_id, const std::string& name,
+Result<NewKiosk> Kiosks::create(NamedPartId tour_id, const std::string& name,
                                 const std::string& user,
                                 std::optional<std::chrono::seconds> lifetime) {
   STRATA_TRY(check_name(name));
@@ -89,15 +88,15 @@ Result<NewKiosk> Kiosks::create(std::int64_t tour_id, const std::string& name,
   return pool_.write([&](PgConnection& connection) -> Result<NewKiosk> {
     // Locked, so that of two at once the later one counts the earlier.
     auto tour = STRATA_TRY(connection.query("SELECT 1 FROM tours WHERE id = $1 FOR NO KEY UPDATE",
-                                            Params().integer(tour_id)));
-    if (tour.rows() == 0) return no_such("tour", std::to_string(tour_id));
+                                            Params().id(tour_id)));
+    if (tour.rows() == 0) return no_such("tour", to_string(tour_id));
     auto cleared =
         connection.query("DELETE FROM kiosks k WHERE k.tour_id = $1 AND NOT " STRATA_LISTED_KIOSK,
-                         Params().integer(tour_id));
+                         Params().id(tour_id));
     if (!cleared) return tl::unexpected(cleared.error());
     auto count = STRATA_TRY(connection.query(
         "SELECT count(*) FROM kiosks k WHERE k.tour_id = $1 AND " STRATA_GOOD_KIOSK,
-        Params().integer(tour_id)));
+        Params().id(tour_id)));
     if (count.integer(0, 0) >= kMaxKiosks)
       return fail(ErrorCode::conflict, "Too many kiosks",
                   "A tour has links for at most " + std::to_string(kMaxKiosks) +
@@ -109,8 +108,8 @@ Result<NewKiosk> Kiosks::create(std::int64_t tour_id, const std::string& name,
     const Sha256 hash = sha256(made.secret);
     auto row = STRATA_TRY(connection.query(
         "INSERT INTO kiosks (tour_id, hash, name, user_name, expires) VALUES ($1, $2, $3, $4, $5) RETURNING id",
-        Params().integer(tour_id).bytes(hash).text(name).text(user).time(expires)));
-    auto kiosk = STRATA_TRY(load(connection, row.integer(0, 0)));
+        Params().id(tour_id).bytes(hash).text(name).text(user).time(expires)));
+    auto kiosk = STRATA_TRY(load(connection, row.id<KioskId>(0, 0)));
     made.kiosk = std::move(kiosk);
     return made;
   });
@@ -125,31 +124,31 @@ Result<std::optional<Kiosk>> Kiosks::find(const std::string& secret) {
   });
 }
 
-Result<void> Kiosks::seen(std::int64_t id, bool loaded) {
+Result<void> Kiosks::seen(KioskId id, bool loaded) {
   return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto done = connection.query(
         "UPDATE kiosks SET last_seen = now(), wants_reload = wants_reload AND NOT $2 WHERE id = $1 AND "
         "(last_seen IS NULL OR last_seen < now() - interval '1 minute' OR (wants_reload AND $2))",
-        Params().integer(id).boolean(loaded));
+        Params().id(id).boolean(loaded));
     return done ? Result<void>() : tl::unexpected(done.error());
   });
 }
 
-Result<void> Kiosks::revoke(std::int64_t id) {
+Result<void> Kiosks::revoke(KioskId id) {
   return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto done = STRATA_TRY(connection.query(
         "UPDATE kiosks SET revoked = coalesce(revoked, now()), wants_reload = false WHERE id = $1",
-        Params().integer(id)));
-    if (done.affected() == 0) return no_such("kiosk", std::to_string(id));
+        Params().id(id)));
+    if (done.affected() == 0) return no_such("kiosk", to_string(id));
     return {};
   });
 }
 
-Result<Kiosk> Kiosks::ask_reload(std::int64_t id) {
+Result<Kiosk> Kiosks::ask_reload(KioskId id) {
   return pool_.write([&](PgConnection& connection) -> Result<Kiosk> {
     auto done = STRATA_TRY(connection.query(
         "UPDATE kiosks k SET wants_reload = true WHERE k.id = $1 AND " STRATA_GOOD_KIOSK,
-        Params().integer(id)));
+        Params().id(id)));
     auto kiosk = load(connection, id);
     if (kiosk && done.affected() == 0)
       return fail(ErrorCode::conflict, "Link not valid",

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 
 namespace strata::store {
 
@@ -14,9 +15,11 @@ class Pool;
 
 // A screen that shows one tour to whoever stands before it.
 struct Kiosk {
-  std::int64_t id = 0;
+  KioskId id = 0;
   std::string name;  // where it stands
-  std::int64_t tour_id = 0, model_id = 0, project_id = 0;
+  NamedPartId tour_id = 0;
+  ModelId model_id = 0;
+  ProjectId project_id = 0;
   std::string tour, tour_name, model, model_name, project;  // slugs and names
   std::string user;                                         // who made the link
   std::chrono::system_clock::time_point created;
@@ -42,22 +45,22 @@ class Kiosks {
     std::int64_t total = 0;
   };
   // Of these projects, or of all. `after`: only those with higher ids.
-  Result<Page> all(const std::optional<std::vector<std::int64_t>>& projects, int limit, int offset,
+  Result<Page> all(const std::optional<std::vector<ProjectId>>& projects, int limit, int offset,
                    std::int64_t after = 0);
-  Result<Kiosk> kiosk(std::int64_t id);
-  Result<std::vector<std::int64_t>> of_tour(std::int64_t tour_id);  // ids, good or not
+  Result<Kiosk> kiosk(KioskId id);
+  Result<std::vector<KioskId>> of_tour(NamedPartId tour_id);  // ids, good or not
 
   // Refused: an empty name (malformed), a tour that is not there (not_found), one too many
   // (conflict).
-  Result<NewKiosk> create(std::int64_t tour_id, const std::string& name, const std::string& user,
+  Result<NewKiosk> create(NamedPartId tour_id, const std::string& name, const std::string& user,
                           std::optional<std::chrono::seconds> lifetime);
   // Nothing: unknown, expired or revoked.
   Result<std::optional<Kiosk>> find(const std::string& secret);
   // That it is there, to a minute. `loaded`: its page was loaded just now, as it may have been
   // asked to.
-  Result<void> seen(std::int64_t id, bool loaded);
-  Result<void> revoke(std::int64_t id);       // again is the same
-  Result<Kiosk> ask_reload(std::int64_t id);  // conflict: it is revoked or expired
+  Result<void> seen(KioskId id, bool loaded);
+  Result<void> revoke(KioskId id);       // again is the same
+  Result<Kiosk> ask_reload(KioskId id);  // conflict: it is revoked or expired
 
  private:
   Pool& pool_;

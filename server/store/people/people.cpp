@@ -40,10 +40,10 @@ std::optional<TokenKind> parse_kind(const std::string& text) {
 #define STRATA_GOOD_TOKEN "(revoked IS NULL AND (expires IS NULL OR expires > now()))"
 
 Person read_person(const PgResult& rows, int i) {
-  Person person{rows.integer(i, 0), rows.text(i, 1),
-                rows.text(i, 2),    parse_role(rows.text(i, 3)).value_or(Role::viewer),
-                rows.boolean(i, 4), rows.boolean(i, 5),
-                rows.time(i, 6),    std::nullopt,
+  Person person{rows.id<PersonId>(i, 0), rows.text(i, 1),
+                rows.text(i, 2),         parse_role(rows.text(i, 3)).value_or(Role::viewer),
+                rows.boolean(i, 4),      rows.boolean(i, 5),
+                rows.time(i, 6),         std::nullopt,
                 rows.json(i, 8)};
   if (!rows.null(i, 7)) person.last_seen = rows.time(i, 7);
   return person;
@@ -71,12 +71,12 @@ Result<void> run(PgConnection& connection, const char* sql, const Params& params
 }
 
 Result<void> revoke_tokens(PgConnection& connection, const std::string& user, TokenKind kind,
-                           std::optional<std::int64_t> kept) {
+                           std::optional<TokenId> kept) {
   return run(
       connection,
       "UPDATE tokens SET revoked = now() WHERE user_name = $1 AND kind = $2 AND revoked IS NULL AND "
       "id IS DISTINCT FROM $3",
-      Params().text(user).text(name(kind)).optional_integer(kept));
+      Params().text(user).text(name(kind)).optional_id(kept));
 }
 
 Result<std::int64_t> count_good(PgConnection& connection, const std::string& user, TokenKind kind) {
@@ -87,7 +87,7 @@ Result<std::int64_t> count_good(PgConnection& connection, const std::string& use
 }
 
 Token read_token(const PgResult& rows, TokenKind kind, int i) {
-  Token token{rows.integer(i, 0),
+  Token token{rows.id<TokenId>(i, 0),
               kind,
               rows.text(i, 1),
               parse_role(rows.text(i, 2)).value_or(Role::viewer),
@@ -106,7 +106,7 @@ Token read_token(const PgResult& rows, TokenKind kind, int i) {
 // Of somebody who is locked.
 Result<NewToken> insert_token(PgConnection& connection, TokenKind kind, const std::string& user,
                               Role role, std::optional<std::chrono::seconds> lifetime,
-                              const std::string& label, std::optional<std::int64_t> project = {}) {
+                              const std::string& label, std::optional<ProjectId> project = {}) {
   STRATA_TRY(run(
       connection,
       "DELETE FROM tokens WHERE user_name = $1 AND coalesce(revoked, expires) < now() - interval '30 days'",
@@ -125,7 +125,7 @@ Result<NewToken> insert_token(PgConnection& connection, TokenKind kind, const st
           .text(strata::name(role))
           .time(expires)
           .text(label)
-          .optional_integer(project)));
+          .optional_id(project)));
   made.token = read_token(row, kind, 0);
   return made;
 }
@@ -166,22 +166,22 @@ Result<std::optional<Found>> find_secret(PgConnection& connection, const std::st
                                   Params().integer(row.integer(0, 5))));
   for (int i = 0; i < given.rows(); ++i)
     if (const auto role = parse_role(given.text(i, 1))) {
-      Role& there = roles.in_projects[given.integer(i, 0)];
+      Role& there = roles.in_projects[given.id<ProjectId>(i, 0)];
       there = std::max(there, *role);
     }
   if (*kind == TokenKind::script) roles = roles.at_most(*own);
   if (!row.null(0, 7)) {
-    const std::int64_t project = row.integer(0, 7);
+    const ProjectId project = row.id<ProjectId>(0, 7);
     const Role there = std::min(roles.in(project), Role::curator);
     roles = {};
     if (there > Role::guest) roles.in_projects[project] = there;
   }
   return std::optional<Found>(
-      {{row.text(0, 0), std::move(roles), *kind, row.integer(0, 4)}, row.boolean(0, 6)});
+      {{row.text(0, 0), std::move(roles), *kind, row.id<TokenId>(0, 4)}, row.boolean(0, 6)});
 }
 
 Result<void> put_password(PgConnection& connection, const std::string& user,
-                          const std::string& hash, std::optional<std::int64_t> kept) {
+                          const std::string& hash, std::optional<TokenId> kept) {
   STRATA_TRY(run(connection, "UPDATE users SET password = $2 WHERE name = $1",
                  Params().text(user).text(hash)));
   STRATA_TRY(revoke_tokens(connection, user, TokenKind::session, kept));
@@ -224,7 +224,7 @@ Result<std::vector<Person>> Accounts::called(const std::vector<std::string>& nam
 }
 
 Result<Person> Accounts::create(const std::string& name, const std::string& full_name, Role role,
-                                const std::vector<std::int64_t>& groups, const std::string& by) {
+                                const std::vector<GroupId>& groups, const std::string& by) {
   const auto is_plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
   };
@@ -255,18 +255,18 @@ Result<Person> Accounts::create(const std::string& name, const std::string& full
                   "There is somebody called `" + name + "`. Choose another name.", "user");
     if (groups.empty()) return read_person(made, 0);
     STRATA_TRY(act_as(connection, by));
-    STRATA_TRY(join_groups(connection, made.integer(0, 0), groups));
+    STRATA_TRY(join_groups(connection, made.id<PersonId>(0, 0), groups));
     return load_person(connection, name, false);
   });
 }
 
-Result<Person> Accounts::update(std::int64_t id, const PersonChange& change) {
+Result<Person> Accounts::update(PersonId id, const PersonChange& change) {
   if (change.full_name) STRATA_TRY(check_texts({{&*change.full_name, "full_name"}}));
   return pool_.write([&](PgConnection& connection) -> Result<Person> {
     auto rows = STRATA_TRY(connection.query(
         "SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE id = $1 AND deleted IS NULL FOR UPDATE",
-        Params().integer(id)));
-    if (rows.rows() == 0) return no_such("person", std::to_string(id));
+        Params().id(id)));
+    if (rows.rows() == 0) return no_such("person", to_string(id));
     Person person = read_person(rows, 0);
     if (change.full_name) person.full_name = *change.full_name;
     if (change.role) person.role = *change.role;
@@ -276,7 +276,7 @@ Result<Person> Accounts::update(std::int64_t id, const PersonChange& change) {
         "UPDATE users SET full_name = $2, role = $3, disabled = CASE WHEN $4 THEN coalesce(disabled, now()) END "
         "WHERE id = $1",
         Params()
-            .integer(id)
+            .id(id)
             .text(person.full_name)
             .text(strata::name(person.role))
             .boolean(person.disabled)));
@@ -296,8 +296,8 @@ Result<void> Accounts::remove(const std::string& name) {
     for (const char* sql : {"DELETE FROM project_members WHERE user_id = $1",
                             "DELETE FROM group_people WHERE user_id = $1",
                             "DELETE FROM personal_views WHERE user_id = $1"})
-      STRATA_TRY(run(connection, sql, Params().integer(person.id)));
-    const std::string former = std::string(kFormer) + std::to_string(person.id);
+      STRATA_TRY(run(connection, sql, Params().id(person.id)));
+    const std::string former = std::string(kFormer) + to_string(person.id);
     for (
         const char* sql :
         {"UPDATE users SET name = $2, full_name = '', password = NULL, deleted = now() WHERE name = $1",
@@ -323,14 +323,14 @@ Result<void> Accounts::remove(const std::string& name) {
   });
 }
 
-Result<std::vector<Membership>> Members::of_project(std::int64_t project_id) {
+Result<std::vector<Membership>> Members::of_project(ProjectId project_id) {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<Membership>> {
     auto rows =
         STRATA_TRY(connection.query(
             "SELECT " STRATA_PERSON_COLUMNS ", in_project FROM users JOIN "
             "(SELECT user_id, role AS in_project FROM project_members WHERE project_id = $1) m "
             "ON user_id = id ORDER BY lower(name)",
-            Params().integer(project_id)));
+            Params().id(project_id)));
     std::vector<Membership> members;
     for (int i = 0; i < rows.rows(); ++i)
       members.push_back({read_person(rows, i), parse_role(rows.text(i, 9)).value_or(Role::viewer)});
@@ -345,15 +345,15 @@ Result<void> check_project_role(Role role) {
   return {};
 }
 
-Result<void> lock_project(PgConnection& connection, std::int64_t id) {
+Result<void> lock_project(PgConnection& connection, ProjectId id) {
   auto project =
-      connection.query("SELECT 1 FROM projects WHERE id = $1 FOR KEY SHARE", Params().integer(id));
+      connection.query("SELECT 1 FROM projects WHERE id = $1 FOR KEY SHARE", Params().id(id));
   if (!project) return tl::unexpected(project.error());
-  if (project->rows() == 0) return no_such("project", std::to_string(id));
+  if (project->rows() == 0) return no_such("project", to_string(id));
   return {};
 }
 
-Result<Membership> Members::put(std::int64_t project_id, const std::string& user, Role role,
+Result<Membership> Members::put(ProjectId project_id, const std::string& user, Role role,
                                 const std::string& by) {
   STRATA_TRY(check_project_role(role));
   return pool_.write([&](PgConnection& connection) -> Result<Membership> {
@@ -363,19 +363,18 @@ Result<Membership> Members::put(std::int64_t project_id, const std::string& user
     STRATA_TRY(run(connection,
                    "INSERT INTO project_members (project_id, user_id, role) VALUES ($1, $2, $3) "
                    "ON CONFLICT (project_id, user_id) DO UPDATE SET role = excluded.role",
-                   Params().integer(project_id).integer(person.id).text(strata::name(role))));
+                   Params().id(project_id).id(person.id).text(strata::name(role))));
     return Membership{std::move(person), role};
   });
 }
 
-Result<void> Members::remove(std::int64_t project_id, const std::string& user,
-                             const std::string& by) {
+Result<void> Members::remove(ProjectId project_id, const std::string& user, const std::string& by) {
   return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto person = STRATA_TRY(lock_person(connection, user));
     STRATA_TRY(act_as(connection, by));
     auto gone = STRATA_TRY(connection.query(
         "DELETE FROM project_members WHERE project_id = $1 AND user_id = $2 RETURNING 1",
-        Params().integer(project_id).integer(person.id)));
+        Params().id(project_id).id(person.id)));
     if (gone.rows() == 0) return no_such("member", user);
     return {};
   });
@@ -401,7 +400,7 @@ Result<std::string> Accounts::password_of(const std::string& name) {
 }
 
 Result<void> Accounts::set_password(const std::string& name, const std::string& hash,
-                                    std::optional<std::int64_t> kept) {
+                                    std::optional<TokenId> kept) {
   return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto person = STRATA_TRY(lock_person(connection, name));
     return put_password(connection, person.name, hash, kept);
@@ -411,14 +410,14 @@ Result<void> Accounts::set_password(const std::string& name, const std::string& 
 Result<NewToken> Tokens::create(TokenKind kind, const std::string& user, Role role,
                                 std::optional<std::chrono::seconds> lifetime,
                                 const std::string& label, const std::optional<std::string>& hash,
-                                std::optional<std::int64_t> project) {
+                                std::optional<ProjectId> project) {
   STRATA_TRY(check_texts({{&label, "name"}}));
   return pool_.write([&](PgConnection& connection) -> Result<NewToken> {
     auto person = STRATA_TRY(lock_person(connection, user));
     if (person.disabled) return no_such("person", user);
     if (hash) {
       auto same = STRATA_TRY(connection.query("SELECT 1 FROM users WHERE id = $1 AND password = $2",
-                                              Params().integer(person.id).text(*hash)));
+                                              Params().id(person.id).text(*hash)));
       if (same.rows() == 0)
         return fail(ErrorCode::unauthenticated, "Not signed in",
                     "The password was changed meanwhile.", "password");
@@ -460,7 +459,7 @@ Result<std::optional<Principal>> Tokens::find(const std::string& secret) {
           connection,
           "WITH used AS (UPDATE tokens SET last_used = now() WHERE id = $1 RETURNING user_name) "
           "UPDATE users SET last_seen = now() FROM used WHERE name = used.user_name",
-          Params().integer(principal.token));
+          Params().id(principal.token));
     });
   return principal;
 }
@@ -523,20 +522,20 @@ Result<void> Tokens::revoke(const std::string& secret) {
   });
 }
 
-Result<void> Tokens::revoke(const std::string& user, TokenKind kind, std::int64_t id) {
+Result<void> Tokens::revoke(const std::string& user, TokenKind kind, TokenId id) {
   return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto done = STRATA_TRY(connection.query(
         "UPDATE tokens SET revoked = now() WHERE user_name = $1 AND kind = $2 AND id = $3 AND " STRATA_GOOD_TOKEN
         " RETURNING id",
-        Params().text(user).text(name(kind)).integer(id)));
+        Params().text(user).text(name(kind)).id(id)));
     if (done.rows() == 0)
-      return no_such(kind == TokenKind::session ? "session" : "token", std::to_string(id));
+      return no_such(kind == TokenKind::session ? "session" : "token", to_string(id));
     return {};
   });
 }
 
 Result<void> Tokens::revoke_all(const std::string& user, TokenKind kind,
-                                std::optional<std::int64_t> kept) {
+                                std::optional<TokenId> kept) {
   return pool_.write(
       [&](PgConnection& connection) { return revoke_tokens(connection, user, kind, kept); });
 }

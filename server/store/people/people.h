@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ids.h"
 #include "domain/people/role.h"
 
 namespace strata::store {
@@ -17,7 +18,7 @@ inline constexpr std::size_t kMaxTokens = 100;
 // Someone with an account. `name` is what they sign in with, in any case, and what journals say of
 // them.
 struct Person {
-  std::int64_t id = 0;
+  PersonId id = 0;
   std::string name;
   std::string full_name;
   Role role = Role::viewer;
@@ -45,7 +46,7 @@ enum class TokenKind {
 
 // What a secret stands for. The secret itself is nowhere: its SHA-256 is kept, of 256 random bits.
 struct Token {
-  std::int64_t id = 0;
+  TokenId id = 0;
   TokenKind kind = TokenKind::session;
   std::string label;  // what the browser calls itself, or what the token is for
   Role role = Role::viewer;
@@ -70,7 +71,7 @@ struct Principal {
   std::string user;
   Roles roles;
   TokenKind kind = TokenKind::session;
-  std::int64_t token = 0;  // its id
+  TokenId token = 0;  // its id
 };
 
 }  // namespace strata::store

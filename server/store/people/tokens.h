@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "domain/people/role.h"
 #include "store/people/people.h"
 
@@ -28,7 +29,7 @@ class Tokens {
                           std::optional<std::chrono::seconds> lifetime,
                           const std::string& label = {},
                           const std::optional<std::string>& hash = {},
-                          std::optional<std::int64_t> project = {});
+                          std::optional<ProjectId> project = {});
   // The only good link of the kind that the person has: earlier ones become worthless.
   Result<NewToken> create_link(TokenKind kind, const std::string& user,
                                std::chrono::seconds lifetime);
@@ -42,9 +43,9 @@ class Tokens {
                                                        const std::string& label = {});
   Result<void> revoke(const std::string& secret);
   // not_found: the person has none of the kind with that id.
-  Result<void> revoke(const std::string& user, TokenKind kind, std::int64_t id);
+  Result<void> revoke(const std::string& user, TokenKind kind, TokenId id);
   Result<void> revoke_all(const std::string& user, TokenKind kind,
-                          std::optional<std::int64_t> kept = {});
+                          std::optional<TokenId> kept = {});
 
  private:
   Pool& pool_;

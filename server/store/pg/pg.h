@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "core/uuid.h"
 #include "store/pg/pg_limits.h"
 
@@ -33,6 +34,10 @@ class PgArray {
  public:
   explicit PgArray(Oid element) : element_(element) {}
   void add(std::int64_t value);
+  template <class Kind>
+  void add(Id<Kind> id) {
+    add(id.number());
+  }
   void add_int2(std::int16_t value);
   void add(double value);
   void add(std::string_view text);
@@ -64,6 +69,14 @@ class Params {
 
   Params& integer(std::int64_t value);
   Params& optional_integer(std::optional<std::int64_t> value);
+  template <class Kind>
+  Params& id(Id<Kind> id) {
+    return integer(id.number());
+  }
+  template <class Kind>
+  Params& optional_id(std::optional<Id<Kind>> id) {
+    return optional_integer(id ? std::optional(id->number()) : std::nullopt);
+  }
   Params& real(double value);
   Params& boolean(bool value);
   Params& text(std::string_view value);
@@ -101,6 +114,14 @@ class PgResult {
   std::int64_t affected() const;
   bool null(int row, int column) const { return PQgetisnull(result_.get(), row, column) != 0; }
   std::int64_t integer(int row, int column) const;  // int2, int4, int8
+  // An id, or an optional one: SQL's null.
+  template <class T>
+  T id(int row, int column) const {
+    if constexpr (requires { typename T::value_type; })
+      return null(row, column) ? T() : T(typename T::value_type(integer(row, column)));
+    else
+      return T(integer(row, column));
+  }
   double real(int row, int column) const;
   bool boolean(int row, int column) const;
   std::string text(int row, int column) const;

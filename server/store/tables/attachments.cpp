@@ -21,8 +21,8 @@ std::optional<int> side_of(const PgResult& rows, int row, int column) {
 }
 
 Attachment read_attachment_row(const PgResult& rows, int i) {
-  return {rows.integer(i, 0),
-          rows.integer(i, 1),
+  return {rows.id<AttachmentId>(i, 0),
+          rows.id<TableId>(i, 1),
           rows.text(i, 2),
           rows.text(i, 3),
           static_cast<std::uint64_t>(rows.integer(i, 4)),
@@ -34,21 +34,21 @@ Attachment read_attachment_row(const PgResult& rows, int i) {
           parse_visibility(rows.text(i, 10)).value_or(Visibility::curators)};
 }
 
-Result<std::vector<Attachment>> rows_of_ids(PgConnection& connection, std::int64_t table_id,
-                                            std::span<const std::int64_t> ids) {
+Result<std::vector<Attachment>> rows_of_ids(PgConnection& connection, TableId table_id,
+                                            std::span<const AttachmentId> ids) {
   PgArray list(oid::kInt8);
   for (const auto id : ids) list.add(id);
   auto rows = STRATA_TRY(connection.query("SELECT " STRATA_ATTACHMENT_COLUMNS
                                           " FROM attachments a JOIN blobs b USING (sha256) "
                                           "WHERE a.table_id = $1 AND a.id = any($2) ORDER BY a.id",
-                                          Params().integer(table_id).array(list)));
+                                          Params().id(table_id).array(list)));
   std::vector<Attachment> found;
   for (int i = 0; i < rows.rows(); ++i) found.push_back(read_attachment_row(rows, i));
   return found;
 }
 
 // Where the files go: as wished, or the first column that takes them all.
-Result<const Column*> column_for(const Table& table, std::optional<std::int64_t> wished,
+Result<const Column*> column_for(const Table& table, std::optional<ColumnId> wished,
                                  const std::vector<NewAttachment>& files) {
   const auto is_picture = [](const auto& file) { return is_raster_picture(file.media_type); };
   const bool all_pictures = std::all_of(files.begin(), files.end(), is_picture);
@@ -65,7 +65,7 @@ Result<const Column*> column_for(const Table& table, std::optional<std::int64_t>
     if (column.kind == ColumnKind::picture && !pictures) pictures = &column;
     if (column.kind == ColumnKind::document && !documents) documents = &column;
   }
-  if (wished) return no_such("column", std::to_string(*wished));
+  if (wished) return no_such("column", to_string(*wished));
   if (all_pictures && pictures) return pictures;
   if (documents) return documents;
   return fail(
@@ -91,7 +91,7 @@ nlohmann::json cell_of(const Record& record, const Column& column) {
   return value == record.values.end() ? nlohmann::json::array() : value->second;
 }
 
-Result<Attachment> insert_attachment(PgConnection& connection, std::int64_t table_id,
+Result<Attachment> insert_attachment(PgConnection& connection, TableId table_id,
                                      const NewAttachment& file, const Sha256& hash,
                                      const std::string& user) {
   const auto side = [](std::optional<int> value) {
@@ -101,7 +101,7 @@ Result<Attachment> insert_attachment(PgConnection& connection, std::int64_t tabl
       "INSERT INTO attachments (table_id, sha256, name, media_type, width, height, user_name, visibility) "
       "VALUES ($1, $2, $3, $4, $5, $6, $7, $8) RETURNING id",
       Params()
-          .integer(table_id)
+          .id(table_id)
           .bytes(hash)
           .text(file.name)
           .text(file.media_type)
@@ -109,7 +109,8 @@ Result<Attachment> insert_attachment(PgConnection& connection, std::int64_t tabl
           .optional_integer(side(file.height))
           .text(user)
           .text(name(file.visibility))));
-  auto made = STRATA_TRY(rows_of_ids(connection, table_id, std::vector{row.integer(0, 0)}));
+  auto made =
+      STRATA_TRY(rows_of_ids(connection, table_id, std::vector{row.id<AttachmentId>(0, 0)}));
   return std::move(made.front());
 }
 
@@ -120,8 +121,8 @@ Result<TableChange> without_problems(Result<TableChange> change) {
 
 }  // namespace
 
-Result<Attached> Attachments::attach(std::int64_t table_id, std::int64_t key,
-                                     std::optional<std::int64_t> column_id,
+Result<Attached> Attachments::attach(TableId table_id, std::int64_t key,
+                                     std::optional<ColumnId> column_id,
                                      const std::vector<NewAttachment>& files,
                                      std::optional<std::int64_t> version, const Author& who,
                                      const IdempotentResponse<Attached>& answer) {
@@ -143,7 +144,7 @@ Result<Attached> Attachments::attach(std::int64_t table_id, std::int64_t key,
     auto open = STRATA_TRY(read_table(connection, table_id, who.role));
     if (auto there = record_of(connection, open, key, version); !there) {
       // Deleted between the two looks.
-      if (connection.sqlstate() == "42P01") return no_such("table", std::to_string(table_id));
+      if (connection.sqlstate() == "42P01") return no_such("table", to_string(table_id));
       return tl::unexpected(there.error());
     }
     auto column = column_for(open.table, column_id, files);
@@ -171,7 +172,7 @@ Result<Attached> Attachments::attach(std::int64_t table_id, std::int64_t key,
                    {{"records", 1}, {"keys", nlohmann::json::array({key})}, {"attachments", ids}},
                    {},
                    {}};
-    edit.records[key][std::to_string(column->id)] = std::move(value);
+    edit.records[key][to_string(column->id)] = std::move(value);
     auto change = STRATA_TRY(without_problems(apply_edit(connection, open, std::move(edit))));
     attached.change = std::move(change);
     return attached;
@@ -179,14 +180,14 @@ Result<Attached> Attachments::attach(std::int64_t table_id, std::int64_t key,
   return change(pool_, answer, work, kBulkLimits);
 }
 
-Result<TableChange> Attachments::detach(std::int64_t attachment_id, const std::string& user,
+Result<TableChange> Attachments::detach(AttachmentId attachment_id, const std::string& user,
                                         const IdempotentResponse<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<TableChange> {
     auto owner = STRATA_TRY(connection.query("SELECT table_id FROM attachments WHERE id = $1",
-                                             Params().integer(attachment_id)));
-    if (owner.rows() == 0) return no_such("attachment", std::to_string(attachment_id));
-    auto open = STRATA_TRY(lock_table(connection, owner.integer(0, 0)));
+                                             Params().id(attachment_id)));
+    if (owner.rows() == 0) return no_such("attachment", to_string(attachment_id));
+    auto open = STRATA_TRY(lock_table(connection, owner.id<TableId>(0, 0)));
     TableEdit edit{
         user, "detach", {{"attachments", nlohmann::json::array({attachment_id})}}, {}, {}};
     std::vector<std::int64_t> keys;
@@ -198,14 +199,14 @@ Result<TableChange> Attachments::detach(std::int64_t attachment_id, const std::s
         nlohmann::json cell = cell_of(row, column);
         cell.erase(std::remove(cell.begin(), cell.end(), nlohmann::json(attachment_id)),
                    cell.end());
-        edit.records[row.key][std::to_string(column.id)] =
+        edit.records[row.key][to_string(column.id)] =
             cell.empty() ? nlohmann::json() : std::move(cell);
       }
       keys.insert(keys.end(), holding.begin(), holding.end());
     }
     if (edit.records.empty())
       return fail(ErrorCode::not_found, "Not found",
-                  "No record has the attachment " + std::to_string(attachment_id) + " any more.");
+                  "No record has the attachment " + to_string(attachment_id) + " any more.");
     edit.record["records"] = edit.records.size();
     if (keys.size() > kMaxRowProblems) keys.resize(kMaxRowProblems);
     edit.record["keys"] = keys;
@@ -213,21 +214,21 @@ Result<TableChange> Attachments::detach(std::int64_t attachment_id, const std::s
   });
 }
 
-Result<Attachment> Attachments::find(std::int64_t id, const Author& seen_by) {
+Result<Attachment> Attachments::find(AttachmentId id, const Author& seen_by) {
   return pool_.read([&](PgConnection& connection) -> Result<Attachment> {
     auto row = STRATA_TRY(
         connection.query("SELECT " STRATA_ATTACHMENT_COLUMNS
                          " FROM attachments a JOIN blobs b USING (sha256) WHERE a.id = $1",
-                         Params().integer(id)));
-    if (row.rows() == 0) return no_such("attachment", std::to_string(id));
+                         Params().id(id)));
+    if (row.rows() == 0) return no_such("attachment", to_string(id));
     Attachment found = read_attachment_row(row, 0);
-    if (!sees(seen_by, found)) return no_such("attachment", std::to_string(id));
+    if (!sees(seen_by, found)) return no_such("attachment", to_string(id));
     return found;
   });
 }
 
-Result<std::vector<Attachment>> Attachments::of_table(std::int64_t table_id, const Author& seen_by,
-                                                      std::span<const std::int64_t> ids) {
+Result<std::vector<Attachment>> Attachments::of_table(TableId table_id, const Author& seen_by,
+                                                      std::span<const AttachmentId> ids) {
   auto found =
       pool_.read([&](PgConnection& connection) { return rows_of_ids(connection, table_id, ids); });
   if (found)
@@ -235,14 +236,14 @@ Result<std::vector<Attachment>> Attachments::of_table(std::int64_t table_id, con
   return found;
 }
 
-Result<Attachment> Attachments::show(std::int64_t id, Visibility visibility,
+Result<Attachment> Attachments::show(AttachmentId id, Visibility visibility,
                                      const IdempotentResponse<Attachment>& answer) {
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Attachment> {
     auto row = STRATA_TRY(connection.query(
         "WITH a AS (UPDATE attachments SET visibility = $2 WHERE id = $1 RETURNING *) SELECT " STRATA_ATTACHMENT_COLUMNS
         " FROM a JOIN blobs b USING (sha256)",
-        Params().integer(id).text(name(visibility))));
-    if (row.rows() == 0) return no_such("attachment", std::to_string(id));
+        Params().id(id).text(name(visibility))));
+    if (row.rows() == 0) return no_such("attachment", to_string(id));
     return read_attachment_row(row, 0);
   });
 }
@@ -251,9 +252,9 @@ Result<void> Attachments::read(const Attachment& attachment, std::uint64_t begin
                                const std::function<bool(std::span<const std::uint8_t>)>& sink) {
   auto row = STRATA_TRY(pool_.read([&](PgConnection& connection) {
     return connection.query("SELECT sha256 FROM attachments WHERE id = $1",
-                            Params().integer(attachment.id));
+                            Params().id(attachment.id));
   }));
-  if (row.rows() == 0) return no_such("attachment", std::to_string(attachment.id));
+  if (row.rows() == 0) return no_such("attachment", to_string(attachment.id));
   const Bytes hash = row.bytes(0, 0);
   return stream_blob(pool_, {hash.begin(), hash.end()}, begin, std::min(end, attachment.bytes),
                      sink);
@@ -278,7 +279,7 @@ Result<void> Attachments::keep_thumbnail(const Attachment& attachment, int side,
     auto kept = connection.query(
         "INSERT INTO thumbnails (sha256, side, picture) SELECT sha256, $2, $3 FROM attachments WHERE id = $1 "
         "ON CONFLICT DO NOTHING",
-        Params().integer(attachment.id).integer(side).bytes(picture));
+        Params().id(attachment.id).integer(side).bytes(picture));
     return kept ? Result<void>{} : tl::unexpected(kept.error());
   });
 }

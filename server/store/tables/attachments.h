@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "domain/people/role.h"
 #include "domain/people/visibility.h"
 #include "domain/tables/attachment.h"
@@ -41,21 +42,20 @@ class Attachments {
   // Appends them to a record's cell, as one entry of the journal, or nothing at all. Without a
   // column: the first one of pictures where all of them are that, otherwise the first one of
   // documents.
-  Result<Attached> attach(std::int64_t table_id, std::int64_t key,
-                          std::optional<std::int64_t> column_id,
+  Result<Attached> attach(TableId table_id, std::int64_t key, std::optional<ColumnId> column_id,
                           const std::vector<NewAttachment>& files,
                           std::optional<std::int64_t> version, const Author& who,
                           const IdempotentResponse<Attached>& answer = {});
   // Takes it out of all cells that list it; `not_found` where none does. It stays for undo and for
   // reading the past.
-  Result<TableChange> detach(std::int64_t attachment_id, const std::string& user,
+  Result<TableChange> detach(AttachmentId attachment_id, const std::string& user,
                              const IdempotentResponse<TableChange>& answer = {});
   // One that they do not see is not found.
-  Result<Attachment> find(std::int64_t id, const Author& seen_by);
+  Result<Attachment> find(AttachmentId id, const Author& seen_by);
   // Those of the ids that the table has and they see, by id.
-  Result<std::vector<Attachment>> of_table(std::int64_t table_id, const Author& seen_by,
-                                           std::span<const std::int64_t> ids);
-  Result<Attachment> show(std::int64_t id, Visibility visibility,
+  Result<std::vector<Attachment>> of_table(TableId table_id, const Author& seen_by,
+                                           std::span<const AttachmentId> ids);
+  Result<Attachment> show(AttachmentId id, Visibility visibility,
                           const IdempotentResponse<Attachment>& answer = {});
   // The bytes from `begin` to before `end`, in pieces ≤ 1 MiB; `sink` returns false to stop.
   Result<void> read(const Attachment& attachment, std::uint64_t begin, std::uint64_t end,

@@ -115,7 +115,7 @@ class Writer {
 
   // --- columns
 
-  static std::string name_of(const Column& column) { return "c" + std::to_string(column.id); }
+  static std::string name_of(const Column& column) { return "c" + to_string(column.id); }
 
   const Table* target_of(const Column& column) {
     const auto [found, is_new] = targets_.try_emplace(*column.target);
@@ -152,8 +152,8 @@ class Writer {
       if (target == nullptr) return {};
       const std::string alias = "u" + std::to_string(++aliases_), key = reach(name_of(*column));
       reach = [alias, key, id = target->id](const std::string& name) {
-        return "(SELECT " + alias + "." + name + " FROM records.t" + std::to_string(id) + " " +
-               alias + " WHERE " + alias + ".key = " + key + ")";
+        return "(SELECT " + alias + "." + name + " FROM records.t" + to_string(id) + " " + alias +
+               " WHERE " + alias + ".key = " + key + ")";
       };
       table = target;
     }
@@ -384,7 +384,7 @@ class Writer {
   PgConnection& connection_;
   Params& params_;
   const std::string& field_;
-  std::map<std::int64_t, Table> targets_;
+  std::map<TableId, Table> targets_;
   int aliases_ = 0;
   std::optional<Error> problem_;
 };

@@ -70,7 +70,7 @@ class Intake {
     for (const auto key : keys) asked.add(key);
     auto rows = STRATA_TRY(connection_.query(
         "SELECT DISTINCT subject_id FROM table_changes WHERE table_id = $1 AND subject = 'record' AND subject_id = any($2)",
-        Params().integer(open_.table.id).array(asked)));
+        Params().id(open_.table.id).array(asked)));
     std::set<std::int64_t> used;
     for (int i = 0; i < rows.rows(); ++i)
       if (!now_.contains(rows.integer(i, 0))) used.insert(rows.integer(i, 0));
@@ -109,7 +109,7 @@ class Intake {
     for (const auto& [id, value] : input.values)
       if (std::none_of(open_.table.columns.begin(), open_.table.columns.end(),
                        [id = id](const Column& column) { return column.id == id; }))
-        return no_such("column", std::to_string(id));
+        return no_such("column", to_string(id));
     for (const Column& column : open_.table.columns) {
       const auto given = input.values.find(column.id);
       if (given == input.values.end() && exists) continue;
@@ -121,7 +121,7 @@ class Intake {
       if (exists)
         if (const auto cell = now->second.values.find(column.id); cell != now->second.values.end())
           held = cell->second;
-      if (*value != held) cells[std::to_string(column.id)] = std::move(*value);
+      if (*value != held) cells[to_string(column.id)] = std::move(*value);
     }
     return std::pair(key, std::move(cells));
   }
@@ -142,8 +142,8 @@ class Intake {
   std::vector<RowError> problems_;
 };
 
-Result<TableChange> write_all(PgConnection& connection, std::int64_t table_id,
-                              const WriteRecords& asked, const std::string& user) {
+Result<TableChange> write_all(PgConnection& connection, TableId table_id, const WriteRecords& asked,
+                              const std::string& user) {
   auto open = STRATA_TRY(lock_table(connection, table_id));
   Intake intake(connection, open, asked);
   auto edit = STRATA_TRY(intake.read(user));
@@ -172,7 +172,7 @@ Result<std::optional<std::vector<Record>>> rows_if_past(PgConnection& connection
 
 }  // namespace
 
-Result<TableChange> Records::write(std::int64_t table_id, const WriteRecords& asked,
+Result<TableChange> Records::write(TableId table_id, const WriteRecords& asked,
                                    const std::string& user,
                                    const IdempotentResponse<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
@@ -194,7 +194,7 @@ Result<TableChange> Records::write(std::int64_t table_id, const WriteRecords& as
   return done;
 }
 
-Result<TableChange> Records::remove(std::int64_t table_id, std::int64_t key,
+Result<TableChange> Records::remove(TableId table_id, std::int64_t key,
                                     std::optional<std::int64_t> version, const std::string& user,
                                     bool dry_run, const IdempotentResponse<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
@@ -208,7 +208,7 @@ Result<TableChange> Records::remove(std::int64_t table_id, std::int64_t key,
         user, "delete", {{"records", 1}, {"keys", nlohmann::json::array({key})}}, {}, {}};
     Cells& cells = edit.records[key];
     cells["exists"] = false;
-    for (const Column& column : open.all) cells[std::to_string(column.id)] = nullptr;
+    for (const Column& column : open.all) cells[to_string(column.id)] = nullptr;
     auto change = apply_edit(connection, open, std::move(edit));
     if (change && !change->problems.empty())
       return tl::unexpected(change->problems.front().problem);
@@ -220,7 +220,7 @@ Result<TableChange> Records::remove(std::int64_t table_id, std::int64_t key,
   return done;
 }
 
-Result<std::vector<KeyNumber>> Records::numbers(std::int64_t table_id, Role seen_by,
+Result<std::vector<KeyNumber>> Records::numbers(TableId table_id, Role seen_by,
                                                 const Expression& expression,
                                                 std::optional<std::int64_t> at,
                                                 const std::string& field) {
@@ -241,8 +241,8 @@ Result<std::vector<KeyNumber>> Records::numbers(std::int64_t table_id, Role seen
   });
 }
 
-Result<std::vector<KeyText>> Records::texts(std::int64_t table_id, Role seen_by,
-                                            const std::string& ref, const std::string& field) {
+Result<std::vector<KeyText>> Records::texts(TableId table_id, Role seen_by, const std::string& ref,
+                                            const std::string& field) {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<KeyText>> {
     auto open = STRATA_TRY(read_table(connection, table_id, seen_by));
     const Column* column = find_column(open.table.columns, ref);
@@ -263,8 +263,7 @@ Result<std::vector<KeyText>> Records::texts(std::int64_t table_id, Role seen_by,
   });
 }
 
-Result<std::vector<KeyFeature>> Records::features(std::int64_t table_id, Role seen_by,
-                                                  std::int64_t model_id,
+Result<std::vector<KeyFeature>> Records::features(TableId table_id, Role seen_by, ModelId model_id,
                                                   std::optional<std::int64_t> at) {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<KeyFeature>> {
     auto transaction = STRATA_TRY(Transaction::begin_reading(connection));
@@ -287,7 +286,7 @@ Result<std::vector<KeyFeature>> Records::features(std::int64_t table_id, Role se
   });
 }
 
-Result<RecordPage> Records::page(std::int64_t table_id, Role seen_by, const RecordQuery& query) {
+Result<RecordPage> Records::page(TableId table_id, Role seen_by, const RecordQuery& query) {
   return pool_.read([&](PgConnection& connection) -> Result<RecordPage> {
     auto transaction = STRATA_TRY(Transaction::begin_reading(connection));
     auto open = STRATA_TRY(read_table(connection, table_id, seen_by));
@@ -344,35 +343,35 @@ Result<RecordPage> Records::page(std::int64_t table_id, Role seen_by, const Reco
   });
 }
 
-Result<std::vector<std::int64_t>> Records::missing(std::int64_t table_id,
+Result<std::vector<std::int64_t>> Records::missing(TableId table_id,
                                                    std::span<const std::int64_t> keys) {
   return pool_.read(
       [&](PgConnection& connection) { return missing_rows(connection, table_id, keys); });
 }
 
-Result<std::int64_t> Tables::sequence_at(std::int64_t table_id, const std::string& utc) {
+Result<std::int64_t> Tables::sequence_at(TableId table_id, const std::string& utc) {
   return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
     // As for a model: a time that was read, in milliseconds, counts its own edit.
     auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(max(sequence), 0) FROM table_edits "
         "WHERE table_id = $1 AND date_trunc('milliseconds', time) <= $2::timestamptz",
-        Params().integer(table_id).text(utc)));
+        Params().id(table_id).text(utc)));
     return row.integer(0, 0);
   });
 }
 
-Result<std::int64_t> Tables::sequence_when(std::int64_t table_id, std::int64_t model_id,
+Result<std::int64_t> Tables::sequence_when(TableId table_id, ModelId model_id,
                                            std::int64_t sequence) {
   return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
     auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(max(sequence), 0) FROM table_edits WHERE table_id = $1 AND "
         "time <= (SELECT max(time) FROM edits WHERE model_id = $2 AND sequence <= $3)",
-        Params().integer(table_id).integer(model_id).integer(sequence)));
+        Params().id(table_id).id(model_id).integer(sequence)));
     return row.integer(0, 0);
   });
 }
 
-Result<TableHistory> Tables::history(std::int64_t table_id, Role seen_by,
+Result<TableHistory> Tables::history(TableId table_id, Role seen_by,
                                      std::optional<std::int64_t> key, int limit, int offset,
                                      std::optional<std::int64_t> before) {
   return pool_.read([&](PgConnection& connection) {
@@ -380,7 +379,7 @@ Result<TableHistory> Tables::history(std::int64_t table_id, Role seen_by,
   });
 }
 
-Result<UndoPlan> Tables::plan_undo(std::int64_t table_id, const std::string& user, bool redo) {
+Result<UndoPlan> Tables::plan_undo(TableId table_id, const std::string& user, bool redo) {
   STRATA_TRY(check_text(user, "user"));
   return pool_.read([&](PgConnection& connection) -> Result<UndoPlan> {
     auto open = STRATA_TRY(read_table(connection, table_id));
@@ -389,7 +388,7 @@ Result<UndoPlan> Tables::plan_undo(std::int64_t table_id, const std::string& use
   });
 }
 
-Result<TableChange> Tables::undo(std::int64_t table_id, const std::string& user, bool redo,
+Result<TableChange> Tables::undo(TableId table_id, const std::string& user, bool redo,
                                  std::int64_t planned_at,
                                  const IdempotentResponse<TableChange>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<TableChange> {
@@ -406,7 +405,7 @@ Result<TableChange> Tables::undo(std::int64_t table_id, const std::string& user,
     STRATA_TRY(connection.query(
         "UPDATE table_edits SET in_force = $3, undone_by = $4 WHERE table_id = $1 AND sequence = $2",
         Params()
-            .integer(table_id)
+            .id(table_id)
             .integer(undo.plan.edit)
             .boolean(redo)
             .optional_integer(redo ? std::nullopt : std::optional(sequence))));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/ids.h"
 #include "domain/layers/key_colors.h"
 #include "domain/layers/key_numbers.h"
 #include "domain/people/role.h"
@@ -48,31 +49,28 @@ class Records {
  public:
   explicit Records(Pool& pool) : pool_(pool) {}
 
-  Result<RecordPage> page(std::int64_t table_id, Role seen_by, const RecordQuery& query);
+  Result<RecordPage> page(TableId table_id, Role seen_by, const RecordQuery& query);
   // What a number or a condition over columns is for each record, where it is known; after sequence
   // `at` of the table, or now. Refused (invalid at `field`): what the columns do not fit.
-  Result<std::vector<KeyNumber>> numbers(std::int64_t table_id, Role seen_by,
+  Result<std::vector<KeyNumber>> numbers(TableId table_id, Role seen_by,
                                          const Expression& expression,
                                          std::optional<std::int64_t> at, const std::string& field);
   // What a column holds for each record that has a value there, now: as text, canonical (of a term,
   // its key). Refused (invalid at `field`): a column that is not there or holds lists.
-  Result<std::vector<KeyText>> texts(std::int64_t table_id, Role seen_by, const std::string& column,
+  Result<std::vector<KeyText>> texts(TableId table_id, Role seen_by, const std::string& column,
                                      const std::string& field);
   // The lines and points that records of a table have on a model, by key; after sequence `at` of
   // the table, or now.
-  Result<std::vector<KeyFeature>> features(std::int64_t table_id, Role seen_by,
-                                           std::int64_t model_id,
+  Result<std::vector<KeyFeature>> features(TableId table_id, Role seen_by, ModelId model_id,
                                            std::optional<std::int64_t> at = {});
   // All or none: where the change has problems, nothing was written.
-  Result<TableChange> write(std::int64_t table_id, const WriteRecords& asked,
-                            const std::string& user,
+  Result<TableChange> write(TableId table_id, const WriteRecords& asked, const std::string& user,
                             const IdempotentResponse<TableChange>& answer = {});
-  Result<TableChange> remove(std::int64_t table_id, std::int64_t key,
+  Result<TableChange> remove(TableId table_id, std::int64_t key,
                              std::optional<std::int64_t> version, const std::string& user,
                              bool dry_run = false,
                              const IdempotentResponse<TableChange>& answer = {});
-  Result<std::vector<std::int64_t>> missing(std::int64_t table_id,
-                                            std::span<const std::int64_t> keys);
+  Result<std::vector<std::int64_t>> missing(TableId table_id, std::span<const std::int64_t> keys);
 
  private:
   Pool& pool_;

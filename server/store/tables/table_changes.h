@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ids.h"
 #include "domain/tables/cell_history.h"
 #include "domain/tables/table.h"
 
@@ -22,7 +23,7 @@ inline constexpr std::size_t kMaxUniqueTextLength = 1000;  // bytes: what an ind
 struct RecordInput {
   std::optional<std::int64_t> key;  // none: a new record with the next key
   // by column id; a new record gets the defaults of those that are not named
-  std::map<std::int64_t, nlohmann::json> values;
+  std::map<ColumnId, nlohmann::json> values;
   std::optional<std::int64_t> version{};  // of the record as it was read: otherwise it is stale
 };
 struct WriteRecords {

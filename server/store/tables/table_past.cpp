@@ -13,7 +13,7 @@ Cells cells_from(const nlohmann::json& json) { return json.get<Cells>(); }
 
 // The entry that undo takes: the person's newest in force. Redo: the one that the newest undo took,
 // unless what the person did after that undo is in force (as for layers, store/journal/edits.cpp).
-Result<std::optional<std::int64_t>> edit_to_flip(PgConnection& connection, std::int64_t table_id,
+Result<std::optional<std::int64_t>> edit_to_flip(PgConnection& connection, TableId table_id,
                                                  const std::string& user, bool redo) {
   auto row = STRATA_TRY(connection.query(
       redo
@@ -22,17 +22,18 @@ Result<std::optional<std::int64_t>> edit_to_flip(PgConnection& connection, std::
             "AND n.sequence > e.undone_by) ORDER BY e.undone_by DESC LIMIT 1"
           : "SELECT sequence FROM table_edits WHERE table_id = $1 AND user_name = $2 AND writer AND in_force "
             "ORDER BY sequence DESC LIMIT 1",
-      Params().integer(table_id).text(user)));
+      Params().id(table_id).text(user)));
   if (row.rows() == 0) return std::optional<std::int64_t>();
   return std::optional(row.integer(0, 0));
 }
 
-// Resolves the given cells of records or columns, as if the edit were flipped.
-Result<std::map<std::int64_t, Cells>> resolve(
-    PgConnection& connection, std::int64_t table_id, const char* subject,
-    const std::map<std::int64_t, std::set<std::string>>& names, std::int64_t flipped,
-    bool in_force) {
-  std::map<std::int64_t, CellResolver> resolvers;
+// Resolves the given cells of records, by key, or of columns, by id, as if the edit were flipped.
+template <class Subject>
+Result<std::map<Subject, Cells>> resolve(PgConnection& connection, TableId table_id,
+                                         const char* subject,
+                                         const std::map<Subject, std::set<std::string>>& names,
+                                         std::int64_t flipped, bool in_force) {
+  std::map<Subject, CellResolver> resolvers;
   PgArray ids(oid::kInt8);
   for (const auto& [id, wanted] : names) {
     ids.add(id);
@@ -42,9 +43,8 @@ Result<std::map<std::int64_t, Cells>> resolve(
       "SELECT c.subject_id, c.sequence, e.writer, e.in_force, c.before, c.after FROM table_changes c "
       "JOIN table_edits e ON e.table_id = c.table_id AND e.sequence = c.sequence "
       "WHERE c.table_id = $1 AND c.subject = $2 AND c.subject_id = any($3) ORDER BY c.subject_id, c.sequence DESC",
-      Params().integer(table_id).text(subject).array(ids),
-      [&](const PgResult& row) -> Result<void> {
-        CellResolver& resolver = resolvers.at(row.integer(0, 0));
+      Params().id(table_id).text(subject).array(ids), [&](const PgResult& row) -> Result<void> {
+        CellResolver& resolver = resolvers.at(Subject(row.integer(0, 0)));
         if (!resolver.is_open()) return {};
         const std::int64_t sequence = row.integer(0, 1);
         resolver.add({sequence, row.boolean(0, 2),
@@ -52,38 +52,37 @@ Result<std::map<std::int64_t, Cells>> resolve(
                       cells_from(row.json(0, 4)), cells_from(row.json(0, 5))});
         return {};
       }));
-  std::map<std::int64_t, Cells> resolved;
+  std::map<Subject, Cells> resolved;
   for (auto& [id, resolver] : resolvers) resolved[id] = std::move(resolver).finish();
   return resolved;
 }
 
-Result<std::set<std::int64_t>> unseen_columns(PgConnection& connection, std::int64_t table_id,
-                                              Role role) {
+Result<std::set<ColumnId>> unseen_columns(PgConnection& connection, TableId table_id, Role role) {
   auto open = STRATA_TRY(read_table(connection, table_id));
-  std::set<std::int64_t> unseen;
+  std::set<ColumnId> unseen;
   for (const Column& column : open.all)
     if (!sees(role, column.visibility)) unseen.insert(column.id);
   return unseen;
 }
 
-void leave_out(TableEditRow& row, const std::set<std::int64_t>& columns) {
+void leave_out(TableEditRow& row, const std::set<ColumnId>& columns) {
   if (columns.empty()) return;
   const auto names = [&](const char* member) {
     const auto named = row.record.find(member);
     return named != row.record.end() && named->is_number_integer() &&
-           columns.contains(named->get<std::int64_t>());
+           columns.contains(named->get<ColumnId>());
   };
   if (row.record.is_object() && (names("column") || names("from")))
     row.record = nlohmann::json::object();
   for (TableEditRow::Change& change : row.changes) {
     if (change.is_column) continue;
-    for (const std::int64_t column : columns) {
-      change.before.erase(std::to_string(column));
-      change.after.erase(std::to_string(column));
+    for (const ColumnId column : columns) {
+      change.before.erase(to_string(column));
+      change.after.erase(to_string(column));
     }
   }
   const auto gone = std::erase_if(row.changes, [&](const TableEditRow::Change& change) {
-    return change.is_column ? columns.contains(change.id)
+    return change.is_column ? columns.contains(ColumnId(change.id))
                             : change.before.empty() && change.after.empty();
   });
   row.total_changes -= static_cast<std::int64_t>(gone);
@@ -97,15 +96,15 @@ Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open,
   std::map<std::int64_t, Record> then;
   std::map<std::int64_t, bool> touched;  // by key; true: it existed then
   for (Record& row : rows) then[row.key] = std::move(row);
-  std::map<std::int64_t, Cells> columns;
+  std::map<ColumnId, Cells> columns;
   STRATA_TRY(connection.each_row(
       "SELECT subject = 'column', subject_id, before FROM table_changes WHERE table_id = $1 AND sequence > $2 "
       "ORDER BY sequence DESC",
-      Params().integer(open.table.id).integer(sequence), [&](const PgResult& row) -> Result<void> {
+      Params().id(open.table.id).integer(sequence), [&](const PgResult& row) -> Result<void> {
         const std::int64_t id = row.integer(0, 1);
         const Cells before = cells_from(row.json(0, 2));
         if (row.boolean(0, 0)) {
-          for (const auto& [name, value] : before) columns[id][name] = value;
+          for (const auto& [name, value] : before) columns[ColumnId(id)][name] = value;
           return {};
         }
         Record& record = then[id];
@@ -115,9 +114,9 @@ Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open,
           if (name == "exists")
             touched[id] = value == true;
           else if (value.is_null())
-            record.values.erase(std::stoll(name));
+            record.values.erase(ColumnId(std::int64_t{std::stoll(name)}));
           else
-            record.values[std::stoll(name)] = value;
+            record.values[ColumnId(std::int64_t{std::stoll(name)})] = value;
         return {};
       }));
   PgArray keys(oid::kInt8);
@@ -128,7 +127,7 @@ Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open,
   auto versions = STRATA_TRY(connection.query(
       "SELECT subject_id, max(sequence) FROM table_changes WHERE table_id = $1 AND subject = 'record' AND sequence <= $2 "
       "AND subject_id = any($3) GROUP BY subject_id",
-      Params().integer(open.table.id).integer(sequence).array(keys)));
+      Params().id(open.table.id).integer(sequence).array(keys)));
   for (const auto& [key, existed] : touched)
     if (existed) then[key].version = 0;
   for (int i = 0; i < versions.rows(); ++i)
@@ -142,20 +141,20 @@ Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open,
   return past;
 }
 
-Result<TableHistory> read_history(PgConnection& connection, std::int64_t table_id, Role seen_by,
+Result<TableHistory> read_history(PgConnection& connection, TableId table_id, Role seen_by,
                                   std::optional<std::int64_t> key, int limit, int offset,
                                   std::optional<std::int64_t> before) {
   auto total = STRATA_TRY(connection.query(
       "SELECT count(*) FROM table_edits e WHERE table_id = $1 AND ($2::bigint IS NULL OR EXISTS (SELECT 1 FROM table_changes c "
       "WHERE c.table_id = $1 AND c.subject = 'record' AND c.subject_id = $2 AND c.sequence = e.sequence))",
-      Params().integer(table_id).optional_integer(key)));
+      Params().id(table_id).optional_integer(key)));
   auto rows = STRATA_TRY(connection.query(
       "SELECT sequence, user_name, op, record, time, in_force, (SELECT count(*) FROM table_changes c WHERE c.table_id = $1 "
       "AND c.sequence = e.sequence AND ($2::bigint IS NULL OR (c.subject = 'record' AND c.subject_id = $2))) "
       "FROM table_edits e WHERE table_id = $1 AND ($2::bigint IS NULL OR EXISTS (SELECT 1 FROM table_changes c "
       "WHERE c.table_id = $1 AND c.subject = 'record' AND c.subject_id = $2 AND c.sequence = e.sequence)) "
       "AND sequence < $5 ORDER BY sequence DESC LIMIT $3 OFFSET $4",
-      Params().integer(table_id).optional_integer(key).integer(limit).integer(offset).integer(
+      Params().id(table_id).optional_integer(key).integer(limit).integer(offset).integer(
           before.value_or(INT64_MAX))));
   auto unseen = STRATA_TRY(unseen_columns(connection, table_id, seen_by));
   TableHistory history;
@@ -173,7 +172,7 @@ Result<TableHistory> read_history(PgConnection& connection, std::int64_t table_i
         "SELECT subject = 'column', subject_id, before, after FROM table_changes WHERE table_id = $1 AND sequence = $2 "
         "AND ($3::bigint IS NULL OR (subject = 'record' AND subject_id = $3)) ORDER BY subject, subject_id LIMIT $4",
         Params()
-            .integer(table_id)
+            .id(table_id)
             .integer(row.sequence)
             .optional_integer(key)
             .integer(kMaxToldChanges)));
@@ -194,17 +193,19 @@ Result<PlannedUndo> plan_undo(PgConnection& connection, const OpenTable& open,
                        "Nothing of yours in this table is undone, or you changed it since.")
                 : fail(ErrorCode::conflict, "Nothing to undo",
                        "Nothing of yours in this table is in force.");
-  std::map<std::int64_t, std::set<std::string>> records, columns;
+  std::map<std::int64_t, std::set<std::string>> records;
+  std::map<ColumnId, std::set<std::string>> columns;
   auto written = STRATA_TRY(connection.query(
       "SELECT subject = 'column', subject_id, after FROM table_changes WHERE table_id = $1 AND sequence = $2",
-      Params().integer(open.table.id).integer(*edit)));
+      Params().id(open.table.id).integer(*edit)));
   for (int i = 0; i < written.rows(); ++i) {
-    auto& names = (written.boolean(i, 0) ? columns : records)[written.integer(i, 1)];
+    auto& names = written.boolean(i, 0) ? columns[written.id<ColumnId>(i, 1)]
+                                        : records[written.integer(i, 1)];
     const Cells after = cells_from(written.json(i, 2));
     for (const auto& [name, value] : after) names.insert(name);
     // A record that comes or goes does so with all that others wrote in it.
     if (after.contains("exists"))
-      for (const Column& column : open.all) names.insert(std::to_string(column.id));
+      for (const Column& column : open.all) names.insert(to_string(column.id));
   }
   PlannedUndo planned;
   planned.plan.table_sequence = open.table.sequence;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/ids.h"
 #include "store/store.h"
 #include "store/tables/table_writer.h"
 #include "store/tables/tables.h"
@@ -11,7 +12,7 @@ namespace strata::store {
 Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open,
                                     std::int64_t sequence);
 
-Result<TableHistory> read_history(PgConnection& connection, std::int64_t table_id, Role seen_by,
+Result<TableHistory> read_history(PgConnection& connection, TableId table_id, Role seen_by,
                                   std::optional<std::int64_t> key, int limit, int offset,
                                   std::optional<std::int64_t> before);
 

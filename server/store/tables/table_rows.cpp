@@ -15,10 +15,10 @@ namespace {
 
 constexpr std::size_t kRowsAtOnce = 2000;  // of an INSERT: some MB of JSON at most for usual rows
 
-std::string table_name(std::int64_t table_id) { return "records.t" + std::to_string(table_id); }
-std::string column_name(const Column& column) { return "c" + std::to_string(column.id); }
-std::string index_name(std::int64_t table_id, const Column& column) {
-  return "t" + std::to_string(table_id) + "_" + column_name(column) + "_unique";
+std::string table_name(TableId table_id) { return "records.t" + to_string(table_id); }
+std::string column_name(const Column& column) { return "c" + to_string(column.id); }
+std::string index_name(TableId table_id, const Column& column) {
+  return "t" + to_string(table_id) + "_" + column_name(column) + "_unique";
 }
 
 const char* sql_type(ColumnKind kind) {
@@ -215,7 +215,7 @@ Result<std::string> stands_behind(const std::vector<SortKey>& keys, const nlohma
 }
 
 // The rows as `t`: of the table, or those of the past, which become a parameter.
-std::string from_rows(std::int64_t table_id, const std::vector<Column>& columns,
+std::string from_rows(TableId table_id, const std::vector<Column>& columns,
                       const std::optional<std::vector<Record>>& past, Params& params) {
   if (!past) return " FROM " + table_name(table_id) + " t";
   params.json(rows_json(columns, *past));
@@ -229,26 +229,25 @@ Result<void> run(PgConnection& connection, const std::string& sql) {
 }
 
 // An analyst's query must not keep a table from being changed (db/migrations/000011).
-Result<void> make_way(PgConnection& connection, std::int64_t table_id) {
+Result<void> make_way(PgConnection& connection, TableId table_id) {
   return run(connection, "SELECT analysis_make_way('" + table_name(table_id) + "')");
 }
 
 }  // namespace
 
-Result<void> make_rows_table(PgConnection& connection, std::int64_t table_id) {
+Result<void> make_rows_table(PgConnection& connection, TableId table_id) {
   return run(connection, "CREATE TABLE " + table_name(table_id) +
                              " (key bigint PRIMARY KEY CHECK (key BETWEEN 0 AND " +
                              std::to_string(kMaxRecordKey) + "), version bigint NOT NULL)");
 }
 
-Result<void> drop_rows_table(PgConnection& connection, std::int64_t table_id) {
+Result<void> drop_rows_table(PgConnection& connection, TableId table_id) {
   STRATA_TRY(make_way(connection, table_id));
   // with its view (db/migrations/000011)
   return run(connection, "DROP TABLE " + table_name(table_id) + " CASCADE");
 }
 
-Result<void> add_rows_column(PgConnection& connection, std::int64_t table_id,
-                             const Column& column) {
+Result<void> add_rows_column(PgConnection& connection, TableId table_id, const Column& column) {
   const std::string name = column_name(column);
   STRATA_TRY(make_way(connection, table_id));
   std::string sql =
@@ -258,18 +257,16 @@ Result<void> add_rows_column(PgConnection& connection, std::int64_t table_id,
   return run(connection, sql);
 }
 
-Result<void> make_unique_index(PgConnection& connection, std::int64_t table_id,
-                               const Column& column) {
+Result<void> make_unique_index(PgConnection& connection, TableId table_id, const Column& column) {
   return run(connection, "CREATE UNIQUE INDEX IF NOT EXISTS " + index_name(table_id, column) +
                              " ON " + table_name(table_id) + " (" + column_name(column) + ")");
 }
 
-Result<void> drop_unique_index(PgConnection& connection, std::int64_t table_id,
-                               const Column& column) {
+Result<void> drop_unique_index(PgConnection& connection, TableId table_id, const Column& column) {
   return run(connection, "DROP INDEX IF EXISTS records." + index_name(table_id, column));
 }
 
-Result<std::vector<Record>> load_rows(PgConnection& connection, std::int64_t table_id,
+Result<std::vector<Record>> load_rows(PgConnection& connection, TableId table_id,
                                       const std::vector<Column>& columns,
                                       std::span<const std::int64_t> keys) {
   auto rows =
@@ -280,14 +277,14 @@ Result<std::vector<Record>> load_rows(PgConnection& connection, std::int64_t tab
   return read_rows(*rows, columns);
 }
 
-Result<std::vector<Record>> load_all_rows(PgConnection& connection, std::int64_t table_id,
+Result<std::vector<Record>> load_all_rows(PgConnection& connection, TableId table_id,
                                           const std::vector<Column>& columns) {
   auto rows = STRATA_TRY(connection.query_once("SELECT key, version, to_jsonb(t) FROM " +
                                                table_name(table_id) + " t ORDER BY key"));
   return read_rows(rows, columns);
 }
 
-Result<RowsPage> load_page(PgConnection& connection, std::int64_t table_id,
+Result<RowsPage> load_page(PgConnection& connection, TableId table_id,
                            const std::vector<Column>& columns,
                            const std::optional<std::vector<Record>>& past, const std::string& where,
                            Params params, std::span<const RecordOrder> order,
@@ -339,7 +336,7 @@ Result<std::string> collation_of(PgConnection& connection, const std::string& la
   return row.rows() == 0 ? std::string() : row.text(0, 0);
 }
 
-Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, std::int64_t table_id,
+Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, TableId table_id,
                                                 Role seen_by, const std::string& collation,
                                                 int depth) {
   // a table may be called by the records of another, and so on, round in circles
@@ -368,7 +365,7 @@ Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, std::i
   return keys;
 }
 
-Result<std::vector<KeyNumber>> load_numbers(PgConnection& connection, std::int64_t table_id,
+Result<std::vector<KeyNumber>> load_numbers(PgConnection& connection, TableId table_id,
                                             const std::vector<Column>& columns,
                                             const std::optional<std::vector<Record>>& past,
                                             const std::string& number, Params params) {
@@ -384,14 +381,14 @@ Result<std::vector<KeyNumber>> load_numbers(PgConnection& connection, std::int64
   return numbers;
 }
 
-Result<void> delete_rows(PgConnection& connection, std::int64_t table_id,
+Result<void> delete_rows(PgConnection& connection, TableId table_id,
                          std::span<const std::int64_t> keys) {
   auto done = connection.query_once("DELETE FROM " + table_name(table_id) + " WHERE key = any($1)",
                                     Params().array(array_of(keys)));
   return done ? Result<void>{} : tl::unexpected(done.error());
 }
 
-Result<void> insert_rows(PgConnection& connection, std::int64_t table_id,
+Result<void> insert_rows(PgConnection& connection, TableId table_id,
                          const std::vector<Column>& columns, std::span<const Record> rows) {
   const std::string name = table_name(table_id);
   for (std::size_t begin = 0; begin < rows.size(); begin += kRowsAtOnce) {
@@ -403,7 +400,7 @@ Result<void> insert_rows(PgConnection& connection, std::int64_t table_id,
   return {};
 }
 
-Result<std::optional<Taken>> taken_value(PgConnection& connection, std::int64_t table_id,
+Result<std::optional<Taken>> taken_value(PgConnection& connection, TableId table_id,
                                          const Column& column, std::span<const Record> rows) {
   const std::string name = table_name(table_id), of_column = column_name(column);
   std::map<std::string, std::int64_t> met;
@@ -425,7 +422,7 @@ Result<std::optional<Taken>> taken_value(PgConnection& connection, std::int64_t 
 }
 
 Result<std::optional<std::pair<std::int64_t, std::int64_t>>> twins(PgConnection& connection,
-                                                                   std::int64_t table_id,
+                                                                   TableId table_id,
                                                                    const Column& column) {
   const std::string of_column = column_name(column);
   auto row = STRATA_TRY(connection.query_once(
@@ -435,7 +432,7 @@ Result<std::optional<std::pair<std::int64_t, std::int64_t>>> twins(PgConnection&
   return std::optional(std::pair(row.integer(0, 0), row.integer(0, 1)));
 }
 
-Result<std::vector<std::int64_t>> missing_rows(PgConnection& connection, std::int64_t table_id,
+Result<std::vector<std::int64_t>> missing_rows(PgConnection& connection, TableId table_id,
                                                std::span<const std::int64_t> keys) {
   auto rows = STRATA_TRY(connection.query_once(
       "SELECT DISTINCT k FROM unnest($1::bigint[]) k WHERE NOT EXISTS (SELECT 1 FROM " +
@@ -447,7 +444,7 @@ Result<std::vector<std::int64_t>> missing_rows(PgConnection& connection, std::in
 }
 
 Result<std::optional<std::pair<std::int64_t, std::int64_t>>> row_naming(
-    PgConnection& connection, std::int64_t table_id, const Column& column,
+    PgConnection& connection, TableId table_id, const Column& column,
     std::span<const std::int64_t> keys) {
   const std::string name = column_name(column);
   const std::string sql = column.kind == ColumnKind::term
@@ -460,12 +457,12 @@ Result<std::optional<std::pair<std::int64_t, std::int64_t>>> row_naming(
   return std::optional(std::pair(row.integer(0, 0), row.integer(0, 1)));
 }
 
-Result<std::vector<std::int64_t>> rows_holding(PgConnection& connection, std::int64_t table_id,
-                                               const Column& column, std::int64_t attachment) {
+Result<std::vector<std::int64_t>> rows_holding(PgConnection& connection, TableId table_id,
+                                               const Column& column, AttachmentId attachment) {
   auto rows = STRATA_TRY(connection.query_once("SELECT key FROM " + table_name(table_id) +
                                                    " WHERE $1 = any(" + column_name(column) +
                                                    ") ORDER BY key",
-                                               Params().integer(attachment)));
+                                               Params().id(attachment)));
   std::vector<std::int64_t> keys;
   for (int i = 0; i < rows.rows(); ++i) keys.push_back(rows.integer(i, 0));
   return keys;

@@ -63,7 +63,7 @@ void show_columns(OpenTable& open) {
                    [](const Column& a, const Column& b) { return a.order < b.order; });
 }
 
-Column* column_by_id(OpenTable& open, std::int64_t id) {
+Column* column_by_id(OpenTable& open, ColumnId id) {
   for (Column& column : open.all)
     if (column.id == id) return &column;
   return nullptr;
@@ -130,14 +130,14 @@ class Writer {
   Result<void> update_column(const Column& column) {
     auto slugs = STRATA_TRY(connection_.query(
         "SELECT 1 FROM record_columns WHERE table_id = $1 AND id <> $2 AND NOT hidden AND properties ->> 'slug' = $3",
-        Params().integer(open_.table.id).integer(column.id).text(column.slug)));
+        Params().id(open_.table.id).id(column.id).text(column.slug)));
     if (!column.hidden && slugs.rows() > 0)
       return fail(ErrorCode::conflict, "Slug taken",
                   "The table has another column `" + column.slug + "`. Rename that one first.",
                   "slug");
     auto done = connection_.query(
         "UPDATE record_columns SET properties = $2, hidden = $3 WHERE id = $1",
-        Params().integer(column.id).json(properties_of(column)).boolean(column.hidden));
+        Params().id(column.id).json(properties_of(column)).boolean(column.hidden));
     return done ? Result<void>{} : tl::unexpected(done.error());
   }
 
@@ -155,14 +155,14 @@ class Writer {
       const bool existed = found != now.end();
       Cells cells{{kExists, existed}};
       if (existed)
-        for (const auto& [id, value] : found->second.values) cells[std::to_string(id)] = value;
+        for (const auto& [id, value] : found->second.values) cells[to_string(id)] = value;
       before_records_[key] = written_part(cells, after);
       for (const auto& [name, value] : after) cells[name] = value;
       const bool exists = cells.at(kExists) == true;
       if (exists) {
         Record record{key, sequence_, {}};
         for (const Column& column : open_.all)
-          if (const auto cell = cells.find(std::to_string(column.id));
+          if (const auto cell = cells.find(to_string(column.id));
               cell != cells.end() && !cell->second.is_null())
             record.values[column.id] = cell->second;
         then.push_back(std::move(record));
@@ -215,7 +215,7 @@ class Writer {
                                  "Texts of a unique column have at most " +
                                      std::to_string(kMaxUniqueTextLength) + " bytes.",
                                  field_of(column)});
-      const bool is_written = after.contains(std::to_string(column.id)) || after.contains(kExists);
+      const bool is_written = after.contains(to_string(column.id)) || after.contains(kExists);
       if (!is_written || (!edit_.checks_values && !(column.required && held.is_null()))) continue;
       if (auto good = check_value(column, held, field_of(column)); !good)
         add_problem(record.key, good.error());
@@ -259,7 +259,7 @@ class Writer {
     for (const auto id : listed) ids.add(id);
     auto known = STRATA_TRY(connection_.query(
         "SELECT id, media_type FROM attachments WHERE table_id = $1 AND id = any($2)",
-        Params().integer(open_.table.id).array(ids)));
+        Params().id(open_.table.id).array(ids)));
     std::map<std::int64_t, std::string> types;
     for (int i = 0; i < known.rows(); ++i) types[known.integer(i, 0)] = known.text(i, 1);
     for (const Record& row : rows) {
@@ -288,19 +288,19 @@ class Writer {
   Result<void> check_marked(const Column& column, std::span<const Record> rows) {
     if (edit_.checks_values) return {};
     auto models = STRATA_TRY(connection_.query("SELECT id FROM models WHERE project_id = $1",
-                                               Params().integer(open_.table.project_id)));
-    std::set<std::int64_t> known;
-    for (int i = 0; i < models.rows(); ++i) known.insert(models.integer(i, 0));
+                                               Params().id(open_.table.project_id)));
+    std::set<ModelId> known;
+    for (int i = 0; i < models.rows(); ++i) known.insert(models.id<ModelId>(i, 0));
     for (const Record& row : rows) {
       const auto value = row.values.find(column.id);
       const Cells& after = edit_.records.at(row.key);
       if (value == row.values.end() || value->second.is_null()) continue;
-      if (!after.contains(std::to_string(column.id)) && !after.contains(kExists)) continue;
+      if (!after.contains(to_string(column.id)) && !after.contains(kExists)) continue;
       for (const auto& feature : value->second) {
-        const auto model = feature.at("model").get<std::int64_t>();
+        const auto model = feature.at("model").get<ModelId>();
         if (known.contains(model)) continue;
         add_problem(row.key, {ErrorCode::invalid, "No such model",
-                              "\"" + column.name + "\" lies on model " + std::to_string(model) +
+                              "\"" + column.name + "\" lies on model " + to_string(model) +
                                   ", which the project does not have.",
                               field_of(column)});
         break;
@@ -315,13 +315,13 @@ class Writer {
     auto rows = STRATA_TRY(connection_.query(
         "SELECT c.id, c.kind, c.table_id, c.properties ->> 'name', t.name FROM record_columns c "
         "JOIN record_tables t ON t.id = c.table_id WHERE c.target = $1 AND NOT c.hidden ORDER BY c.id",
-        Params().integer(open_.table.id)));
+        Params().id(open_.table.id)));
     for (int i = 0; i < rows.rows(); ++i) {
       Column column;
-      column.id = rows.integer(i, 0);
+      column.id = rows.id<ColumnId>(i, 0);
       column.kind = rows.text(i, 1) == "term" ? ColumnKind::term : ColumnKind::relation;
       auto naming =
-          STRATA_TRY(row_naming(connection_, rows.integer(i, 2), column, change_.deleted));
+          STRATA_TRY(row_naming(connection_, rows.id<TableId>(i, 2), column, change_.deleted));
       if (!naming) continue;
       const auto [by, key] = *naming;
       add_problem(
@@ -388,7 +388,7 @@ class Writer {
     STRATA_TRY(connection_.query(
         "INSERT INTO table_edits (table_id, sequence, user_name, op, record) VALUES ($1, $2, $3, $4, $5)",
         Params()
-            .integer(open_.table.id)
+            .id(open_.table.id)
             .integer(sequence_)
             .text(edit_.user)
             .text(edit_.op)
@@ -402,7 +402,7 @@ class Writer {
     auto counted = connection_.query(
         "UPDATE record_tables SET sequence = $2, records = $3, next_key = $4, version = $5 WHERE id = $1",
         Params()
-            .integer(open_.table.id)
+            .id(open_.table.id)
             .integer(sequence_)
             .integer(records_)
             .integer(open_.next_key)
@@ -414,12 +414,13 @@ class Writer {
     auto colored = connection_.query(
         "UPDATE layers SET version = version + 1 WHERE table_id = $1 AND palette ->> 'mode' = 'categorical' AND "
         "palette -> 'points' = '[]' AND coalesce(palette ->> 'column', '') = ''",
-        Params().integer(open_.table.id));
+        Params().id(open_.table.id));
     return colored ? Result<void>{} : tl::unexpected(colored.error());
   }
 
-  Result<void> keep_cells(const char* subject, const std::map<std::int64_t, Cells>& written,
-                          const std::map<std::int64_t, Cells>& before) {
+  template <class Subject>
+  Result<void> keep_cells(const char* subject, const std::map<Subject, Cells>& written,
+                          const std::map<Subject, Cells>& before) {
     constexpr int kAtOnce = 5000;
     for (auto next = written.begin(); next != written.end();) {
       PgArray ids(oid::kInt8), befores(oid::kJsonb), afters(oid::kJsonb);
@@ -432,7 +433,7 @@ class Writer {
           "INSERT INTO table_changes (table_id, sequence, subject, subject_id, before, after) "
           "SELECT $1, $2, $3, * FROM unnest($4::bigint[], $5::jsonb[], $6::jsonb[])",
           Params()
-              .integer(open_.table.id)
+              .id(open_.table.id)
               .integer(sequence_)
               .text(subject)
               .array(ids)
@@ -453,7 +454,8 @@ class Writer {
   TableChange change_;
   const std::int64_t sequence_ = open_.table.sequence + 1;
   std::int64_t records_ = open_.table.records;
-  std::map<std::int64_t, Cells> before_records_, before_columns_;
+  std::map<std::int64_t, Cells> before_records_;
+  std::map<ColumnId, Cells> before_columns_;
 };
 
 }  // namespace
@@ -464,7 +466,7 @@ Cells cells_of(const Column& column) {
   return cells;
 }
 
-void put_cells(OpenTable& open, const std::map<std::int64_t, Cells>& columns) {
+void put_cells(OpenTable& open, const std::map<ColumnId, Cells>& columns) {
   for (const auto& [id, cells] : columns) {
     Column* column = column_by_id(open, id);
     nlohmann::json properties = properties_of(*column);
@@ -478,16 +480,16 @@ void put_cells(OpenTable& open, const std::map<std::int64_t, Cells>& columns) {
   show_columns(open);
 }
 
-Result<OpenTable> read_table(PgConnection& connection, std::int64_t id, Role seen_by) {
+Result<OpenTable> read_table(PgConnection& connection, TableId id, Role seen_by) {
   auto row = STRATA_TRY(connection.query(
       "SELECT id, project_id, name, slug::text, labels, description, records, sequence, version, next_key, title_column "
       "FROM record_tables WHERE id = $1",
-      Params().integer(id)));
-  if (row.rows() == 0) return no_such("table", std::to_string(id));
+      Params().id(id)));
+  if (row.rows() == 0) return no_such("table", to_string(id));
   OpenTable open;
   open.seen_by = seen_by;
-  open.table.id = row.integer(0, 0);
-  open.table.project_id = row.integer(0, 1);
+  open.table.id = row.id<TableId>(0, 0);
+  open.table.project_id = row.id<ProjectId>(0, 1);
   open.table.name = row.text(0, 2);
   open.table.slug = row.text(0, 3);
   open.table.labels = labels_of(row.json(0, 4));
@@ -496,19 +498,19 @@ Result<OpenTable> read_table(PgConnection& connection, std::int64_t id, Role see
   open.table.sequence = row.integer(0, 7);
   open.table.version = row.integer(0, 8);
   open.next_key = row.integer(0, 9);
-  if (!row.null(0, 10)) open.table.title_column = row.integer(0, 10);
+  open.table.title_column = row.id<std::optional<ColumnId>>(0, 10);
   auto columns = STRATA_TRY(connection.query(
       "SELECT id, kind, target, properties, hidden, visibility FROM record_columns WHERE table_id = $1 ORDER BY id",
-      Params().integer(id)));
+      Params().id(id)));
   for (int i = 0; i < columns.rows(); ++i) {
     Column column;
-    column.id = columns.integer(i, 0);
+    column.id = columns.id<ColumnId>(i, 0);
     const auto kind = parse_column_kind(columns.text(i, 1));
     if (!kind)
       return fail(ErrorCode::internal, "Damaged table",
-                  "Column " + std::to_string(column.id) + " has an unknown kind.");
+                  "Column " + to_string(column.id) + " has an unknown kind.");
     column.kind = *kind;
-    if (!columns.null(i, 2)) column.target = columns.integer(i, 2);
+    column.target = columns.id<std::optional<TableId>>(i, 2);
     set_properties(column, columns.json(i, 3));
     column.hidden = columns.boolean(i, 4);
     // What cannot be told is not shown.
@@ -519,10 +521,10 @@ Result<OpenTable> read_table(PgConnection& connection, std::int64_t id, Role see
   return open;
 }
 
-Result<OpenTable> lock_table(PgConnection& connection, std::int64_t id) {
+Result<OpenTable> lock_table(PgConnection& connection, TableId id) {
   STRATA_TRY(connection.query(
       "SELECT 1 FROM projects WHERE id = (SELECT project_id FROM record_tables WHERE id = $1) FOR NO KEY UPDATE",
-      Params().integer(id)));
+      Params().id(id)));
   return read_table(connection, id);
 }
 
@@ -533,12 +535,12 @@ Result<TableChange> apply_edit(PgConnection& connection, OpenTable& open, TableE
 Result<void> fit_column(PgConnection& connection, const OpenTable& open, Column& column) {
   STRATA_TRY(check_column(column));
   if (column.target) {
-    auto known = STRATA_TRY(
-        connection.query("SELECT 1 FROM record_tables WHERE id = $1 AND project_id = $2",
-                         Params().integer(*column.target).integer(open.table.project_id)));
+    auto known =
+        STRATA_TRY(connection.query("SELECT 1 FROM record_tables WHERE id = $1 AND project_id = $2",
+                                    Params().id(*column.target).id(open.table.project_id)));
     if (known.rows() == 0)
       return fail(ErrorCode::invalid, "No such table",
-                  "The project has no table " + std::to_string(*column.target) + ".", "target");
+                  "The project has no table " + to_string(*column.target) + ".", "target");
     std::set<std::int64_t> named;
     add_keys(column.default_value, named);
     auto missing =
@@ -571,12 +573,12 @@ Result<Column> insert_column(PgConnection& connection, const OpenTable& open, Co
       "INSERT INTO record_columns (table_id, kind, target, properties, hidden, visibility) VALUES ($1, $2, $3, $4, true, $5) "
       "RETURNING id",
       Params()
-          .integer(open.table.id)
+          .id(open.table.id)
           .text(name(column.kind))
-          .optional_integer(column.target)
+          .optional_id(column.target)
           .json(properties_of(column))
           .text(name(column.visibility))));
-  column.id = row.integer(0, 0);
+  column.id = row.id<ColumnId>(0, 0);
   STRATA_TRY(add_rows_column(connection, open.table.id, column));
   return column;
 }
@@ -586,10 +588,9 @@ Result<Table> insert_table(PgConnection& connection, Table table) {
   STRATA_TRY(check_text(table.slug, "slug"));
   STRATA_TRY(check_text(table.description, "description"));
   STRATA_TRY(check_labels(table.labels));
-  auto project =
-      STRATA_TRY(connection.query("SELECT 1 FROM projects WHERE id = $1 FOR NO KEY UPDATE",
-                                  Params().integer(table.project_id)));
-  if (project.rows() == 0) return no_such("project", std::to_string(table.project_id));
+  auto project = STRATA_TRY(connection.query(
+      "SELECT 1 FROM projects WHERE id = $1 FOR NO KEY UPDATE", Params().id(table.project_id)));
+  if (project.rows() == 0) return no_such("project", to_string(table.project_id));
   auto row = STRATA_TRY(insert_with_slug(
       connection, "SELECT slug::text FROM record_tables WHERE slug LIKE $1", {},
       table.slug.empty() ? table.name : table.slug, [&](const std::string& slug) {
@@ -597,13 +598,13 @@ Result<Table> insert_table(PgConnection& connection, Table table) {
             "INSERT INTO record_tables (project_id, name, slug, labels, description) VALUES ($1, $2, $3, $4, $5) "
             "ON CONFLICT (slug) DO NOTHING RETURNING id",
             Params()
-                .integer(table.project_id)
+                .id(table.project_id)
                 .text(table.name)
                 .text(slug)
                 .json(table.labels)
                 .text(table.description));
       }));
-  const std::int64_t id = row.integer(0, 0);
+  const TableId id = row.id<TableId>(0, 0);
   STRATA_TRY(make_rows_table(connection, id));
   auto open = STRATA_TRY(read_table(connection, id));
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
@@ -620,7 +621,7 @@ Result<Table> insert_table(PgConnection& connection, Table table) {
     if (!inserted) return in_place(inserted.error());
     inserted->hidden = false;
     STRATA_TRY(connection.query("UPDATE record_columns SET hidden = false WHERE id = $1",
-                                Params().integer(inserted->id)));
+                                Params().id(inserted->id)));
     if (inserted->unique) STRATA_TRY(make_unique_index(connection, id, *inserted));
     open.all.push_back(std::move(*inserted));
     show_columns(open);

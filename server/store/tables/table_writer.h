@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/ids.h"
 #include "domain/layers/palette.h"
 #include "store/pg/pg.h"
 #include "store/tables/table_changes.h"
@@ -20,21 +21,22 @@ struct OpenTable {
 };
 // `not_found` where there is none. Locked: until the transaction ends nobody else changes any table
 // of the project, so that keys which other tables name stay.
-Result<OpenTable> read_table(PgConnection& connection, std::int64_t id, Role seen_by = Role::owner);
-Result<OpenTable> lock_table(PgConnection& connection, std::int64_t id);
+Result<OpenTable> read_table(PgConnection& connection, TableId id, Role seen_by = Role::owner);
+Result<OpenTable> lock_table(PgConnection& connection, TableId id);
 
 // The columns' cells: properties by name, and `hidden`.
 Cells cells_of(const Column& column);
 
 // Puts cells into columns, by id, and shows those that are not hidden then.
-void put_cells(OpenTable& open, const std::map<std::int64_t, Cells>& columns);
+void put_cells(OpenTable& open, const std::map<ColumnId, Cells>& columns);
 
 // An entry for the journal: the cells that it writes, by key and by column id. A record has
 // `exists` and its columns' ids.
 struct TableEdit {
   std::string user, op;
   nlohmann::json record;
-  std::map<std::int64_t, Cells> records, columns;
+  std::map<std::int64_t, Cells> records;
+  std::map<ColumnId, Cells> columns;
   // undo and redo: values of the past must fit the columns as they are now
   bool checks_values = false;
 };
@@ -54,6 +56,6 @@ Result<Table> insert_table(PgConnection& connection, Table table);
 
 // The colours of the terms of a list; nothing where the table is none. not_found: there is no
 // table.
-Result<std::optional<Palette>> term_palette_of(PgConnection& connection, std::int64_t table_id);
+Result<std::optional<Palette>> term_palette_of(PgConnection& connection, TableId table_id);
 
 }  // namespace strata::store

@@ -13,18 +13,18 @@
 namespace strata::store {
 namespace {
 
-Result<Table> table_of(PgConnection& connection, std::int64_t id, Role seen_by = Role::owner) {
+Result<Table> table_of(PgConnection& connection, TableId id, Role seen_by = Role::owner) {
   auto open = STRATA_TRY(read_table(connection, id, seen_by));
   return std::move(open.table);
 }
 
 // Refuses a column that the table does not show, and (stale) a version that is not the table's.
-Result<const Column*> shown_column(const OpenTable& open, std::int64_t column_id,
+Result<const Column*> shown_column(const OpenTable& open, ColumnId column_id,
                                    std::optional<std::int64_t> version) {
   if (version && *version != open.table.version) return stale("table");
   for (const Column& column : open.table.columns)
     if (column.id == column_id) return &column;
-  return no_such("column", std::to_string(column_id));
+  return no_such("column", to_string(column_id));
 }
 
 Result<TableChange> refused_by_records(Result<TableChange> change) {
@@ -51,7 +51,7 @@ Result<TableChange> retype(PgConnection& connection, OpenTable& open, const Colu
     if (value == row.values.end()) continue;
     auto then = convert_value(old, lenient, value->second, {});
     if (then && !then->is_null()) {
-      edit.records[row.key][std::to_string(made.id)] = std::move(*then);
+      edit.records[row.key][to_string(made.id)] = std::move(*then);
       ++converted;
     } else {
       ++lost_count;
@@ -66,14 +66,14 @@ Result<TableChange> retype(PgConnection& connection, OpenTable& open, const Colu
 
 }  // namespace
 
-Result<std::vector<Table>> Tables::of_project(std::int64_t project_id, Role seen_by) {
+Result<std::vector<Table>> Tables::of_project(ProjectId project_id, Role seen_by) {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<Table>> {
     auto rows = STRATA_TRY(connection.query(
         "SELECT id FROM record_tables WHERE project_id = $1 ORDER BY lower(name), id",
-        Params().integer(project_id)));
+        Params().id(project_id)));
     std::vector<Table> tables;
     for (int i = 0; i < rows.rows(); ++i) {
-      auto table = table_of(connection, rows.integer(i, 0), seen_by);
+      auto table = table_of(connection, rows.id<TableId>(i, 0), seen_by);
       if (!table && table.error().code == ErrorCode::not_found) continue;  // deleted meanwhile
       if (!table) return tl::unexpected(table.error());
       tables.push_back(std::move(*table));
@@ -85,11 +85,11 @@ Result<std::vector<Table>> Tables::of_project(std::int64_t project_id, Role seen
 Result<Table> Tables::find(const std::string& ref, Role seen_by) {
   if (!check_text(ref, "table")) return no_such("table", ref);
   return pool_.read([&](PgConnection& connection) -> Result<Table> {
-    if (const auto id = id_of(ref)) return table_of(connection, *id, seen_by);
+    if (const auto id = id_of<TableId>(ref)) return table_of(connection, *id, seen_by);
     auto row = STRATA_TRY(
         connection.query("SELECT id FROM record_tables WHERE slug = $1", Params().text(ref)));
     if (row.rows() == 0) return no_such("table", ref);
-    return table_of(connection, row.integer(0, 0), seen_by);
+    return table_of(connection, row.id<TableId>(0, 0), seen_by);
   });
 }
 
@@ -110,7 +110,7 @@ Result<Table> Tables::update(const Table& table, const IdempotentResponse<Table>
       const auto title = std::ranges::find(open.table.columns, *table.title_column, &Column::id);
       if (title == open.table.columns.end())
         return fail(ErrorCode::invalid, "No such column",
-                    "The table has no column " + std::to_string(*table.title_column) + ".",
+                    "The table has no column " + to_string(*table.title_column) + ".",
                     "title_column");
       if (!can_be_title(*title))
         return fail(ErrorCode::invalid, "No title",
@@ -122,27 +122,27 @@ Result<Table> Tables::update(const Table& table, const IdempotentResponse<Table>
         "UPDATE record_tables SET name = $3, labels = $4, description = $5, title_column = $6, version = version + 1 "
         "WHERE id = $1 AND version = $2 RETURNING id",
         Params()
-            .integer(table.id)
+            .id(table.id)
             .integer(table.version)
             .text(table.name)
             .json(table.labels)
             .text(table.description)
-            .optional_integer(table.title_column)));
+            .optional_id(table.title_column)));
     auto now = table_of(connection, table.id);
     if (!now) return now;
     return row.rows() > 0 ? now : Result<Table>(stale("table"));
   });
 }
 
-Result<void> Tables::remove(std::int64_t id, const IdempotentResponse<>& answer) {
+Result<void> Tables::remove(TableId id, const IdempotentResponse<>& answer) {
   auto gone = change(pool_, answer, [&](PgConnection& connection) -> Result<void> {
     STRATA_TRY(lock_table(connection, id));
     // What is gone for ever keeps no table, though its content is not erased yet.
     auto layers = STRATA_TRY(connection.query(
         "SELECT l.id FROM all_layers l JOIN all_models m ON m.id = l.model_id WHERE l.table_id = $1 AND (l.erasing OR m.erasing)",
-        Params().integer(id)));
+        Params().id(id)));
     for (int i = 0; i < layers.rows(); ++i)
-      STRATA_TRY(erase_layer(connection, layers.integer(i, 0)));
+      STRATA_TRY(erase_layer(connection, layers.id<LayerId>(i, 0)));
     auto users = STRATA_TRY(connection.query(
         "SELECT 'the layer ' || l.name || ' of ' || m.name, coalesce(l.binned, m.binned) IS NOT NULL "
         "FROM all_layers l JOIN all_models m ON m.id = l.model_id "
@@ -150,7 +150,7 @@ Result<void> Tables::remove(std::int64_t id, const IdempotentResponse<>& answer)
         "SELECT 'the column ' || (c.properties ->> 'name') || ' of ' || t.name, false FROM record_columns c "
         "JOIN record_tables t ON t.id = c.table_id WHERE c.target = $1 AND c.table_id <> $1 "
         "ORDER BY 2 LIMIT 1",
-        Params().integer(id)));
+        Params().id(id)));
     if (users.rows() > 0 && users.boolean(0, 1))
       return fail(ErrorCode::conflict, "Table in use",
                   "The table is named by " + users.text(0, 0) +
@@ -161,9 +161,9 @@ Result<void> Tables::remove(std::int64_t id, const IdempotentResponse<>& answer)
     STRATA_TRY(drop_rows_table(connection, id));
     // Its own columns may point at it.
     auto columns =
-        connection.query("DELETE FROM record_columns WHERE table_id = $1", Params().integer(id));
+        connection.query("DELETE FROM record_columns WHERE table_id = $1", Params().id(id));
     if (!columns) return tl::unexpected(columns.error());
-    auto table = connection.query("DELETE FROM record_tables WHERE id = $1", Params().integer(id));
+    auto table = connection.query("DELETE FROM record_tables WHERE id = $1", Params().id(id));
     return table ? Result<void>{} : tl::unexpected(table.error());
   });
   // Afterwards, since those who attach hold a blob while they wait for the tables. What fails here
@@ -172,15 +172,15 @@ Result<void> Tables::remove(std::int64_t id, const IdempotentResponse<>& answer)
   return gone;
 }
 
-Result<std::vector<Layer>> Layers::of_table(std::int64_t table_id, Role seen_by) {
+Result<std::vector<Layer>> Layers::of_table(TableId table_id, Role seen_by) {
   auto refs = STRATA_TRY(pool_.read([&](PgConnection& connection) {
     return connection.query(
         "SELECT model_id, id FROM layers WHERE table_id = $1 ORDER BY model_id, draw_order, id",
-        Params().integer(table_id));
+        Params().id(table_id));
   }));
   std::vector<Layer> layers;
   for (int i = 0; i < refs.rows(); ++i) {
-    auto found = find(refs.integer(i, 0), std::to_string(refs.integer(i, 1)), seen_by);
+    auto found = find(refs.id<ModelId>(i, 0), std::to_string(refs.integer(i, 1)), seen_by);
     if (!found && found.error().code == ErrorCode::not_found)
       continue;  // deleted meanwhile, or not seen
     if (!found) return tl::unexpected(found.error());
@@ -189,7 +189,7 @@ Result<std::vector<Layer>> Layers::of_table(std::int64_t table_id, Role seen_by)
   return layers;
 }
 
-Result<TableChange> Tables::create_column(std::int64_t table_id, const Column& column,
+Result<TableChange> Tables::create_column(TableId table_id, const Column& column,
                                           const std::string& user,
                                           const IdempotentResponse<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
@@ -203,15 +203,14 @@ Result<TableChange> Tables::create_column(std::int64_t table_id, const Column& c
     edit.columns[made.id] = {{"hidden", false}};
     if (!made.default_value.is_null()) {
       auto rows = STRATA_TRY(load_all_rows(connection, table_id, {}));
-      for (const Record& row : rows)
-        edit.records[row.key][std::to_string(made.id)] = made.default_value;
+      for (const Record& row : rows) edit.records[row.key][to_string(made.id)] = made.default_value;
     }
     return refused_by_records(apply_edit(connection, open, std::move(edit)));
   };
   return change(pool_, answer, work, kBulkLimits);
 }
 
-Result<TableChange> Tables::update_column(std::int64_t table_id, const Column& column,
+Result<TableChange> Tables::update_column(TableId table_id, const Column& column,
                                           std::optional<std::int64_t> version,
                                           const std::string& user,
                                           const IdempotentResponse<TableChange>& answer) {
@@ -238,9 +237,8 @@ Result<TableChange> Tables::update_column(std::int64_t table_id, const Column& c
   return change(pool_, answer, work, kBulkLimits);
 }
 
-Result<Table> Tables::show_column(std::int64_t table_id, std::int64_t column_id,
-                                  Visibility visibility, std::int64_t version,
-                                  const IdempotentResponse<Table>& answer) {
+Result<Table> Tables::show_column(TableId table_id, ColumnId column_id, Visibility visibility,
+                                  std::int64_t version, const IdempotentResponse<Table>& answer) {
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Table> {
     auto open = STRATA_TRY(lock_table(connection, table_id));
     auto found = STRATA_TRY(shown_column(open, column_id, version));
@@ -257,14 +255,14 @@ Result<Table> Tables::show_column(std::int64_t table_id, std::int64_t column_id,
                     "visibility");
     }
     STRATA_TRY(connection.query("UPDATE record_columns SET visibility = $2 WHERE id = $1",
-                                Params().integer(column_id).text(name(visibility))));
+                                Params().id(column_id).text(name(visibility))));
     STRATA_TRY(connection.query("UPDATE record_tables SET version = version + 1 WHERE id = $1",
-                                Params().integer(table_id)));
+                                Params().id(table_id)));
     return table_of(connection, table_id);
   });
 }
 
-Result<TableChange> Tables::drop_column(std::int64_t table_id, std::int64_t column_id,
+Result<TableChange> Tables::drop_column(TableId table_id, ColumnId column_id,
                                         std::optional<std::int64_t> version,
                                         const std::string& user,
                                         const IdempotentResponse<TableChange>& answer) {

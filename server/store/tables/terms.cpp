@@ -125,8 +125,7 @@ class TermIntake {
     if (!exists) cells["exists"] = true;
     if (!exists)
       for (const Column& column : open_.table.columns)
-        if (!column.default_value.is_null())
-          cells[std::to_string(column.id)] = column.default_value;
+        if (!column.default_value.is_null()) cells[to_string(column.id)] = column.default_value;
     for (const std::string& slug : list_.columns) {
       auto value = STRATA_TRY(value_of(term, slug));
       const Column& column = columns_.at(slug);
@@ -136,7 +135,7 @@ class TermIntake {
         if (const auto cell = held->second.values.find(column.id);
             cell != held->second.values.end())
           now = cell->second;
-      if (value != now || !exists) cells[std::to_string(column.id)] = std::move(value);
+      if (value != now || !exists) cells[to_string(column.id)] = std::move(value);
     }
     return {};
   }
@@ -167,7 +166,7 @@ class TermIntake {
 
   // A term below itself, with what the list has already.
   void refuse_circles() {
-    const std::int64_t column = columns_.at("parent").id;
+    const ColumnId column = columns_.at("parent").id;
     Relation relation;
     const auto name = [&](std::int64_t key, const nlohmann::json& parent) {
       if (parent.is_number()) relation[key] = {parent.get<std::int64_t>()};
@@ -176,7 +175,7 @@ class TermIntake {
       if (const auto parent = row.values.find(column); parent != row.values.end())
         name(key, parent->second);
     for (const auto& [key, cells] : edit_.records)
-      if (const auto parent = cells.find(std::to_string(column)); parent != cells.end()) {
+      if (const auto parent = cells.find(to_string(column)); parent != cells.end()) {
         relation.erase(key);
         name(key, parent->second);
       }
@@ -229,7 +228,7 @@ Result<TableChange> insert_with_terms(PgConnection& connection, Table table, con
                                       const std::string& user, const std::string& op) {
   auto taken = STRATA_TRY(connection.query(
       "SELECT slug::text FROM record_tables WHERE project_id = $1 AND lower(name) = lower($2)",
-      Params().integer(table.project_id).text(table.name)));
+      Params().id(table.project_id).text(table.name)));
   if (taken.rows() > 0)
     return fail(ErrorCode::conflict, "Name taken",
                 "The project has a table \"" + table.name + "\" already (`" + taken.text(0, 0) +
@@ -273,7 +272,7 @@ Result<std::vector<TableChange>> Tables::create_several(
   return done;
 }
 
-Result<TableChange> Tables::import_terms(std::int64_t table_id, const TermList& list, bool dry_run,
+Result<TableChange> Tables::import_terms(TableId table_id, const TermList& list, bool dry_run,
                                          const std::string& user,
                                          const IdempotentResponse<TableChange>& answer) {
   STRATA_TRY(check_text(user, "user"));
@@ -296,7 +295,7 @@ Result<TableChange> Tables::import_terms(std::int64_t table_id, const TermList& 
   return done;
 }
 
-Result<std::optional<Palette>> term_palette_of(PgConnection& connection, std::int64_t table_id) {
+Result<std::optional<Palette>> term_palette_of(PgConnection& connection, TableId table_id) {
   // Everybody who sees the layer sees its palette.
   auto open = STRATA_TRY(read_table(connection, table_id, least_role(Visibility::everyone)));
   const auto columns = term_columns(open.table);

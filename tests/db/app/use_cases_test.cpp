@@ -128,7 +128,7 @@ TEST_F(UseCases, a_figure_is_drawn_to_a_file_that_goes_with_its_last_owner) {
   request.room = room();
   request.role = Role::viewer;
   request.layers = {layer};
-  request.shown.layers.emplace({std::to_string(layer.id)});
+  request.shown.layers.emplace({to_string(layer.id)});
   request.shown.at = room()->edits().durable_sequence();
   request.plane = figure::plane_from(figure::Direction::top, model_.up);
   request.from = "top";

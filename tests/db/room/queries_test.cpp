@@ -153,7 +153,7 @@ TEST_F(RoomQueries, records_decide_what_their_keys_cover) {
   columns[1].name = "State";
   const auto pieces = room()->layers().create(wished, {}, columns);
   ASSERT_TRUE(pieces) << pieces.error().detail;
-  const Table table = *store_->tables().find(std::to_string(*pieces->table), Role::owner);
+  const Table table = *store_->tables().find(to_string(*pieces->table), Role::owner);
   const auto write = [&](std::int64_t key, double thickness, const char* state) {
     store::WriteRecords asked;
     asked.records = {{key, {{table.columns[0].id, thickness}, {table.columns[1].id, state}}}};

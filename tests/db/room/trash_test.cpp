@@ -21,7 +21,7 @@ class LayersInTheBin : public RoomTest {
   }
   Result<store::TrashRestored> restore(const Layer& layer) {
     const auto entry = store_->trash().entry(model_.project_id, store::TrashEntry::Kind::layer,
-                                             layer.id, 0, {Role::curator, {}});
+                                             layer.id.number(), 0, {Role::curator, {}});
     if (!entry) return tl::unexpected(entry.error());
     return room()->layers().restore(*entry, {.key = {}, .make = {}, .user = "carl"});
   }
@@ -82,16 +82,15 @@ TEST_F(LayersInTheBin, are_not_deleted_with_a_room_that_takes_them_back) {
   rooms_->forget(model_.id);
   EXPECT_EQ(test::whole_picture(held->pictures(), {}, camera()).error().code, ErrorCode::gone)
       << "who holds the room is told why";
-  EXPECT_EQ(rooms_->open(std::to_string(model_.id), Role::owner).error().code,
+  EXPECT_EQ(rooms_->open(to_string(model_.id), Role::owner).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->trash()
+                .entry(model_.project_id, store::TrashEntry::Kind::layer, layer.id.number(), 0,
+                       {Role::owner, {}})
+                .error()
+                .code,
             ErrorCode::not_found);
-  EXPECT_EQ(
-      store_->trash()
-          .entry(model_.project_id, store::TrashEntry::Kind::layer, layer.id, 0, {Role::owner, {}})
-          .error()
-          .code,
-      ErrorCode::not_found);
   const auto model = store_->trash().entry(model_.project_id, store::TrashEntry::Kind::model,
-                                           model_.id, 0, {Role::owner, {}});
+                                           model_.id.number(), 0, {Role::owner, {}});
   ASSERT_TRUE(model);
   ASSERT_TRUE(store_->trash().restore(*model, {}));
   EXPECT_TRUE(room()->layers().all().empty());

@@ -54,7 +54,7 @@ class ActivityOfAProject : public ::testing::Test {
     entry.answer["area_m2"] = 0.5;
     entries_.push_back(std::move(entry));
   }
-  Layer new_layer(std::int64_t model, const std::string& name) {
+  Layer new_layer(ModelId model, const std::string& name) {
     Layer layer;
     layer.model_id = model;
     layer.name = name;
@@ -67,7 +67,7 @@ class ActivityOfAProject : public ::testing::Test {
     table.name = "Finds";
     return store_->tables().create(table, by<Table>("ada")).value();
   }
-  void write_records(std::int64_t table, std::size_t count, bool dry_run = false) {
+  void write_records(TableId table, std::size_t count, bool dry_run = false) {
     WriteRecords asked;
     asked.records.resize(count);
     asked.dry_run = dry_run;
@@ -309,7 +309,7 @@ TEST_F(ActivityOfAProject, lines_of_a_model_go_where_it_goes) {
   Project villa;
   villa.name = "Villa";
   villa = store_->projects().create(villa, by<Project>("ada")).value();
-  Model model = store_->models().find(std::to_string(model_.id)).value();
+  Model model = store_->models().find(to_string(model_.id)).value();
   model.project_id = villa.id;
   ASSERT_TRUE(store_->models().update(model, by<Model>("ada")));
   EXPECT_THAT(told(page()), ::testing::IsEmpty());

@@ -43,7 +43,7 @@ TEST_F(Analysis, an_area_has_its_middle_as_a_point_in_the_models_system) {
   layer.palette = default_palette(layer.type, true);
   layer.labels = {{"de", "Risse"}};
   layer = store_->layers().create(layer).value();
-  const std::string id = std::to_string(layer.id);
+  const std::string id = to_string(layer.id);
   run("INSERT INTO tile_sums VALUES (" + id +
       ", 0, 0, '{1,2}', '{4,0}', '{2,0}', '{3,0}', '{5,0}', '{1,0}', '{0,0}', '{0,0}', '{0,0}', '{1,1}', '{1,1}', '{1,1}')");
   run("UPDATE all_models SET origin = '{100,200,300}', crs = 'EPSG:25832'");
@@ -71,9 +71,9 @@ TEST_F(Analysis, lines_and_points_of_records_are_well_known_text) {
   EXPECT_EQ(
       ask("SELECT string_agg(attname, ', ' ORDER BY attnum) FROM pg_attribute WHERE attrelid = "
           "'analysis.\"Damage\"'::regclass AND attnum > 0"),
-      "key, Crack, Sample, Crack (wkt), Crack (c" + std::to_string(table.columns[0].id) +
+      "key, Crack, Sample, Crack (wkt), Crack (c" + to_string(table.columns[0].id) +
           ", wkt), Sample (wkt)");
-  const std::string model = std::to_string(model_.id);
+  const std::string model = to_string(model_.id);
   const auto json = [&](const std::string& places) {
     return nlohmann::json::parse("[{\"model\": " + model + ", \"coordinates\": " + places + "}]");
   };
@@ -85,7 +85,7 @@ TEST_F(Analysis, lines_and_points_of_records_are_well_known_text) {
   asked.records = {input, {2, {}, {}}};
   const auto written = store_->records().write(table.id, asked, "ana");
   ASSERT_TRUE(written && written->problems.empty());
-  const std::string crack = "\"Crack (c" + std::to_string(table.columns[0].id) + ", wkt)\"";
+  const std::string crack = "\"Crack (c" + to_string(table.columns[0].id) + ", wkt)\"";
   EXPECT_EQ(ask("SELECT " + crack + " FROM analysis.\"Damage\" WHERE key = 1"),
             "MULTILINESTRING Z ((0.0 0.5 1.0, 2.0 3.0 4.0), (5.0 5.0 5.0, 6.0 6.0 6.0))");
   EXPECT_EQ(ask("SELECT \"Sample (wkt)\" FROM analysis.\"Damage\" WHERE key = 1"),

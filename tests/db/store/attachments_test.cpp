@@ -44,7 +44,7 @@ class Attachments : public ::testing::Test {
     EXPECT_TRUE(store_->records().write(made.id, asked, "ana"));
     return made;
   }
-  std::int64_t column_id(const std::string& slug) const {
+  ColumnId column_id(const std::string& slug) const {
     return find_column(table_.columns, slug)->id;
   }
 
@@ -55,7 +55,7 @@ class Attachments : public ::testing::Test {
     return {name, path, type, 4, 3};
   }
   Result<Attached> attach(std::int64_t key, const std::vector<NewAttachment>& files,
-                          std::optional<std::int64_t> column = {}) {
+                          std::optional<ColumnId> column = {}) {
     return store_->attachments().attach(table_.id, key, column, files, {}, {"ana", Role::owner});
   }
   json cell(std::int64_t key, const std::string& slug, std::optional<std::int64_t> at = {}) {
@@ -156,7 +156,7 @@ TEST_F(Attachments, what_does_not_fit_is_refused_and_leaves_nothing) {
 TEST_F(Attachments, undo_and_the_past_have_them_as_they_were) {
   const auto first = attach(1, {file("a.jpg", "a")});
   const auto second = attach(1, {file("b.jpg", "b")});
-  const std::int64_t a = first->attachments[0].id, b = second->attachments[0].id;
+  const AttachmentId a = first->attachments[0].id, b = second->attachments[0].id;
   undo();
   EXPECT_EQ(cell(1, "photos"), json({a}));
   undo(true);
@@ -176,7 +176,7 @@ TEST_F(Attachments, a_file_is_taken_out_of_all_records_that_have_it) {
   const json id = attached->attachments[0].id;
   ASSERT_TRUE(patch(2, "photos", json({id})));
   ASSERT_TRUE(patch(2, "papers", json({id})));
-  const auto removed = store_->attachments().detach(id.get<std::int64_t>(), "ana");
+  const auto removed = store_->attachments().detach(id.get<AttachmentId>(), "ana");
   ASSERT_TRUE(removed);
   EXPECT_EQ(removed->changed, (std::vector<std::int64_t>{1, 2}));
   EXPECT_EQ(cell(1, "photos"), json());

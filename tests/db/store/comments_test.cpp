@@ -33,7 +33,7 @@ class CommentsOfAModel : public ::testing::Test {
     comment.user = user;
     return comment;
   }
-  static Comment reply(std::int64_t to, const std::string& text, const std::string& user = "bob") {
+  static Comment reply(CommentId to, const std::string& text, const std::string& user = "bob") {
     Comment comment;
     comment.thread = to;
     comment.text = text;
@@ -48,7 +48,7 @@ class CommentsOfAModel : public ::testing::Test {
   std::unique_ptr<Store> store_ = test::open_store(dsn_);
   Comments& comments_ = store_->comments();
   Result<PgConnection> connection_ = PgConnection::connect(dsn_);
-  std::int64_t model_ = 0;
+  ModelId model_;
 };
 
 TEST_F(CommentsOfAModel, what_was_written_comes_back) {
@@ -73,8 +73,9 @@ TEST_F(CommentsOfAModel, what_was_written_comes_back) {
   EXPECT_EQ(second.comments[0].id, answer.id);
   EXPECT_EQ(comments_.replies(first.id, Role::owner, 10, 0)->comments.at(0).id, answer.id);
   EXPECT_EQ(comments_.replies(answer.id, Role::owner, 10, 0).error().code, ErrorCode::invalid);
-  EXPECT_EQ(comments_.comment(answer.id + 1, Role::owner).error().code, ErrorCode::not_found);
-  EXPECT_EQ(comments_.of_model(model_ + 1, Role::owner, {})->total, 0);
+  EXPECT_EQ(comments_.comment(CommentId(answer.id.number() + 1), Role::owner).error().code,
+            ErrorCode::not_found);
+  EXPECT_EQ(comments_.of_model(ModelId(model_.number() + 1), Role::owner, {})->total, 0);
 }
 
 TEST_F(CommentsOfAModel, texts_that_are_none_are_refused) {
@@ -87,7 +88,7 @@ TEST_F(CommentsOfAModel, texts_that_are_none_are_refused) {
   EXPECT_TRUE(comments_.create(thread(long_text)));
   EXPECT_EQ(comments_.create(thread(long_text + "x")).error().field, "text");
   auto nowhere = thread("Where?");
-  nowhere.model_id = model_ + 1;
+  nowhere.model_id = ModelId(model_.number() + 1);
   EXPECT_EQ(comments_.create(nowhere).error().code, ErrorCode::not_found);
   EXPECT_EQ(comments_.create(reply(999, "To whom?")).error().code, ErrorCode::not_found);
   EXPECT_EQ(count(), 1);
@@ -109,7 +110,7 @@ TEST_F(CommentsOfAModel, a_changed_text_is_marked_and_a_stale_change_refused) {
   ASSERT_TRUE(changed.edited);
   EXPECT_GE(*changed.edited, first.time);
   EXPECT_EQ(comments_.update(better).error().code, ErrorCode::stale);
-  better.id += 1;
+  better.id = CommentId(better.id.number() + 1);
   EXPECT_EQ(comments_.update(better).error().code, ErrorCode::not_found);
 }
 
@@ -208,7 +209,7 @@ TEST_F(CommentsOfAModel, an_answer_is_kept_with_the_comment) {
                                              return nlohmann::json{{"id", made.id}};
                                            }};
   const auto first = comments_.create(thread("Look"), answer).value();
-  EXPECT_EQ(store_->answers().find("k").value()->at("id"), first.id);
+  EXPECT_EQ(store_->answers().find("k").value()->at("id"), first.id.number());
   EXPECT_EQ(comments_.create(thread("Look"), answer).error().code, ErrorCode::conflict);
   EXPECT_EQ(count(), 1);
 }
@@ -242,7 +243,7 @@ TEST_F(CommentsOfAModel, they_go_with_the_model_and_stay_without_layer_and_table
 
 TEST_F(CommentsOfAModel, of_who_is_deleted_no_name_is_left_in_them) {
   const Person ada = store_->accounts().create("Ada.L", "", Role::annotator).value();
-  const std::string former = "former-" + std::to_string(ada.id);
+  const std::string former = "former-" + to_string(ada.id);
   const auto hers = comments_.create(thread("Mine", "Ada.L")).value();
   auto settled =
       comments_.create(thread("@ada.l, look. (@ADA.L) x@ada.l @ada.lovelace @adaxl @Ada.L", "bob"))

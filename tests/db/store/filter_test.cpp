@@ -22,7 +22,7 @@ namespace {
 using nlohmann::json;
 using Truth = std::optional<bool>;
 
-Column column(const std::string& name, ColumnKind kind, std::optional<std::int64_t> target = {}) {
+Column column(const std::string& name, ColumnKind kind, std::optional<TableId> target = {}) {
   Column made;
   made.name = name;
   made.kind = kind;
@@ -313,7 +313,7 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
     }
 
   // Of another time: the same, by the rows as they were.
-  const auto then = store_->tables().find(std::to_string(table.id), Role::owner)->sequence;
+  const auto then = store_->tables().find(to_string(table.id), Role::owner)->sequence;
   const auto before = keys(table, "depth > 1 and t_during(period, '15XX')");
   WriteRecords clear;
   for (const auto& [key, row] : rows)

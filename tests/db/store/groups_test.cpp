@@ -18,7 +18,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-std::int64_t project(Store& store, const std::string& name) {
+ProjectId project(Store& store, const std::string& name) {
   Project made;
   made.name = name;
   return store.projects().create(made).value().id;
@@ -62,9 +62,10 @@ TEST(Groups, are_told_apart_by_their_names_in_any_case) {
   const auto all = groups.all().value();
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ(all[0].name, "ärzte 2027");
-  EXPECT_EQ(groups.group(longest.id + 1).error().code, ErrorCode::not_found);
-  EXPECT_EQ(groups.change(longest.id + 1, {"x"}, {}).error().code, ErrorCode::not_found);
-  EXPECT_EQ(groups.remove(longest.id + 1, {}).error().code, ErrorCode::not_found);
+  EXPECT_EQ(groups.group(GroupId(longest.id.number() + 1)).error().code, ErrorCode::not_found);
+  EXPECT_EQ(groups.change(GroupId(longest.id.number() + 1), {"x"}, {}).error().code,
+            ErrorCode::not_found);
+  EXPECT_EQ(groups.remove(GroupId(longest.id.number() + 1), {}).error().code, ErrorCode::not_found);
 }
 
 TEST(Groups, the_database_itself_refuses_what_is_no_group) {
@@ -132,8 +133,10 @@ TEST(Groups, only_roles_of_projects_are_given_and_to_what_is_there) {
   const auto students = groups.create("Students", {}).value().group.id;
   for (const Role role : {Role::guest, Role::administrator, Role::owner})
     EXPECT_EQ(groups.put(villa, students, role, {}).error().code, ErrorCode::invalid);
-  EXPECT_EQ(groups.put(villa, students + 1, Role::viewer, {}).error().code, ErrorCode::not_found);
-  EXPECT_EQ(groups.put(villa + 1, students, Role::viewer, {}).error().code, ErrorCode::not_found);
+  EXPECT_EQ(groups.put(villa, GroupId(students.number() + 1), Role::viewer, {}).error().code,
+            ErrorCode::not_found);
+  EXPECT_EQ(groups.put(ProjectId(villa.number() + 1), students, Role::viewer, {}).error().code,
+            ErrorCode::not_found);
   EXPECT_EQ(groups.take(villa, students, {}).error().code, ErrorCode::not_found);
   const auto put = groups.put(villa, students, Role::viewer, {}).value();
   EXPECT_EQ(put.now.role, Role::viewer);
@@ -171,8 +174,9 @@ TEST(Groups, people_are_put_in_and_taken_out_all_or_none) {
   EXPECT_EQ(names_of(groups.group(id)->members), Names{"Cyd"});
   EXPECT_EQ(store->accounts().create("Dan", "", Role::guest, {id, id}).value().groups,
             Names{"Students"});
-  EXPECT_EQ(store->accounts().create("Eve", "", Role::guest, {id, id + 1}).error().code,
-            ErrorCode::invalid);
+  EXPECT_EQ(
+      store->accounts().create("Eve", "", Role::guest, {id, GroupId(id.number() + 1)}).error().code,
+      ErrorCode::invalid);
   EXPECT_EQ(store->accounts().find("Eve").error().code, ErrorCode::not_found);
 }
 
@@ -247,7 +251,7 @@ TEST(Groups, who_asked_for_what_is_told_in_each_project) {
   ASSERT_TRUE(groups.change(students, {.remove = {"Gus"}}, "Anne"));
   ASSERT_TRUE(groups.put(forum, students, Role::viewer, {})) << "the command line asks as nobody";
   ASSERT_TRUE(groups.remove(students, "Anne"));
-  const auto told = [&](std::int64_t of_project) {
+  const auto told = [&](ProjectId of_project) {
     ActivityQuery query;
     query.with_members = true;
     Names lines;

@@ -195,7 +195,8 @@ TEST_F(History, pages_are_newest_first_and_rows_are_whole) {
   EXPECT_TRUE(found->in_force);
   EXPECT_LT(std::chrono::abs(found->time - entries[2].time), std::chrono::microseconds(1));
   EXPECT_EQ(store_->journal().state(model_.id, {})->last_sequence, 5);
-  EXPECT_EQ(store_->journal().state(model_.id + 1, asked).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->journal().state(ModelId(model_.id.number() + 1), asked).error().code,
+            ErrorCode::not_found);
   EXPECT_EQ(store_->journal().history(999, 10, 0).error().code, ErrorCode::not_found);
   EXPECT_TRUE(store_->journal().history(layer_.id, 10, 100)->rows.empty());
 }

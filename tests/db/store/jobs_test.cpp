@@ -15,12 +15,12 @@
 namespace strata::store {
 namespace {
 
-StoredJob job_of(std::int64_t id, std::int64_t project, const char* kind = "import") {
+StoredJob job_of(JobId id, ProjectId project, const char* kind = "import") {
   return {id, project, "ada", kind, {}, {}, {}};
 }
 
-std::map<std::int64_t, StoredJob> by_id(std::vector<StoredJob> jobs) {
-  std::map<std::int64_t, StoredJob> map;
+std::map<JobId, StoredJob> by_id(std::vector<StoredJob> jobs) {
+  std::map<JobId, StoredJob> map;
   for (StoredJob& job : jobs) map.emplace(job.id, std::move(job));
   return map;
 }
@@ -29,7 +29,7 @@ TEST(Jobs, those_that_did_not_end_are_lost_with_the_server_and_others_are_as_the
   const auto dsn = test::fresh_database();
   const auto store = test::open_store(dsn);
   const auto project = store->projects().find("default")->id;
-  for (const std::int64_t id : {11, 12, 13, 14})
+  for (const JobId id : std::initializer_list<JobId>{11, 12, 13, 14})
     ASSERT_TRUE(store->jobs().begin(job_of(id, project)));
   StoredJob done = job_of(12, project);
   done.state = "done";
@@ -47,7 +47,7 @@ TEST(Jobs, those_that_did_not_end_are_lost_with_the_server_and_others_are_as_the
     const auto kept = store->jobs().take_over(1000);
     ASSERT_TRUE(kept);
     ASSERT_EQ(kept->size(), 4u);
-    EXPECT_EQ(kept->front().id, 14);  // newest first
+    EXPECT_EQ(kept->front().id, JobId(14));  // newest first
     auto jobs = by_id(*kept);
     EXPECT_EQ(jobs.at(11).state, "lost");
     EXPECT_EQ(jobs.at(12).state, "done");
@@ -83,7 +83,7 @@ TEST(Jobs, success_is_written_with_what_it_made) {
   ASSERT_TRUE(store->jobs().begin(job_of(22, project)));
   Project fresh;
   fresh.name = "Made by a job";
-  const auto answer = [](std::int64_t job) {
+  const auto answer = [](JobId job) {
     return IdempotentResponse<Project>{
         {},
         [](const Project& made) {
@@ -121,7 +121,7 @@ TEST(Jobs, go_after_seven_days_and_with_their_project) {
   ASSERT_TRUE(store->projects().remove(project->id));
   const auto left = store->jobs().take_over(10);
   ASSERT_EQ(left->size(), 1u);
-  EXPECT_EQ(left->front().id, 3);
+  EXPECT_EQ(left->front().id, JobId(3));
   EXPECT_EQ(store->jobs().begin(job_of(4, 999999)).error().code, ErrorCode::not_found);
 }
 

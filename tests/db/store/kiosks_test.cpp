@@ -21,14 +21,14 @@ class KiosksOfATour : public ::testing::Test {
     model_ = new_model(1, "bust");
     tour_ = new_tour(model_).id;
   }
-  std::int64_t new_model(std::int64_t project, const std::string& name) {
+  ModelId new_model(ProjectId project, const std::string& name) {
     NewModel fresh;
     fresh.model.project_id = project;
     fresh.model.name = name;
     fresh.geometry = {1, 2, 3};
     return store_->models().create(fresh, {}).value().id;
   }
-  NamedPart new_tour(std::int64_t model) {
+  NamedPart new_tour(ModelId model) {
     NamedPart tour;
     tour.model_id = model;
     tour.name = "Once around";
@@ -47,7 +47,8 @@ class KiosksOfATour : public ::testing::Test {
   Kiosks& kiosks_ = store_->kiosks();
   NamedParts& tours_ = store_->tours();
   Result<PgConnection> connection_ = PgConnection::connect(dsn_);
-  std::int64_t model_ = 0, tour_ = 0;
+  ModelId model_;
+  NamedPartId tour_;
 };
 
 TEST_F(KiosksOfATour, a_tour_comes_back_and_is_changed_where_its_version_equals) {
@@ -93,7 +94,7 @@ TEST_F(KiosksOfATour, a_link_leads_to_its_kiosk_and_only_its_hash_is_kept) {
   EXPECT_EQ(found->name, "Entrance hall — left");
   EXPECT_EQ(found->tour_id, tour_);
   EXPECT_EQ(found->model_id, model_);
-  EXPECT_EQ(found->project_id, 1);
+  EXPECT_EQ(found->project_id, ProjectId(1));
   EXPECT_EQ(found->tour, "once-around");
   EXPECT_EQ(found->model, "bust");
   EXPECT_EQ(found->project, "default");
@@ -154,7 +155,7 @@ TEST_F(KiosksOfATour, those_of_some_projects_are_listed) {
   const auto elsewhere =
       kiosks_.create(new_tour(new_model(other.id, "wall")).id, "Two", "carl", {}).value();
   EXPECT_EQ(kiosks_.all({}, 10, 0)->total, 2);
-  EXPECT_EQ(kiosks_.all(std::vector<std::int64_t>{}, 10, 0)->total, 0);
+  EXPECT_EQ(kiosks_.all(std::vector<ProjectId>{}, 10, 0)->total, 0);
   const auto page = kiosks_.all(std::vector{other.id}, 10, 0).value();
   ASSERT_EQ(page.kiosks.size(), 1u);
   EXPECT_EQ(page.kiosks[0].id, elsewhere.kiosk.id);

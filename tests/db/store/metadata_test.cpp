@@ -13,7 +13,7 @@
 namespace strata::store {
 namespace {
 
-NewModel small_model(const std::string& name, std::int64_t project = 1) {
+NewModel small_model(const std::string& name, ProjectId project = 1) {
   NewModel fresh;
   fresh.model.project_id = project;
   fresh.model.name = name;
@@ -25,7 +25,7 @@ Model create(Store& store, const std::string& name) {
   return store.models().create(small_model(name), {}).value();
 }
 
-Layer new_layer(std::int64_t model_id, const std::string& name) {
+Layer new_layer(ModelId model_id, const std::string& name) {
   Layer layer;
   layer.model_id = model_id;
   layer.name = name;
@@ -36,7 +36,7 @@ Layer new_layer(std::int64_t model_id, const std::string& name) {
 TEST(Projects, the_default_project_exists_and_stays) {
   auto store = test::fresh_store();
   const auto project = store->projects().find("default").value();
-  EXPECT_EQ(store->projects().find(std::to_string(project.id))->slug, "default");
+  EXPECT_EQ(store->projects().find(to_string(project.id))->slug, "default");
   EXPECT_EQ(store->projects().remove(project.id).error().code, ErrorCode::conflict);
   EXPECT_EQ(store->projects().all()->size(), 1u);
 }
@@ -184,8 +184,8 @@ TEST(Models, slugs_are_unique_among_all_models_and_changes_need_the_version) {
   second.id = 77;
   EXPECT_EQ(store->models().update(second).error().code, ErrorCode::not_found);
   EXPECT_EQ(store->models().all()->size(), 2u);
-  EXPECT_EQ(store->models().all(1)->size(), 2u);
-  EXPECT_EQ(store->models().all(2)->size(), 0u);
+  EXPECT_EQ(store->models().all(ProjectId(1))->size(), 2u);
+  EXPECT_EQ(store->models().all(ProjectId(2))->size(), 0u);
   EXPECT_EQ(store->models().create(small_model("x", 99), {}).error().code, ErrorCode::conflict);
 }
 
@@ -209,12 +209,12 @@ TEST(Layers, they_come_in_drawing_order_with_every_field) {
   ASSERT_EQ(list.size(), 2u);
   EXPECT_EQ(list[0].id, bottom.id);
   EXPECT_EQ(to_json(list[1]), to_json(top));
-  EXPECT_EQ(store->tables().find(std::to_string(list[1].table.value()), Role::owner)->name, "Top");
+  EXPECT_EQ(store->tables().find(to_string(list[1].table.value()), Role::owner)->name, "Top");
   EXPECT_EQ(list[1].palette.points[0].label, "crack");
   EXPECT_EQ(list[1].opacity, 0.3);
   EXPECT_EQ(store->layers().find(model.id, "top", Role::owner)->id, top.id);
-  EXPECT_EQ(store->layers().find(model.id, std::to_string(top.id), Role::owner)->slug, "top");
-  EXPECT_EQ(store->layers().find(model.id + 1, "top", Role::owner).error().code,
+  EXPECT_EQ(store->layers().find(model.id, to_string(top.id), Role::owner)->slug, "top");
+  EXPECT_EQ(store->layers().find(ModelId(model.id.number() + 1), "top", Role::owner).error().code,
             ErrorCode::not_found);
 }
 

@@ -236,9 +236,10 @@ TEST(People, in_a_project_somebody_may_do_more) {
     EXPECT_EQ(store->members().put(project, "Gus", role).error().code, ErrorCode::invalid);
   EXPECT_EQ(store->members().put(project, "nobody", Role::viewer).error().code,
             ErrorCode::not_found);
-  EXPECT_EQ(store->members().put(project + 1, "Gus", Role::viewer).error().code,
+  EXPECT_EQ(store->members().put(ProjectId(project.number() + 1), "Gus", Role::viewer).error().code,
             ErrorCode::not_found);
-  EXPECT_EQ(store->members().remove(project + 1, "Gus").error().code, ErrorCode::not_found);
+  EXPECT_EQ(store->members().remove(ProjectId(project.number() + 1), "Gus").error().code,
+            ErrorCode::not_found);
   ASSERT_TRUE(store->members().remove(project, "GUS"));
   EXPECT_EQ(store->members().remove(project, "Gus").error().code, ErrorCode::not_found);
   EXPECT_EQ(roles_of(session), Roles{});
@@ -281,7 +282,8 @@ TEST(Tokens, of_one_project_are_good_there_alone_and_go_with_it) {
   for (const Role role : {Role::guest, Role::administrator, Role::owner})
     EXPECT_EQ(token_of("root", role).error().code, ErrorCode::invalid);
   EXPECT_EQ(store->tokens()
-                .create(TokenKind::script, "Ada", Role::viewer, {}, "", {}, project + 1)
+                .create(TokenKind::script, "Ada", Role::viewer, {}, "", {},
+                        ProjectId(project.number() + 1))
                 .error()
                 .code,
             ErrorCode::not_found);
@@ -331,7 +333,7 @@ TEST(People, of_who_is_deleted_no_name_is_left_anywhere) {
   decision.disable = {1};
   ASSERT_TRUE(test::save(writer, decision));
   ASSERT_TRUE(store->accounts().remove("ada.lovelace"));
-  const std::string former = "former-" + std::to_string(ada.id);
+  const std::string former = "former-" + to_string(ada.id);
   const auto edits = store->journal().history(layer.id, 10, 0)->rows;
   EXPECT_EQ(edits.at(1).user, former);
   EXPECT_EQ(edits[1].reviewer->reason, "@" + former + ": too far, b@ada.lovelacex.org");
@@ -394,7 +396,7 @@ TEST(Answers, an_answer_is_kept_with_the_change_for_seven_days) {
   ASSERT_TRUE(connection->script("UPDATE answers SET time = time - interval '2 hours'"));
   EXPECT_FALSE(store->answers().find("k").value());
   const auto again = store->projects().create(named("Villa"), answer_of("k")).value();
-  EXPECT_EQ(store->answers().find("k").value()->at("id"), again.id);
+  EXPECT_EQ(store->answers().find("k").value()->at("id"), again.id.number());
 }
 
 TEST(Answers, of_two_calls_with_one_key_only_one_changes_anything) {

@@ -81,12 +81,14 @@ TEST_F(Sources, a_reader_may_stop_and_unknown_files_are_not_found) {
   EXPECT_EQ(chunks, 2);
   EXPECT_EQ(store_->models().read_source(model.id, "other", [](auto) { return true; }).error().code,
             ErrorCode::not_found);
-  EXPECT_EQ(store_->models()
-                .read_source(model.id + 1, "größe 1.ply", [](auto) { return true; })
-                .error()
-                .code,
+  EXPECT_EQ(
+      store_->models()
+          .read_source(ModelId(model.id.number() + 1), "größe 1.ply", [](auto) { return true; })
+          .error()
+          .code,
+      ErrorCode::not_found);
+  EXPECT_EQ(store_->models().geometry(ModelId(model.id.number() + 1)).error().code,
             ErrorCode::not_found);
-  EXPECT_EQ(store_->models().geometry(model.id + 1).error().code, ErrorCode::not_found);
 }
 
 TEST_F(Sources, the_same_file_is_kept_once_and_goes_with_its_last_model) {

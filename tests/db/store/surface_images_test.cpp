@@ -23,7 +23,7 @@ NewModel model_with(std::vector<NewModel::NewSurfaceImage> images) {
   return fresh;
 }
 
-SurfaceImage surface_image_named(std::int64_t model_id, const std::string& name) {
+SurfaceImage surface_image_named(ModelId model_id, const std::string& name) {
   SurfaceImage image;
   image.model_id = model_id;
   image.name = name;
@@ -77,17 +77,17 @@ TEST_F(SurfaceImages, they_are_added_changed_and_found_like_layers) {
       store_->surface_images().create(surface_image_named(model.id, "UV light"), picture)->slug,
       "uv-light-2");
   EXPECT_EQ(to_json(store_->surface_images().find(model.id, "uv-light").value()), to_json(uv));
-  EXPECT_EQ(store_->surface_images().find(model.id, std::to_string(uv.id))->description,
-            "365 nm — δ");
+  EXPECT_EQ(store_->surface_images().find(model.id, to_string(uv.id))->description, "365 nm — δ");
   auto changed = uv;
   changed.name = "UV";
   changed.visible = false;
   changed.opacity = 1;
   EXPECT_EQ(store_->surface_images().update(changed)->name, "UV");
   EXPECT_EQ(store_->surface_images().update(changed).error().code, ErrorCode::stale);
-  EXPECT_EQ(store_->surface_images().find(model.id + 1, "uv-light").error().code,
+  EXPECT_EQ(store_->surface_images().find(ModelId(model.id.number() + 1), "uv-light").error().code,
             ErrorCode::not_found);
-  EXPECT_EQ(store_->surface_images().of_model(model.id + 1).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->surface_images().of_model(ModelId(model.id.number() + 1)).error().code,
+            ErrorCode::not_found);
   EXPECT_EQ(store_->surface_images().of_model(model.id)->front().slug, "uv-light-2")
       << "drawn below, by its order";
 }

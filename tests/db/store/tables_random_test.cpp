@@ -16,8 +16,8 @@ namespace {
 using nlohmann::json;
 
 struct Cell {
-  std::int64_t key = 0;     // 0: of the column
-  std::int64_t column = 0;  // 0: whether the record is there
+  std::int64_t key = 0;  // 0: of the column
+  ColumnId column;       // 0: whether the record is there
   auto operator<=>(const Cell&) const = default;
 };
 
@@ -65,7 +65,7 @@ class Oracle {
     return nullptr;
   }
   // {key: {column: value}} of records that are there and columns that are shown.
-  json content(const std::vector<std::int64_t>& columns, std::int64_t greatest_key) const {
+  json content(const std::vector<ColumnId>& columns, std::int64_t greatest_key) const {
     json all = json::object();
     for (std::int64_t key = 1; key <= greatest_key; ++key) {
       if (value({key, 0}) != true) continue;
@@ -73,11 +73,11 @@ class Oracle {
       for (const auto column : columns)
         if (is_shown(column))
           if (const json held = value({key, column}); !held.is_null())
-            values[std::to_string(column)] = held;
+            values[to_string(column)] = held;
     }
     return all;
   }
-  bool is_shown(std::int64_t column) const { return value({0, column}) == true; }
+  bool is_shown(ColumnId column) const { return value({0, column}) == true; }
   int sequence() const { return sequence_; }
 
  private:
@@ -114,7 +114,7 @@ class RandomWork {
     past_.resize(static_cast<std::size_t>(oracle_.sequence()) + 1, expected);
     const auto at = random_() % past_.size();
     ASSERT_EQ(content(static_cast<std::int64_t>(at)), past_[at]) << "at " << at;
-    const Table table = store_->tables().find(std::to_string(table_), Role::owner).value();
+    const Table table = store_->tables().find(to_string(table_), Role::owner).value();
     ASSERT_EQ(table.sequence, oracle_.sequence());
     ASSERT_EQ(table.records, static_cast<std::int64_t>(expected.size()));
   }
@@ -130,13 +130,13 @@ class RandomWork {
       for (const Column& column : page->table.columns)
         if (const auto value = record.values.find(column.id);
             value != record.values.end() && !value->second.is_null())
-          values[std::to_string(column.id)] = value->second;
+          values[to_string(column.id)] = value->second;
     }
     return all;
   }
 
-  std::vector<std::int64_t> shown() const {
-    std::vector<std::int64_t> found;
+  std::vector<ColumnId> shown() const {
+    std::vector<ColumnId> found;
     for (const auto column : columns_)
       if (oracle_.is_shown(column)) found.push_back(column);
     return found;
@@ -232,10 +232,10 @@ class RandomWork {
 
   std::unique_ptr<Store> store_ = test::fresh_store();
   std::mt19937 random_;
-  std::int64_t table_ = 0;
+  TableId table_;
   Oracle oracle_;
-  std::vector<std::int64_t> columns_;
-  std::map<std::int64_t, json> defaults_;
+  std::vector<ColumnId> columns_;
+  std::map<ColumnId, json> defaults_;
   std::int64_t greatest_key_ = 0;
   std::vector<json> past_{json::object()};
 };

@@ -42,7 +42,7 @@ class Tables : public ::testing::Test {
                           const std::string& user = "ana",
                           std::optional<std::int64_t> version = {}) {
     RecordInput input{key, {}, version};
-    const Table now = store_->tables().find(std::to_string(table.id), Role::owner).value();
+    const Table now = store_->tables().find(to_string(table.id), Role::owner).value();
     for (const auto& [slug, value] : values)
       input.values[find_column(now.columns, slug)->id] = value;
     WriteRecords asked;
@@ -80,7 +80,7 @@ class Tables : public ::testing::Test {
     return found;
   }
   Table now(const Table& table) {
-    return store_->tables().find(std::to_string(table.id), Role::owner).value();
+    return store_->tables().find(to_string(table.id), Role::owner).value();
   }
 
   const std::string dsn_ = test::fresh_database();
@@ -469,7 +469,7 @@ TEST_F(Tables, layers_of_several_models_share_a_table) {
   auto moved = model;
   moved.project_id = store_->projects().create(project)->id;
   EXPECT_EQ(store_->models().update(moved).error().title, "Tables stay");
-  layer.table = 99;
+  layer.table = TableId(99);
   EXPECT_EQ(store_->layers().create(layer).error().field, "table");
   ASSERT_TRUE(store_->models().remove(model.id));
   ASSERT_TRUE(store_->tables().remove(table.id));

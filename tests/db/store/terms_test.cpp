@@ -181,7 +181,7 @@ TEST_F(Terms, tables_come_all_or_none_and_name_each_other) {
   Column kind, above;
   kind.name = "Kind";
   kind.kind = ColumnKind::term;
-  kind.target = 1;  // in place of which the table before it comes
+  kind.target = TableId(1);  // in place of which the table before it comes
   above.name = "Above";
   above.kind = ColumnKind::relation;
   above.target = kOwnTable;

@@ -37,7 +37,7 @@ TEST_F(Tools, their_shapes_come_back_cell_by_cell_after_a_restart) {
   EXPECT_EQ(tools[0].name, "dots") << "by name, whatever its case";
   EXPECT_EQ(tools[1].slug, "flag");
   EXPECT_EQ(store_->tools().find("flag")->id, flag.id);
-  EXPECT_EQ(store_->tools().find(std::to_string(dots.id))->name, "dots");
+  EXPECT_EQ(store_->tools().find(to_string(dots.id))->name, "dots");
 }
 
 TEST_F(Tools, are_renamed_and_keep_slug_and_shape) {
@@ -57,10 +57,10 @@ TEST_F(Tools, a_deleted_one_is_found_by_its_id_alone_and_its_slug_is_free_again)
   ASSERT_TRUE(store_->tools().remove(tool.id));
   EXPECT_TRUE(store_->tools().all()->empty());
   EXPECT_EQ(store_->tools().find("flag").error().code, ErrorCode::not_found);
-  EXPECT_TRUE(store_->tools().find(std::to_string(tool.id))->deleted);
+  EXPECT_TRUE(store_->tools().find(to_string(tool.id))->deleted);
   EXPECT_EQ(store_->tools().shape(tool.id).value(), flag_);
   EXPECT_EQ(store_->tools().remove(tool.id).error().code, ErrorCode::not_found);
-  auto renamed = store_->tools().find(std::to_string(tool.id)).value();
+  auto renamed = store_->tools().find(to_string(tool.id)).value();
   EXPECT_EQ(store_->tools().update(renamed).error().code, ErrorCode::not_found);
   const auto next = store_->tools().create(named("Flag"), dots_).value();
   EXPECT_EQ(next.slug, "flag");
@@ -100,7 +100,7 @@ TEST_F(Tools, a_site_has_no_more_than_its_limit_however_many_ask_at_once) {
 TEST_F(Tools, the_answer_is_kept_with_what_it_answers_for) {
   const IdempotentResponse<Tool> answer{"key", [](const Tool& made) { return to_json(made); }};
   const auto tool = store_->tools().create(named("Flag"), flag_, answer).value();
-  EXPECT_EQ(store_->answers().find("key").value().value()["id"], tool.id);
+  EXPECT_EQ(store_->answers().find("key").value().value()["id"], tool.id.number());
   EXPECT_EQ(store_->tools().create(named("Flag"), flag_, answer).error().code, ErrorCode::conflict);
   EXPECT_EQ(store_->tools().all()->size(), 1u);
 }

@@ -38,10 +38,10 @@ class TrashOfAProject : public ::testing::Test {
     EXPECT_EQ(page.total, static_cast<std::int64_t>(names.size()));
     return names;
   }
-  TrashEntry entry(Kind kind, std::int64_t id) {
-    return trash_.entry(1, kind, id, 0, {Role::curator, days(30)}).value();
+  TrashEntry entry(Kind kind, auto id) {
+    return trash_.entry(1, kind, id.number(), 0, {Role::curator, days(30)}).value();
   }
-  TrashRestored restore(Kind kind, std::int64_t id) {
+  TrashRestored restore(Kind kind, auto id) {
     return trash_.restore(entry(kind, id), by<TrashRestored>("carl")).value();
   }
   std::int64_t count(const std::string& what) {
@@ -88,7 +88,7 @@ TEST_F(TrashOfAProject, a_layer_in_the_bin_is_there_for_nobody_and_comes_back_as
   ASSERT_TRUE(trash_.put_layer(layer.id, by<>("ada")));
   EXPECT_EQ(store_->layers().find(model_.id, "cracks", Role::owner).error().code,
             ErrorCode::not_found);
-  EXPECT_EQ(store_->layers().find(model_.id, std::to_string(layer.id), Role::owner).error().code,
+  EXPECT_EQ(store_->layers().find(model_.id, to_string(layer.id), Role::owner).error().code,
             ErrorCode::not_found);
   EXPECT_TRUE(store_->layers().of_model(model_.id, Role::owner)->empty());
   EXPECT_EQ(store_->journal().load_tiles(layer).error().code, ErrorCode::not_found);
@@ -139,7 +139,7 @@ TEST_F(TrashOfAProject, a_model_takes_all_along_and_brings_it_back) {
   const Comment written = store_->comments().create(comment).value();
   ASSERT_TRUE(trash_.put_model(model_.id, by<>("ada")));
   EXPECT_EQ(store_->models().find("pot").error().code, ErrorCode::not_found);
-  EXPECT_EQ(store_->models().find(std::to_string(model_.id)).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->models().find(to_string(model_.id)).error().code, ErrorCode::not_found);
   EXPECT_TRUE(store_->models().all()->empty());
   EXPECT_EQ(store_->layers().of_model(model_.id, Role::owner).error().code, ErrorCode::not_found);
   EXPECT_EQ(store_->layers().find(model_.id, "cracks", Role::owner).error().code,
@@ -180,10 +180,12 @@ TEST_F(TrashOfAProject, who_does_not_see_a_layer_sees_it_in_neither_bin_nor_acti
   ASSERT_TRUE(trash_.put_layer(secret.id, by<>("carl")));
   EXPECT_THAT(listed(), ::testing::ElementsAre("Graves", "Cracks"));
   EXPECT_THAT(listed(Role::annotator), ::testing::IsEmpty()) << "layers are for curators";
-  EXPECT_EQ(trash_.entry(1, Kind::layer, secret.id, 0, {Role::annotator, days(30)}).error().code,
-            ErrorCode::not_found);
-  EXPECT_EQ(trash_.entry(2, Kind::layer, secret.id, 0, {Role::owner, days(30)}).error().code,
-            ErrorCode::not_found)
+  EXPECT_EQ(
+      trash_.entry(1, Kind::layer, secret.id.number(), 0, {Role::annotator, days(30)}).error().code,
+      ErrorCode::not_found);
+  EXPECT_EQ(
+      trash_.entry(2, Kind::layer, secret.id.number(), 0, {Role::owner, days(30)}).error().code,
+      ErrorCode::not_found)
       << "of another project";
   const auto tells = [&](const std::string& name) {
     const auto page = store_->projects().activity(1, Role::viewer, {}).value();
@@ -228,16 +230,15 @@ TEST_F(TrashOfAProject, what_was_in_it_long_enough_is_erased_in_steps_and_nothin
   for (const Layer& layer : {old, fresh, kept}) paint(layer, 2);
   ASSERT_TRUE(trash_.put_layer(old.id, by<>("ada")));
   ASSERT_TRUE(trash_.put_layer(fresh.id, by<>("ada")));
-  run("UPDATE all_layers SET binned = now() - interval '31 days' WHERE id = " +
-      std::to_string(old.id));
+  run("UPDATE all_layers SET binned = now() - interval '31 days' WHERE id = " + to_string(old.id));
   run("UPDATE all_layers SET binned = now() - interval '29 days' WHERE id = " +
-      std::to_string(fresh.id));
+      to_string(fresh.id));
   ASSERT_TRUE(trash_.expire(days(30)));
   EXPECT_THAT(listed(), ::testing::ElementsAre("Fresh")) << "before its content is gone";
   EXPECT_GT(erase_all(), 2);
   EXPECT_EQ(count("all_layers"), 2);
   EXPECT_EQ(count("edits"), 4);
-  EXPECT_EQ(count("tile_revisions WHERE layer_id = " + std::to_string(old.id)), 0);
+  EXPECT_EQ(count("tile_revisions WHERE layer_id = " + to_string(old.id)), 0);
   EXPECT_FALSE(store_->journal().load_tiles(kept)->tiles.empty());
   restore(Kind::layer, fresh.id);
   EXPECT_FALSE(store_->journal().load_tiles(fresh)->tiles.empty());
@@ -280,13 +281,13 @@ TEST_F(TrashOfAProject, projects_and_tables_that_something_in_it_needs_are_kept)
               ::testing::HasSubstr("lies in the Bin"));
   EXPECT_THAT(store_->projects().remove(villa.id).error().detail,
               ::testing::HasSubstr("Bin still holds 1"));
-  ASSERT_TRUE(
-      trash_.erase(trash_.entry(villa.id, Kind::model, vase.id, 0, {Role::owner, days(30)}).value(),
-                   by<>("carl")));
+  ASSERT_TRUE(trash_.erase(
+      trash_.entry(villa.id, Kind::model, vase.id.number(), 0, {Role::owner, days(30)}).value(),
+      by<>("carl")));
   ASSERT_TRUE(trash_.erase(entry(Kind::layer, units.id), by<>("carl")));
   EXPECT_TRUE(store_->tables().remove(*units.table)) << "before all of it is erased";
   EXPECT_TRUE(store_->projects().remove(villa.id));
-  EXPECT_EQ(count("all_layers") + count("all_models WHERE id <> " + std::to_string(model_.id)), 0);
+  EXPECT_EQ(count("all_layers") + count("all_models WHERE id <> " + to_string(model_.id)), 0);
 }
 
 TEST_F(TrashOfAProject, a_layer_that_is_computed_from_one_in_the_bin_waits_for_it) {
@@ -318,7 +319,7 @@ TEST_F(TrashOfAProject, a_record_comes_back_with_its_key_and_values_once_they_fi
   weight.kind = ColumnKind::integer;
   table.columns = {name, weight};
   table = store_->tables().create(table).value();
-  const std::int64_t name_id = table.columns[0].id, weight_id = table.columns[1].id;
+  const ColumnId name_id = table.columns[0].id, weight_id = table.columns[1].id;
   const auto write = [&](const std::string& text) {
     WriteRecords asked;
     asked.records.resize(1);

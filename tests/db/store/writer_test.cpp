@@ -50,9 +50,9 @@ class Writer : public ::testing::Test {
 // is one group.
 class HeldModel {
  public:
-  HeldModel(const std::string& dsn, std::int64_t id)
+  HeldModel(const std::string& dsn, ModelId id)
       : connection_(std::move(PgConnection::connect(dsn).value())) {
-    EXPECT_TRUE(connection_.script("BEGIN; SELECT 1 FROM models WHERE id = " + std::to_string(id) +
+    EXPECT_TRUE(connection_.script("BEGIN; SELECT 1 FROM models WHERE id = " + to_string(id) +
                                    " FOR UPDATE"));
   }
   void wait_until_someone_waits() {

@@ -13,7 +13,7 @@ Table units() {
   table.name = "Units";
   const auto add = [&](const char* name, ColumnKind kind) {
     Column column;
-    column.id = static_cast<std::int64_t>(table.columns.size()) + 10;
+    column.id = ColumnId(static_cast<std::int64_t>(table.columns.size()) + 10);
     column.name = name;
     column.slug = name;
     column.kind = kind;
@@ -23,16 +23,19 @@ Table units() {
   add("depth", ColumnKind::numeric);
   add("above", ColumnKind::relation);
   table.columns[0].labels = {{"es", "Código"}};
-  table.columns[2].target = 1;
+  table.columns[2].target = TableId(1);
   return table;
 }
 
 TEST(RecordCsv, what_is_written_is_read_again_with_every_separator) {
   const Table table = units();
-  const std::vector<Record> records = {
-      {1, 3, {{10, "=SUM(A1); \"x\"\ny"}, {11, -1.5}, {12, {2, 4294967295}}}},
-      {4294967295, 1, {{11, 1e-7}}},
-      {7, 1, {}}};
+  const std::vector<Record> records = {{1,
+                                        3,
+                                        {{ColumnId(10), "=SUM(A1); \"x\"\ny"},
+                                         {ColumnId(11), -1.5},
+                                         {ColumnId(12), {2, 4294967295}}}},
+                                       {4294967295, 1, {{ColumnId(11), 1e-7}}},
+                                       {7, 1, {}}};
   for (const char separator : {',', ';', '\t'})
     for (const auto& measured :
          {MeasuredRecords{},

@@ -11,7 +11,7 @@ using Record = RecordEditLocks::Record;
 
 struct Editors : testing::Test {
   // What somebody who hears all of it knows: by project and record, who is there.
-  const RecordEditLocks::Tell tell = [this](std::int64_t project,
+  const RecordEditLocks::Tell tell = [this](ProjectId project,
                                             const std::vector<RecordEditLocks::Entry>& entries) {
     ++told;
     for (const auto& [record, editor] : entries) {
@@ -20,15 +20,13 @@ struct Editors : testing::Test {
     }
   };
   bool begin(const Record& record, const RecordEditLocks::Editor& editor, bool take_over = false,
-             std::int64_t project = 1) {
+             ProjectId project = 1) {
     return book.begin(project, record, editor, take_over, tell).has_value();
   }
-  std::string at(const Record& record, std::int64_t project = 1) {
-    return known[{project, record}];
-  }
+  std::string at(const Record& record, ProjectId project = 1) { return known[{project, record}]; }
 
   RecordEditLocks book;
-  std::map<std::pair<std::int64_t, Record>, std::string> known;
+  std::map<std::pair<ProjectId, Record>, std::string> known;
   int told = 0;
   const RecordEditLocks::Editor ada{random_uuid(), "ada"}, bea{random_uuid(), "bea"};
 };

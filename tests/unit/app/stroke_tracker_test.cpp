@@ -29,7 +29,7 @@ TEST_F(Book, a_batch_starts_where_the_one_before_ended) {
   const auto first = book.extend(kAnna, stroke, ids[0], 0, {{1, 1}, {2, 2}});
   ASSERT_TRUE(first);
   EXPECT_EQ(first->path, (Path{{1, 1}, {2, 2}}));
-  EXPECT_EQ(first->tool.layer_id, 3);
+  EXPECT_EQ(first->tool.layer_id, LayerId(3));
   const auto second = book.extend(kAnna, stroke, ids[1], 1, {{3, 3}});
   ASSERT_TRUE(second);
   EXPECT_EQ(second->path, (Path{{2, 2}, {3, 3}}));

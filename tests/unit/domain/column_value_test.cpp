@@ -16,7 +16,7 @@ Column column(ColumnKind kind) {
   made.slug = "column";
   made.kind = kind;
   if (kind == ColumnKind::enumeration) made.choices = {"good", "fair", "=bad"};
-  if (kind == ColumnKind::term || kind == ColumnKind::relation) made.target = 7;
+  if (kind == ColumnKind::term || kind == ColumnKind::relation) made.target = TableId(7);
   return made;
 }
 
@@ -173,7 +173,7 @@ TEST(ColumnValue, retyping_keeps_what_the_new_kind_can_hold) {
   EXPECT_EQ(converted(ColumnKind::text, ColumnKind::text, "'=x"), "'=x");
   EXPECT_EQ(converted(ColumnKind::text, ColumnKind::date, json()), json());
   Column elsewhere = column(ColumnKind::term);
-  elsewhere.target = 8;
+  elsewhere.target = TableId(8);
   EXPECT_FALSE(convert_value(column(ColumnKind::term), elsewhere, 5, "cell").has_value());
 }
 
@@ -199,7 +199,7 @@ TEST(ColumnValue, a_column_that_does_not_fit_together_is_refused_by_its_field) {
   EXPECT_EQ(changed(ColumnKind::enumeration, [](Column& c) { c.choices = {}; }), "choices");
   EXPECT_EQ(changed(ColumnKind::enumeration, [](Column& c) { c.choices = {"a", "a"}; }), "choices");
   EXPECT_EQ(changed(ColumnKind::term, [](Column& c) { c.target.reset(); }), "target");
-  EXPECT_EQ(changed(ColumnKind::date, [](Column& c) { c.target = 1; }), "target");
+  EXPECT_EQ(changed(ColumnKind::date, [](Column& c) { c.target = TableId(1); }), "target");
   EXPECT_EQ(changed(ColumnKind::relation, [](Column& c) { c.unique = true; }), "unique");
   EXPECT_EQ(changed(ColumnKind::boolean, [](Column& c) { c.unique = true; }), "unique");
   EXPECT_EQ(changed(ColumnKind::text, [](Column& c) { c.unique = true, c.default_value = "a"; }),
@@ -221,11 +221,11 @@ TEST(ColumnValue, a_record_tells_every_column) {
   Column first = column(ColumnKind::text), second = column(ColumnKind::integer);
   second.id = 4;
   second.slug = "second";
-  const Record record{12, 3, {{4, 7}}};
+  const Record record{12, 3, {{ColumnId(4), 7}}};
   EXPECT_EQ(to_json(record, {first, second}),
             json({{"key", 12}, {"version", 3}, {"values", {{"column", nullptr}, {"second", 7}}}}));
   EXPECT_EQ(find_column({first, second}, "4")->slug, "second");
-  EXPECT_EQ(find_column({first, second}, "column")->id, 3);
+  EXPECT_EQ(find_column({first, second}, "column")->id, ColumnId(3));
   EXPECT_EQ(find_column({first, second}, "none"), nullptr);
 }
 

@@ -54,24 +54,25 @@ double difference(const Color& a, const Color& b) {
 
 TEST(PersonColor, white_letters_are_legible_on_each) {
   EXPECT_GE(contrast_with_white(kNobodysColor), 4.5);
-  for (int id = 1; id <= 12; ++id)
-    EXPECT_GE(contrast_with_white(person_color(id)), 4.5) << person_color(id);
+  for (std::int64_t id = 1; id <= 12; ++id)
+    EXPECT_GE(contrast_with_white(person_color(PersonId(id))), 4.5) << person_color(PersonId(id));
 }
 
 TEST(PersonColor, accounts_that_follow_each_other_differ) {
-  for (int a = 1; a <= 12; ++a)
-    for (int b = 1; b < a; ++b) {
-      const Color x = linear(person_color(a)), y = linear(person_color(b));
-      EXPECT_GE(difference(x, y), 14) << person_color(a) << " " << person_color(b);
+  for (std::int64_t a = 1; a <= 12; ++a)
+    for (std::int64_t b = 1; b < a; ++b) {
+      const Color x = linear(person_color(PersonId(a))), y = linear(person_color(PersonId(b)));
+      EXPECT_GE(difference(x, y), 14)
+          << person_color(PersonId(a)) << " " << person_color(PersonId(b));
       EXPECT_GE(difference(without_green(x), without_green(y)), 14)
-          << person_color(a) << " " << person_color(b);
+          << person_color(PersonId(a)) << " " << person_color(PersonId(b));
     }
 }
 
 TEST(PersonColor, every_number_has_a_colour_always_the_same) {
   EXPECT_EQ(person_color(13), person_color(1));
   for (const std::int64_t id : {std::int64_t{0}, std::int64_t{-7}, INT64_MAX, INT64_MIN + 1})
-    EXPECT_EQ(person_color(id).size(), 7U);
+    EXPECT_EQ(person_color(PersonId(id)).size(), 7U);
 }
 
 }  // namespace

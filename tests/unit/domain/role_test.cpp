@@ -15,7 +15,7 @@ TEST(Role, names_read_back_and_ascend) {
 }
 
 TEST(Roles, of_two_the_higher_one_counts) {
-  const Roles roles{Role::annotator, {{1, Role::viewer}, {2, Role::curator}}};
+  const Roles roles{Role::annotator, {{ProjectId(1), Role::viewer}, {ProjectId(2), Role::curator}}};
   EXPECT_EQ(roles.in(1), Role::annotator);
   EXPECT_EQ(roles.in(2), Role::curator);
   EXPECT_EQ(roles.in(3), Role::annotator);
@@ -24,9 +24,9 @@ TEST(Roles, of_two_the_higher_one_counts) {
 }
 
 TEST(Roles, a_cap_holds_in_every_project) {
-  const Roles roles{Role::annotator, {{1, Role::viewer}, {2, Role::curator}}};
+  const Roles roles{Role::annotator, {{ProjectId(1), Role::viewer}, {ProjectId(2), Role::curator}}};
   EXPECT_EQ(roles.at_most(Role::viewer),
-            (Roles{Role::viewer, {{1, Role::viewer}, {2, Role::viewer}}}));
+            (Roles{Role::viewer, {{ProjectId(1), Role::viewer}, {ProjectId(2), Role::viewer}}}));
   EXPECT_EQ(roles.at_most(Role::owner), roles);
 }
 

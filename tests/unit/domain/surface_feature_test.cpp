@@ -29,7 +29,7 @@ TEST(SurfaceFeature, what_is_written_is_read_again_as_json_and_as_text) {
     const bool lines = round % 2 == 0;
     std::vector<SurfaceFeature> features(1 + random() % 4);
     for (SurfaceFeature& feature : features) {
-      feature.model = 1 + static_cast<std::int64_t>(random() % 1000);
+      feature.model = ModelId(1 + static_cast<std::int64_t>(random() % 1000));
       feature.places.resize(lines ? 2 + random() % 5 : 1);
       for (auto& place : feature.places) place = {number(), number(), number()};
     }

@@ -6,7 +6,7 @@
 namespace strata {
 namespace {
 
-Column column(std::int64_t id, ColumnKind kind, bool required = false, bool unique = false) {
+Column column(ColumnId id, ColumnKind kind, bool required = false, bool unique = false) {
   Column made;
   made.id = id;
   made.kind = kind;
@@ -15,12 +15,12 @@ Column column(std::int64_t id, ColumnKind kind, bool required = false, bool uniq
   return made;
 }
 
-std::int64_t title_of(std::vector<Column> columns, std::optional<std::int64_t> chosen = {}) {
+ColumnId title_of(std::vector<Column> columns, std::optional<ColumnId> chosen = {}) {
   Table table;
   table.columns = std::move(columns);
   table.title_column = chosen;
   const Column* found = name_column(table);
-  return found ? found->id : 0;
+  return found ? found->id : ColumnId();
 }
 
 TEST(NameColumn, is_the_chosen_one_or_the_one_that_tells_records_apart_best) {
@@ -31,12 +31,12 @@ TEST(NameColumn, is_the_chosen_one_or_the_one_that_tells_records_apart_best) {
   EXPECT_EQ(title_of({note, code, term}), code.id);
   EXPECT_EQ(title_of({note, code, term}, term.id), term.id);
   EXPECT_EQ(title_of({cut, code}, cut.id), code.id) << "a line is no name";
-  EXPECT_EQ(title_of({note, code}, 77), code.id) << "one that was dropped";
+  EXPECT_EQ(title_of({note, code}, ColumnId(77)), code.id) << "one that was dropped";
   EXPECT_EQ(title_of({term, note}), term.id) << "what it is of, and not who made it";
   EXPECT_EQ(title_of({term, code}), code.id);
   EXPECT_EQ(title_of({note, term}), note.id);
   EXPECT_EQ(title_of({number, cut}), number.id);
-  EXPECT_EQ(title_of({cut}), 0);
+  EXPECT_EQ(title_of({cut}), ColumnId());
 }
 
 }  // namespace

@@ -16,7 +16,7 @@
 namespace strata::jobs {
 namespace {
 
-JobStatus wait_until_over(const JobQueue& queue, std::int64_t id) {
+JobStatus wait_until_over(const JobQueue& queue, JobId id) {
   for (int i = 0; i < 6000; ++i) {
     const auto status = queue.status(id);
     if (!status || (status->state != JobState::queued && status->state != JobState::running))
@@ -36,19 +36,19 @@ struct Gate {
       progress.report(0.25, "Waiting at the gate");
       entered.set_value();
       open.wait();
-      return 1;
+      return ModelId(1);
     };
   }
 };
 
 TEST(JobsQueue, a_job_that_ends_names_its_model) {
   JobQueue queue;
-  const auto id = queue.add(1, [](Progress&) -> Result<JobResult> { return 42; });
+  const auto id = queue.add(1, [](Progress&) -> Result<JobResult> { return ModelId(42); });
   ASSERT_TRUE(id);
   const auto status = wait_until_over(queue, *id);
   EXPECT_EQ(status.state, JobState::done);
   ASSERT_TRUE(status.result);
-  EXPECT_EQ(status.result->model, 42);
+  EXPECT_EQ(status.result->model, ModelId(42));
   EXPECT_EQ(status.progress, 1);
   EXPECT_FALSE(status.problem);
 }
@@ -70,7 +70,7 @@ TEST(JobsQueue, a_job_that_throws_fails_and_the_next_one_runs) {
   const auto bad =
       queue.add(1, [](Progress&) -> Result<JobResult> { throw std::runtime_error("planted"); });
   const auto huge = queue.add(1, [](Progress&) -> Result<JobResult> { throw std::bad_alloc(); });
-  const auto good = queue.add(1, [](Progress&) -> Result<JobResult> { return 7; });
+  const auto good = queue.add(1, [](Progress&) -> Result<JobResult> { return ModelId(7); });
   EXPECT_EQ(wait_until_over(queue, *bad).problem->code, ErrorCode::internal);
   EXPECT_EQ(wait_until_over(queue, *huge).problem->code, ErrorCode::out_of_memory);
   EXPECT_EQ(wait_until_over(queue, *good).state, JobState::done);
@@ -80,13 +80,13 @@ TEST(JobsQueue, jobs_run_one_at_a_time_in_the_order_of_asking) {
   JobQueue queue;
   std::vector<int> order;
   std::atomic<int> running{0};
-  std::int64_t last = 0;
+  JobId last;
   for (int i = 0; i < 20; ++i)
     last = *queue.add(1, [&, i](Progress&) -> Result<JobResult> {
       EXPECT_EQ(++running, 1);
       order.push_back(i);
       --running;
-      return i;
+      return ModelId(std::int64_t{i});
     });
   wait_until_over(queue, last);
   ASSERT_EQ(order.size(), 20u);
@@ -114,8 +114,8 @@ TEST(JobsQueue, more_than_64_waiting_jobs_are_refused) {
   ASSERT_TRUE(queue.add(1, gate.work()));
   gate.entered.get_future().wait();
   for (int i = 0; i < 64; ++i)
-    EXPECT_TRUE(queue.add(1, [](Progress&) -> Result<JobResult> { return 1; }));
-  const auto refused = queue.add(1, [](Progress&) -> Result<JobResult> { return 1; });
+    EXPECT_TRUE(queue.add(1, [](Progress&) -> Result<JobResult> { return ModelId(1); }));
+  const auto refused = queue.add(1, [](Progress&) -> Result<JobResult> { return ModelId(1); });
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::busy);
   gate.opened.set_value();
@@ -129,13 +129,13 @@ TEST(JobsQueue, a_waiting_job_that_is_cancelled_never_runs) {
   std::atomic<bool> ran{false};
   const auto id = queue.add(1, [&](Progress&) -> Result<JobResult> {
     ran = true;
-    return 1;
+    return ModelId(1);
   });
   EXPECT_TRUE(queue.cancel(*id));
   EXPECT_EQ(queue.status(*id)->state, JobState::cancelled);
   EXPECT_FALSE(queue.cancel(*id)) << "it is over";
   gate.opened.set_value();
-  const auto after = queue.add(1, [](Progress&) -> Result<JobResult> { return 1; });
+  const auto after = queue.add(1, [](Progress&) -> Result<JobResult> { return ModelId(1); });
   wait_until_over(queue, *after);
   EXPECT_FALSE(ran);
 }
@@ -171,9 +171,9 @@ TEST(JobsQueue, ending_the_queue_cancels_what_runs) {
 
 TEST(JobsQueue, the_newest_thousand_are_remembered) {
   JobQueue queue;
-  std::int64_t last = 0;
+  JobId last;
   for (int i = 0; i < 1200; ++i) {
-    const auto id = queue.add(1, [](Progress&) -> Result<JobResult> { return 1; });
+    const auto id = queue.add(1, [](Progress&) -> Result<JobResult> { return ModelId(1); });
     if (id) last = *id;
     if (!id || i % 50 == 0) wait_until_over(queue, last);
   }
@@ -211,7 +211,7 @@ TEST(JobsQueue, what_a_job_freed_in_small_pieces_is_given_back_to_the_system) {
     }
     most = resident_mb();
     last->push_back(std::move(pieces.back()));
-    return 1;
+    return ModelId(1);
   });
   wait_until_over(queue, *id);
   EXPECT_GT(most, before + 300);

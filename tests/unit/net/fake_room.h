@@ -67,20 +67,18 @@ class FakeLayers final : public room::Layers {
                       const store::IdempotentResponse<Layer>&) override {
     return layer;
   }
-  Result<void> erase(std::int64_t, const store::IdempotentResponse<>&) override { return {}; }
-  Result<void> put_in_trash(std::int64_t, const store::IdempotentResponse<>&) override {
-    return {};
-  }
+  Result<void> erase(LayerId, const store::IdempotentResponse<>&) override { return {}; }
+  Result<void> put_in_trash(LayerId, const store::IdempotentResponse<>&) override { return {}; }
   Result<store::TrashRestored> restore(
       const store::TrashEntry& entry,
       const store::IdempotentResponse<store::TrashRestored>&) override {
     return store::TrashRestored{entry, {}, {}};
   }
-  Result<Layer> mark_computed(std::int64_t, const std::string&, std::int64_t,
-                              const std::map<std::int64_t, std::int64_t>&) override {
+  Result<Layer> mark_computed(LayerId, const std::string&, std::int64_t,
+                              const std::map<TableId, std::int64_t>&) override {
     return fail(ErrorCode::internal, "Not here", "");
   }
-  void records_changed(std::int64_t) override {}
+  void records_changed(TableId) override {}
   Result<void> check_expression(const Expression&, const std::string&, Visibility) const override {
     return {};
   }
@@ -97,7 +95,7 @@ class FakeEdits final : public room::Edits {
   std::int64_t sequence() const override { return 0; }
   std::int64_t durable_sequence() const override { return 0; }
   room::DurableState durable_state() const override { return {}; }
-  Result<void> keep_sums(std::int64_t) override { return {}; }
+  Result<void> keep_sums(LayerId) override { return {}; }
 
   struct Held {
     room::EditRequest request;
@@ -171,7 +169,7 @@ class FakeSurfaceImages final : public room::SurfaceImages {
                               const store::IdempotentResponse<SurfaceImage>&) override {
     return image;
   }
-  Result<void> erase(std::int64_t, const store::IdempotentResponse<>&) override { return {}; }
+  Result<void> erase(SurfaceImageId, const store::IdempotentResponse<>&) override { return {}; }
 
  private:
   const SurfaceImage image_{9, 1,   "UV light",           "uv-light", "",    "image/png", 16,

@@ -52,7 +52,7 @@ struct Live : testing::Test {
     shared->queries = std::make_shared<WorkerPool>(1, 16);
     shared->sockets = std::make_shared<LiveSockets>();
     shared->editors = std::make_shared<app::RecordEditLocks>();
-    shared->check_record = [](std::int64_t project_id,
+    shared->check_record = [](ProjectId project_id,
                               const app::RecordEditLocks::Record& record) -> Result<void> {
       if (project_id == 1 && record.table == 4) return {};
       return fail(ErrorCode::not_found, "No such table", "There is none.", "table");

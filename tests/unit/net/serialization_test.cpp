@@ -56,7 +56,7 @@ TEST(Wire, a_stroke_becomes_an_edit_of_the_layer) {
   EXPECT_EQ(request->id, id);
   EXPECT_EQ(request->author.user, "anna");
   EXPECT_EQ(request->author.role, Role::annotator);
-  EXPECT_EQ(request->layer_id, 5);
+  EXPECT_EQ(request->layer_id, LayerId(5));
   const auto& edit = std::get<room::StrokeEdit>(request->edit);
   EXPECT_EQ(edit.stroke, id);
   EXPECT_EQ(edit.batch.value_bits, 7u);

@@ -266,7 +266,7 @@ class List : public testing::Test {
     const std::string languages[] = {"es"};
     table.columns = new_term_columns(languages);
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
-      table.columns[i].id = static_cast<std::int64_t>(i) + 1;
+      table.columns[i].id = ColumnId(static_cast<std::int64_t>(i) + 1);
       if (table.columns[i].target == kOwnTable) table.columns[i].target = table.id;
     }
   }
@@ -299,7 +299,7 @@ TEST_F(List, a_table_is_a_list_of_terms_by_its_columns) {
   EXPECT_FALSE(term_columns(other));
   other = table;
   for (Column& column : other.columns)
-    if (column.slug == "parent") column.target = 8;
+    if (column.slug == "parent") column.target = TableId(8);
   EXPECT_FALSE(term_columns(other));
 }
 

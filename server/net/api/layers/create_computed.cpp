@@ -73,8 +73,8 @@ Result<Response> create_formula_layer(const RouteContext& context, JobIdempotenc
     layers.take_back();
     return tl::unexpected(shown.error());
   }
-  return answer(STRATA_TRY(context.store.layers().find(
-      room->model().id, std::to_string(layers.ids().front()), Role::owner)));
+  return answer(STRATA_TRY(
+      context.store.layers().find(room->model().id, to_string(layers.ids().front()), Role::owner)));
 }
 
 }  // namespace strata::net

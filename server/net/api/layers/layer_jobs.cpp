@@ -59,8 +59,8 @@ Result<Response> repeat_layer_job(const RouteContext& context, JobIdempotency& b
                                   const Request& request, const nlohmann::json& kept) {
   auto known = STRATA_TRY(book.find(request));
   if (known) return job_response(context, *known);
-  jobs::JobResult result(kept.at("model").get<std::int64_t>());
-  result.layers = kept.at("layers").get<std::vector<std::int64_t>>();
+  jobs::JobResult result(kept.at("model").get<ModelId>());
+  result.layers = kept.at("layers").get<std::vector<LayerId>>();
   result.report = kept.at("report");
   const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
   auto job = STRATA_TRY(book.finished(request, model.project_id, std::move(result)));

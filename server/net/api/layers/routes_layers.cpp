@@ -36,7 +36,7 @@ Result<Response> list_layers(const RouteContext& context, const Request& request
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(layers.size());
   const auto part = STRATA_TRY(slice_by(page, layers, [](const Layer& layer) {
-    return NumberKey{layer.order, layer.id};
+    return NumberKey{layer.order, layer.id.number()};
   }));
   for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(layers[i]));
   Response response = json_response({{"layers", list}, {"total", total}});

@@ -59,7 +59,7 @@ Handler painting(const RouteContext& context, std::string op, Paint paint) {
     for (const auto& [name, value] : request.query) edit.record[name] = value;
     edit.edit = room::ImportEdit{std::move(painted->tiles), true};
     // With the names that the map brought.
-    const auto named = (*room)->layers().find(std::to_string(layer->id));
+    const auto named = (*room)->layers().find(to_string(layer->id));
     if (!named) return respond(named.error());
     if (auto made = app::records_from_legend(context, *named, room::painted_by(*named, edit),
                                              request.author());

@@ -187,8 +187,7 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
       if (!found) return tl::unexpected(found.error());
       records_at = *found;
     }
-    const auto table =
-        context.store.tables().find(std::to_string(*asked.layer.table), request.role());
+    const auto table = context.store.tables().find(to_string(*asked.layer.table), request.role());
     if (!table) return tl::unexpected(table.error());
     auto marked = features_of(context, *table, request.role(), asked.room->model(), records_at);
     if (!marked) return tl::unexpected(marked.error());
@@ -222,13 +221,13 @@ struct OfLayer {
   std::map<std::int64_t, query::Quantity> of_key;
 };
 
-Result<std::vector<OfLayer>> of_layers(const RouteContext& context, std::int64_t table_id,
+Result<std::vector<OfLayer>> of_layers(const RouteContext& context, TableId table_id,
                                        Role seen_by) {
   auto layers = STRATA_TRY(context.store.layers().of_table(table_id, seen_by));
   std::vector<OfLayer> found;
   for (Layer& layer : layers) {
     if (layer.sequence == 0) continue;  // nothing was ever painted there
-    auto room = STRATA_TRY(context.rooms.open(std::to_string(layer.model_id), seen_by));
+    auto room = STRATA_TRY(context.rooms.open(to_string(layer.model_id), seen_by));
     auto all = room->queries().quantities(layer.slug);
     if (!all && all.error().code == ErrorCode::not_found) continue;  // deleted meanwhile
     if (!all) return tl::unexpected(all.error());

@@ -108,8 +108,8 @@ Result<nlohmann::json> transfer(const RouteContext& context, room::Room& room,
     Layer layer = copy_of(*transferred.from, transferred.resolution, order++, request);
     layer.model_id = target.model.id;
     const nlohmann::json recipe{{"kind", "transfer"},
-                                {"model", std::to_string(request.source.id)},
-                                {"layer", std::to_string(transferred.from->id)},
+                                {"model", to_string(request.source.id)},
+                                {"layer", to_string(transferred.from->id)},
                                 {"tolerance_mm", request.tolerance_mm},
                                 {"max_angle", request.max_angle_degrees}};
     auto made = STRATA_TRY(layers.add(std::move(layer), std::move(transferred.tiles), recipe));

@@ -98,7 +98,7 @@ Result<void> read_labels(const RouteContext& context, const protocol::FigureLabe
     return fail(ErrorCode::invalid, "No records",
                 "The layer '" + layer->slug + "' is no database layer: nothing of it has a record.",
                 "labels.layer");
-  const auto table = context.store.tables().find(std::to_string(*layer->table), figure.role);
+  const auto table = context.store.tables().find(to_string(*layer->table), figure.role);
   if (!table) return tl::unexpected(table.error());
   const Column* column = find_column(table->columns, body.column);
   if (!column || holds_lists(column->kind))
@@ -129,7 +129,7 @@ Result<FigureRequest> read_figure_request(const RouteContext& context, const Req
       figure.layers.push_back(layer);
   room::sort_as_shown(figure.layers, figure.shown.shown);
   figure.shown.layers.emplace();
-  for (const Layer& layer : figure.layers) figure.shown.layers->push_back(std::to_string(layer.id));
+  for (const Layer& layer : figure.layers) figure.shown.layers->push_back(to_string(layer.id));
   if (at) {
     figure.shown.at = at;
   } else {

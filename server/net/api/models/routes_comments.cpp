@@ -13,6 +13,7 @@
 #include "net/api/annotated_routes.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
+#include "net/auth/project_authorization.h"
 #include "net/http/idempotency_store.h"
 #include "net/http/page.h"
 #include "net/live/comment_events.h"
@@ -90,16 +91,15 @@ void tell(const RouteContext& context, CommentEventEvent event, const Comment& c
           const People& people, const std::string& user) {
   protocol::CommentEvent message;
   message.event = event;
-  message.comment_id = comment.id;
+  message.comment_id = comment.id.number();
   message.comment = to_json(comment, people);
   message.user = user;
   context.live_sockets.tell_model(comment.model_id, comment.visibility, message);
 }
 
 Result<Comment> stored_comment(const RouteContext& context, const Request& request) {
-  const auto id = parse_integer(request.param("comment"), 1, INT64_MAX, "comment");
-  if (!id) return no_such("comment", request.param("comment"));
-  return context.store.comments().comment(*id, request.role());
+  const auto id = STRATA_TRY(id_of<CommentId>(request, "comment"));
+  return context.store.comments().comment(id, request.role());
 }
 
 Result<Response> list_comments(const RouteContext& context, const Request& request) {
@@ -180,7 +180,7 @@ Result<Response> write(const RouteContext& context, const Request& request,
   const auto people = STRATA_TRY(people_of(context, comment, request.user()));
   const auto answer = [&people](const Comment& made) {
     return json_response(to_json(made, people), 201)
-        .with("Location", "/api/v1/comments/" + std::to_string(made.id))
+        .with("Location", "/api/v1/comments/" + to_string(made.id))
         .with("ETag", etag_of(made.version));
   };
   const auto written =
@@ -229,10 +229,10 @@ Result<Response> change_comment(const RouteContext& context, const Request& requ
   }
   if (body.state) {
     if (comment.thread)
-      return fail(ErrorCode::invalid, "State of a reply",
-                  "The state is that of the thread: change comment " +
-                      std::to_string(*comment.thread) + ".",
-                  "state");
+      return fail(
+          ErrorCode::invalid, "State of a reply",
+          "The state is that of the thread: change comment " + to_string(*comment.thread) + ".",
+          "state");
     if (*body.state == protocol::CommentState::open)
       comment.resolved.reset();
     else if (!comment.resolved)
@@ -267,7 +267,7 @@ Result<Response> delete_comment(const RouteContext& context, const Request& requ
   for (const auto id : removal->gone) {
     protocol::CommentEvent message;
     message.event = CommentEventEvent::deleted;
-    message.comment_id = id;
+    message.comment_id = id.number();
     message.user = request.user();
     context.live_sockets.tell_model(removal->model_id, message);
   }
@@ -283,9 +283,8 @@ void tell_threads(const RouteContext& context, const Layer& layer, Visibility be
   all.limit = static_cast<int>(Comments::kMaxComments);
   const auto found = context.store.comments().of_model(layer.model_id, Role::owner, all);
   if (!found)
-    return log::warning("threads about layer " + std::to_string(layer.id) + ": " +
-                        found.error().detail);
-  std::set<std::int64_t> threads;
+    return log::warning("threads about layer " + to_string(layer.id) + ": " + found.error().detail);
+  std::set<CommentId> threads;
   for (const Comment& comment : found->comments)
     if (comment.layer_id == layer.id) threads.insert(comment.id);
   std::vector<std::string> names;
@@ -295,12 +294,12 @@ void tell_threads(const RouteContext& context, const Layer& layer, Visibility be
   }
   const auto people = People::load(context.store, names);
   if (!people)
-    return log::warning("threads about layer " + std::to_string(layer.id) + ": " +
+    return log::warning("threads about layer " + to_string(layer.id) + ": " +
                         people.error().detail);
   for (const Comment& comment : found->comments) {
     if (!threads.contains(comment.thread.value_or(comment.id))) continue;
     protocol::CommentEvent message;
-    message.comment_id = comment.id;
+    message.comment_id = comment.id.number();
     message.user = user;
     const bool is_seen_by_more = layer.visibility < before;
     message.event = is_seen_by_more ? CommentEventEvent::changed : CommentEventEvent::deleted;

@@ -138,7 +138,7 @@ Result<Response> repeat_import(const RouteContext& context, JobIdempotency& book
   if (known) return job_response(context, *known);
   const auto project =
       STRATA_TRY(context.store.projects().find(request.query_or("project", "default")));
-  auto job = STRATA_TRY(book.finished(request, project.id, kept.at("model").get<std::int64_t>()));
+  auto job = STRATA_TRY(book.finished(request, project.id, kept.at("model").get<ModelId>()));
   return job_response(context, job);
 }
 

@@ -16,8 +16,8 @@
 namespace strata::net {
 namespace {
 
-Result<std::string> project_slug(const RouteContext& context, std::int64_t project_id) {
-  auto project = STRATA_TRY(context.store.projects().find(std::to_string(project_id)));
+Result<std::string> project_slug(const RouteContext& context, ProjectId project_id) {
+  auto project = STRATA_TRY(context.store.projects().find(to_string(project_id)));
   return project.slug;
 }
 
@@ -30,9 +30,9 @@ Result<Response> model_answer(const RouteContext& context, const Request& reques
 Result<Response> list_models(const RouteContext& context, const Request& request) {
   auto page = STRATA_TRY(page_of(request));
   auto projects = STRATA_TRY(context.store.projects().all());
-  std::map<std::int64_t, std::string> slugs;
+  std::map<ProjectId, std::string> slugs;
   for (const auto& project : projects) slugs[project.id] = project.slug;
-  std::optional<std::int64_t> only;
+  std::optional<ProjectId> only;
   if (auto wanted = request.query.find("project"); wanted != request.query.end()) {
     STRATA_TRY(check_seen(context, request, wanted->second, "project"));
     auto project = STRATA_TRY(context.store.projects().find(wanted->second));
@@ -43,7 +43,8 @@ Result<Response> list_models(const RouteContext& context, const Request& request
                 [&](const Model& model) { return !request.principal->sees(model.project_id); });
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(models.size());
-  const auto part = slice_by(page, models, [](const Model& model) { return NumberKey{model.id}; });
+  const auto part =
+      slice_by(page, models, [](const Model& model) { return NumberKey{model.id.number()}; });
   if (!part) return tl::unexpected(part.error());
   for (std::size_t i = part->begin; i < part->end; ++i)
     list.push_back(to_json(models[i], slugs[models[i].project_id]));

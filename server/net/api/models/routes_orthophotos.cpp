@@ -141,8 +141,8 @@ Result<Response> repeat_orthophoto(const RouteContext& context, JobIdempotency& 
                                    const Request& request, const nlohmann::json& kept) {
   auto known = STRATA_TRY(book.find(request));
   if (known) return job_response(context, *known);
-  jobs::JobResult result(kept.at("model").get<std::int64_t>());
-  result.image = kept.at("look").get<std::int64_t>();
+  jobs::JobResult result(kept.at("model").get<ModelId>());
+  result.image = kept.at("look").get<SurfaceImageId>();
   const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
   auto job = STRATA_TRY(book.finished(request, model.project_id, std::move(result)));
   return job_response(context, job);

@@ -35,7 +35,7 @@ Result<Response> list_surface_images(const RouteContext& context, const Request&
   auto model = STRATA_TRY(context.store.models().find(request.param("model")));
   auto images = STRATA_TRY(context.store.surface_images().of_model(model.id));
   const auto part = STRATA_TRY(slice_by(page, images, [](const SurfaceImage& image) {
-    return NumberKey{image.order, image.id};
+    return NumberKey{image.order, image.id.number()};
   }));
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(images[i]));

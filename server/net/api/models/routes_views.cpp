@@ -71,7 +71,7 @@ void tell(const RouteContext& context, ViewEventEvent event, const NamedPart& vi
           const std::string& user) {
   protocol::ViewEvent message;
   message.event = event;
-  message.view = view.id;
+  message.view = view.id.number();
   message.user = user;
   context.live_sockets.tell_model(view.model_id, message);
 }

@@ -127,7 +127,7 @@ std::optional<std::string> text_of(
   return time ? std::optional(utc_text(*time)) : std::nullopt;
 }
 
-nlohmann::json session_json(const store::Token& token, std::int64_t current) {
+nlohmann::json session_json(const store::Token& token, TokenId current) {
   nlohmann::json json{{"id", token.id},
                       {"created", utc_text(token.created)},
                       {"expires", utc_text(token.expires.value_or(token.created))},
@@ -153,8 +153,8 @@ Result<Response> list_of(const RouteContext& context, const Request& request, To
                          const char* member, Write write) {
   const auto page = STRATA_TRY(page_of(request, kMaxPage));
   const auto tokens = STRATA_TRY(context.store.tokens().of_user(request.user(), kind));
-  const auto part =
-      slice_by(page, tokens, [](const store::Token& token) { return NumberKey{-token.id}; });
+  const auto part = slice_by(
+      page, tokens, [](const store::Token& token) { return NumberKey{-token.id.number()}; });
   if (!part) return tl::unexpected(part.error());
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(write(tokens[i]));
@@ -168,7 +168,7 @@ Result<Response> end_one(const RouteContext& context, const Request& request, To
   const auto id =
       parse_integer(request.param(param), 1, std::numeric_limits<std::int64_t>::max(), param);
   if (!id) return tl::unexpected(id.error());
-  STRATA_TRY(context.store.tokens().revoke(request.user(), kind, *id));
+  STRATA_TRY(context.store.tokens().revoke(request.user(), kind, TokenId(*id)));
   context.auth.forget();
   context.live_sockets.close_user(request.user(), kClosePolicy, "a session ended");
   return empty_response(204);
@@ -187,7 +187,7 @@ Result<Response> create_token(const RouteContext& context, const Request& reques
   const auto body = STRATA_TRY(body_of<protocol::ScriptTokenCreate>(request));
   Role own = request.principal->roles.highest();
   Role role = own;
-  std::optional<std::int64_t> only;
+  std::optional<ProjectId> only;
   if (body.project) {
     STRATA_TRY(check_seen(context, request, *body.project, "project"));
     auto project = context.store.projects().find(*body.project);

@@ -35,7 +35,7 @@ Result<Response> list_groups(const RouteContext& context, const Request& request
   const int total = static_cast<int>(groups.size());
   const auto part =
       STRATA_TRY(slice_by_name(page, groups, context.store, [](const store::Group& group) {
-        return store::NamedId{group.name, group.id};
+        return store::NamedId{group.name, group.id.number()};
       }));
   for (std::size_t i = part.begin; i < part.end; ++i) {
     const auto& [id, group, people, projects] = groups[i];
@@ -51,18 +51,18 @@ Result<Response> create_group(const RouteContext& context, const Request& reques
   const auto made = STRATA_TRY(
       context.store.groups().create(body.name, body.members.value_or(std::vector<std::string>())));
   return json_response(to_json(made), 201)
-      .with("Location", "/api/v1/groups/" + std::to_string(made.group.id));
+      .with("Location", "/api/v1/groups/" + to_string(made.group.id));
 }
 
 Result<Response> show_group(const RouteContext& context, const Request& request) {
-  const auto id = STRATA_TRY(id_of(request, "group"));
+  const auto id = STRATA_TRY(id_of<GroupId>(request, "group"));
   const auto group = STRATA_TRY(context.store.groups().group(id));
   return json_response(to_json(group));
 }
 
 Result<Response> change_group(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::GroupPatch>(request));
-  const auto id = STRATA_TRY(id_of(request, "group"));
+  const auto id = STRATA_TRY(id_of<GroupId>(request, "group"));
   const store::GroupChange change{body.name, body.add.value_or(std::vector<std::string>()),
                                   body.remove.value_or(std::vector<std::string>())};
   const auto changed = STRATA_TRY(context.store.groups().change(id, change, request.user()));
@@ -71,7 +71,7 @@ Result<Response> change_group(const RouteContext& context, const Request& reques
 }
 
 Result<Response> delete_group(const RouteContext& context, const Request& request) {
-  const auto id = STRATA_TRY(id_of(request, "group"));
+  const auto id = STRATA_TRY(id_of<GroupId>(request, "group"));
   const auto people = STRATA_TRY(context.store.groups().remove(id, request.user()));
   roles_changed(context, people);
   return empty_response(204);
@@ -80,7 +80,7 @@ Result<Response> delete_group(const RouteContext& context, const Request& reques
 Result<Response> put_role(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::MemberPut>(request));
   const auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
-  const auto id = STRATA_TRY(id_of(request, "group"));
+  const auto id = STRATA_TRY(id_of<GroupId>(request, "group"));
   const Role role = parse_role(protocol::name(body.role)).value_or(Role::viewer);
   const auto put = STRATA_TRY(context.store.groups().put(project.id, id, role, request.user()));
   roles_changed(context, put.people);
@@ -89,7 +89,7 @@ Result<Response> put_role(const RouteContext& context, const Request& request) {
 
 Result<Response> take_role(const RouteContext& context, const Request& request) {
   const auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
-  const auto id = STRATA_TRY(id_of(request, "group"));
+  const auto id = STRATA_TRY(id_of<GroupId>(request, "group"));
   const auto people = STRATA_TRY(context.store.groups().take(project.id, id, request.user()));
   roles_changed(context, people);
   return empty_response(204);

@@ -9,7 +9,7 @@ namespace {
 
 Result<jobs::JobStatus> find_job(const RouteContext& context, const Request& request) {
   auto id = parse_integer(request.param("job"), 1, INT64_MAX, "job");
-  auto status = id ? context.jobs.status(*id) : std::nullopt;
+  auto status = id ? context.jobs.status(JobId(*id)) : std::nullopt;
   if (!status)
     return fail(ErrorCode::not_found, "No such job",
                 "There is no job of this id, or it ended long ago.", "job");
@@ -40,25 +40,25 @@ bool is_over(const jobs::JobStatus& job) {
 }  // namespace
 
 void add_job_routes(Router& router, const RouteContext& context) {
-  router.add(
-      {.method = Method::get,
-       .pattern = "/api/v1/jobs",
-       .handler = answering([&context](const Request& request) -> Result<Response> {
-         auto page = STRATA_TRY(page_of(request));
-         auto all = context.jobs.all();
-         std::erase_if(all, [&](const auto& job) { return !request.principal->sees(job.project); });
-         nlohmann::json list = nlohmann::json::array();
-         const int total = static_cast<int>(all.size());
-         const auto part =
-             STRATA_TRY(slice_by(page, all, [](const auto& job) { return NumberKey{-job.id}; }));
-         for (std::size_t i = part.begin; i < part.end; ++i)
-           list.push_back(job_json(all[i], *request.principal));
-         Response response = json_response({{"jobs", list}, {"total", total}});
-         add_page_links(response, request, page, part.last);
-         return response;
-       }),
-       .role = Role::guest,
-       .query = {"limit", "offset", "after"}});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/jobs",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto page = STRATA_TRY(page_of(request));
+                auto all = context.jobs.all();
+                std::erase_if(
+                    all, [&](const auto& job) { return !request.principal->sees(job.project); });
+                nlohmann::json list = nlohmann::json::array();
+                const int total = static_cast<int>(all.size());
+                const auto part = STRATA_TRY(slice_by(
+                    page, all, [](const auto& job) { return NumberKey{-job.id.number()}; }));
+                for (std::size_t i = part.begin; i < part.end; ++i)
+                  list.push_back(job_json(all[i], *request.principal));
+                Response response = json_response({{"jobs", list}, {"total", total}});
+                add_page_links(response, request, page, part.last);
+                return response;
+              }),
+              .role = Role::guest,
+              .query = {"limit", "offset", "after"}});
   router.add({.method = Method::get,
               .pattern = "/api/v1/jobs/{job}",
               .handler = answering([&context](const Request& request) -> Result<Response> {

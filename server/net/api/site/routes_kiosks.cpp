@@ -20,10 +20,10 @@
 
 namespace strata::net {
 
-void end_kiosks(const RouteContext& context, const std::vector<std::int64_t>& kiosks,
+void end_kiosks(const RouteContext& context, const std::vector<KioskId>& kiosks,
                 const std::string& reason) {
   context.auth.forget();
-  for (const std::int64_t id : kiosks)
+  for (const KioskId id : kiosks)
     context.live_sockets.close_user(kiosk_name(id), kClosePolicy, reason);
 }
 
@@ -51,7 +51,7 @@ nlohmann::json to_json(const Kiosk& kiosk) {
 Result<Response> list_kiosks(const RouteContext& context, const Request& request) {
   const auto page = STRATA_TRY(page_of(request));
   const Roles& roles = request.principal->roles;
-  std::optional<std::vector<std::int64_t>> projects;
+  std::optional<std::vector<ProjectId>> projects;
   if (roles.everywhere < Role::curator) {
     projects.emplace();
     for (const auto& [project, role] : roles.in_projects)
@@ -77,19 +77,19 @@ Result<Response> create_kiosk(const RouteContext& context, const Request& reques
   const auto made =
       STRATA_TRY(context.store.kiosks().create(tour.id, body.name, request.user(), lifetime));
   return json_response({{"path", "/kiosk/" + made.secret}, {"kiosk", to_json(made.kiosk)}}, 201)
-      .with("Location", "/api/v1/kiosks/" + std::to_string(made.kiosk.id))
+      .with("Location", "/api/v1/kiosks/" + to_string(made.kiosk.id))
       .with("Cache-Control", "no-store");
 }
 
 Result<Response> revoke_kiosk(const RouteContext& context, const Request& request) {
-  const auto id = STRATA_TRY(id_of(request, "kiosk"));
+  const auto id = STRATA_TRY(id_of<KioskId>(request, "kiosk"));
   STRATA_TRY(context.store.kiosks().revoke(id));
   end_kiosks(context, {id}, "the link was revoked");
   return empty_response(204);
 }
 
 Result<Response> reload_kiosk(const RouteContext& context, const Request& request) {
-  const auto id = STRATA_TRY(id_of(request, "kiosk"));
+  const auto id = STRATA_TRY(id_of<KioskId>(request, "kiosk"));
   const auto kiosk = STRATA_TRY(context.store.kiosks().ask_reload(id));
   return json_response(to_json(kiosk));
 }
@@ -98,7 +98,7 @@ Result<Response> reload_kiosk(const RouteContext& context, const Request& reques
 
 Result<Response> self(const RouteContext& context, const Kiosk& kiosk, bool wants_reload) {
   const auto tour =
-      STRATA_TRY(context.store.tours().find(kiosk.model_id, std::to_string(kiosk.tour_id)));
+      STRATA_TRY(context.store.tours().find(kiosk.model_id, to_string(kiosk.tour_id)));
   auto told = STRATA_TRY(to_json(context, tour, Role::viewer, {}));
   nlohmann::json json{{"id", kiosk.id},           {"name", kiosk.name},
                       {"project", kiosk.project}, {"model", kiosk.model},

@@ -43,7 +43,7 @@ Result<Response> list_members(const RouteContext& context, const Request& reques
   const int total = static_cast<int>(members.size());
   const auto part =
       slice_by_name(page, members, context.store, [](const store::Membership& member) {
-        return store::NamedId{member.person.name, member.person.id};
+        return store::NamedId{member.person.name, member.person.id.number()};
       });
   if (!part) return tl::unexpected(part.error());
   for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json(members[i]));
@@ -59,13 +59,13 @@ Result<Response> list_people(const RouteContext& context, const Request& request
   const auto project = STRATA_TRY(project_of(context, request));
   const auto roles = STRATA_TRY(context.store.groups().people_with_role(project.id));
   auto people = STRATA_TRY(context.store.accounts().all());
-  const std::set<std::int64_t> with_role(roles.begin(), roles.end());
+  const std::set<PersonId> with_role(roles.begin(), roles.end());
   std::erase_if(people, [&](const store::Person& person) {
     return person.disabled || (person.role < Role::viewer && !with_role.contains(person.id));
   });
   const auto part =
       STRATA_TRY(slice_by_name(page, people, context.store, [](const store::Person& person) {
-        return store::NamedId{person.name, person.id};
+        return store::NamedId{person.name, person.id.number()};
       }));
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t i = part.begin; i < part.end; ++i) {

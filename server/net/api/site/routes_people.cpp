@@ -46,7 +46,7 @@ Result<Response> list_people(const RouteContext& context, const Request& request
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(people.size());
   const auto part = STRATA_TRY(slice_by_name(page, people, context.store, [](const Person& person) {
-    return store::NamedId{person.name, person.id};
+    return store::NamedId{person.name, person.id.number()};
   }));
   for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(people[i]));
   Response response = json_response({{"users", std::move(list)}, {"total", total}});
@@ -83,7 +83,7 @@ Result<Response> invite(const RouteContext& context, const Request& request) {
   const auto role = STRATA_TRY(usable_role(request, body.role, Role::viewer));
   const auto person = STRATA_TRY(context.store.accounts().create(
       body.user, body.full_name.value_or(""), role,
-      body.groups.value_or(std::vector<std::int64_t>()), request.user()));
+      ids_of<GroupId>(body.groups.value_or(std::vector<std::int64_t>())), request.user()));
   auto response = with_invitation(context, person, 201);
   if (response) response->with("Location", "/api/v1/users/" + percent_encode(person.name));
   return response;

@@ -13,9 +13,9 @@ namespace {
 
 // Where a role higher than the one everywhere is by groups, and not as high of the person's own,
 // these. A token may do less than they give.
-Result<std::map<std::int64_t, nlohmann::json>> groups_that_give(const RouteContext& context,
-                                                                const Principal& who) {
-  std::map<std::int64_t, nlohmann::json> groups;
+Result<std::map<ProjectId, nlohmann::json>> groups_that_give(const RouteContext& context,
+                                                             const Principal& who) {
+  std::map<ProjectId, nlohmann::json> groups;
   if (who.roles.in_projects.empty()) return groups;
   const auto given = STRATA_TRY(context.store.groups().roles_of(who.user));
   for (const store::GivenRole& role : given)
@@ -32,8 +32,8 @@ Result<Response> list_projects(const RouteContext& context, const Request& reque
   const auto groups = STRATA_TRY(groups_that_give(context, *request.principal));
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(projects.size());
-  const auto part =
-      slice_by(page, projects, [](const Project& project) { return NumberKey{project.id}; });
+  const auto part = slice_by(page, projects,
+                             [](const Project& project) { return NumberKey{project.id.number()}; });
   if (!part) return tl::unexpected(part.error());
   for (std::size_t i = part->begin; i < part->end; ++i) {
     const Project& project = projects[i];

@@ -98,7 +98,7 @@ void take_back(const RouteContext& context, const std::vector<Table>& tables) {
   for (auto table = tables.rbegin(); table != tables.rend(); ++table)
     if (auto gone = context.store.tables().remove(table->id);
         !gone && gone.error().code != ErrorCode::not_found)
-      log::warning("table " + std::to_string(table->id) +
+      log::warning("table " + to_string(table->id) +
                    " of a template that failed could not be removed: " + gone.error().detail);
 }
 
@@ -123,7 +123,7 @@ Result<std::vector<Layer>> make_layers(const RouteContext& context, const Reques
     for (Layer& layer : made) {
       if (layer.id == last.id)
         layer = last;
-      else if (auto shown = room->layers().find(std::to_string(layer.id)))
+      else if (auto shown = room->layers().find(to_string(layer.id)))
         layer = std::move(*shown);
     }
     return answer_with(tables, made);
@@ -131,7 +131,7 @@ Result<std::vector<Layer>> make_layers(const RouteContext& context, const Reques
   if (auto shown = layers.show(idempotent_response<Layer>(request, now)); !shown)
     return refuse(shown.error());
   for (Layer& layer : made)
-    if (auto shown = room->layers().find(std::to_string(layer.id))) layer = std::move(*shown);
+    if (auto shown = room->layers().find(to_string(layer.id))) layer = std::move(*shown);
   return made;
 }
 

@@ -25,7 +25,7 @@ using Event = protocol::ToolEventEvent;
 void tell_everyone(const RouteContext& context, Event event, const Tool& tool) {
   protocol::ToolEvent message;
   message.event = event;
-  message.tool_id = tool.id;
+  message.tool_id = tool.id.number();
   if (event != Event::deleted) message.tool = to_json(tool);
   context.live_sockets.tell_all(message);
 }
@@ -34,7 +34,7 @@ Result<Response> list_tools(const RouteContext& context, const Request& request)
   const auto page = STRATA_TRY(page_of(request, kMaxPage));
   auto tools = STRATA_TRY(context.store.tools().all());
   const auto part = STRATA_TRY(slice_by_name(page, tools, context.store, [](const Tool& tool) {
-    return store::NamedId{tool.name, tool.id};
+    return store::NamedId{tool.name, tool.id.number()};
   }));
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(tools[i]));

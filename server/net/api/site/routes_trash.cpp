@@ -37,7 +37,7 @@ store::Trash::Sight sight_of(const RouteContext& context, const Request& request
 nlohmann::json to_json(const TrashEntry& entry, std::chrono::days keep) {
   const std::string kind = name_of(entry.kind);
   const bool is_record = entry.kind == TrashEntry::Kind::record;
-  const std::string table = is_record ? "-" + std::to_string(entry.table_id) : std::string();
+  const std::string table = is_record ? "-" + to_string(entry.table_id) : std::string();
   nlohmann::json json{{"id", kind + table + "-" + std::to_string(entry.id)},
                       {"kind", kind},
                       {"name", entry.name},
@@ -75,7 +75,7 @@ Result<std::optional<store::Trash::Place>> trash_place(const Page& page) {
   const auto kind = place[1].get<std::int64_t>();
   if (kind < 0 || kind > static_cast<int>(TrashEntry::Kind::record)) return wrong_place();
   return store::Trash::Place{place[0].get<std::int64_t>(), static_cast<TrashEntry::Kind>(kind),
-                             place[2].get<std::int64_t>(), place[3].get<std::int64_t>()};
+                             place[2].get<TableId>(), place[3].get<std::int64_t>()};
 }
 
 Result<Response> list_trash(const RouteContext& context, const Request& request) {
@@ -128,7 +128,7 @@ Result<TrashEntry> find_entry(const RouteContext& context, const Request& reques
     const bool is_record = kind == TrashEntry::Kind::record;
     if (!numbers || numbers->size() != (is_record ? 2u : 1u)) break;
     return context.store.trash().entry(project.id, kind, numbers->back(),
-                                       is_record ? numbers->front() : 0,
+                                       TableId(is_record ? numbers->front() : 0),
                                        sight_of(context, request));
   }
   return fail(ErrorCode::not_found, "Not in the Bin",
@@ -150,7 +150,7 @@ Result<Response> restore(const RouteContext& context, const Request& request) {
     return restored ? Result<Response>(to_response(*restored)) : tl::unexpected(restored.error());
   }
   // Through the room: those who look at the model are told.
-  const auto room = STRATA_TRY(context.rooms.open(std::to_string(entry.model_id), request.role()));
+  const auto room = STRATA_TRY(context.rooms.open(to_string(entry.model_id), request.role()));
   const auto restored = room->layers().restore(entry, answer);
   return restored ? Result<Response>(to_response(*restored)) : tl::unexpected(restored.error());
 }

@@ -44,16 +44,16 @@ using Names = std::map<std::int64_t, std::set<std::string>>;
 
 Result<Names> attached_names(const RouteContext& context, const Author& who, const Table& table,
                              const std::vector<Record>& records) {
-  std::map<std::int64_t, std::vector<std::int64_t>> holders;
-  std::vector<std::int64_t> ids;
+  std::map<AttachmentId, std::vector<std::int64_t>> holders;
+  std::vector<AttachmentId> ids;
   for (const Record& record : records)
     for (const Column& column : table.columns) {
       if (!holds_attachments(column.kind)) continue;
       const auto cell = record.values.find(column.id);
       if (cell == record.values.end()) continue;
       for (const auto& id : cell->second) {
-        holders[id.get<std::int64_t>()].push_back(record.key);
-        ids.push_back(id.get<std::int64_t>());
+        holders[id.get<AttachmentId>()].push_back(record.key);
+        ids.push_back(id.get<AttachmentId>());
       }
     }
   auto found = STRATA_TRY(context.store.attachments().of_table(table.id, who, ids));

@@ -13,6 +13,7 @@
 #include "media/media_type.h"
 #include "media/picture.h"
 #include "media/thumbnail.h"
+#include "net/auth/project_authorization.h"
 #include "net/http/byte_range.h"
 #include "net/http/idempotency_store.h"
 #include "net/http/upload.h"
@@ -97,7 +98,7 @@ nlohmann::json list_json(const std::vector<Attachment>& attachments) {
 Result<Response> attach(const RouteContext& context, const Request& request) {
   auto key = STRATA_TRY(record_key(request));
   auto place = STRATA_TRY(record_place(context, request));
-  std::optional<std::int64_t> column_id;
+  std::optional<ColumnId> column_id;
   if (const std::string ref = request.query_or("column", {}); !ref.empty()) {
     const Column* column = find_column(place.table.columns, ref);
     if (!column)
@@ -126,7 +127,7 @@ Result<Response> attach(const RouteContext& context, const Request& request) {
     body["record"] =
         to_json(attached.change.records.front(), seen_by(attached.change.table, role).columns);
     return json_response(body, 201)
-        .with("Location", "/api/v1/attachments/" + std::to_string(attached.attachments.front().id))
+        .with("Location", "/api/v1/attachments/" + to_string(attached.attachments.front().id))
         .with("ETag", etag_of(attached.change.records.front().version));
   };
   auto attached = STRATA_TRY(context.store.attachments().attach(
@@ -147,15 +148,15 @@ Result<Response> list_attachments(const RouteContext& context, const Request& re
   }
   Table then;
   auto record = STRATA_TRY(stored_record(context, place.table, request.role(), key, at, &then));
-  std::vector<std::pair<std::int64_t, const Column*>> ids;
-  std::vector<std::int64_t> wanted;
+  std::vector<std::pair<AttachmentId, const Column*>> ids;
+  std::vector<AttachmentId> wanted;
   for (const Column& column : then.columns) {
     if (!holds_attachments(column.kind)) continue;
     const auto cell = record.values.find(column.id);
     if (cell == record.values.end()) continue;
     for (const auto& id : cell->second) {
-      ids.emplace_back(id.get<std::int64_t>(), &column);
-      wanted.push_back(id.get<std::int64_t>());
+      ids.emplace_back(id.get<AttachmentId>(), &column);
+      wanted.push_back(id.get<AttachmentId>());
     }
   }
   auto found = STRATA_TRY(context.store.attachments().of_table(then.id, request.author(), wanted));
@@ -172,10 +173,8 @@ Result<Response> list_attachments(const RouteContext& context, const Request& re
       .with("ETag", etag_of(record.version));
 }
 
-Result<std::int64_t> attachment_id(const Request& request) {
-  auto id = parse_integer(request.param("attachment"), 1, INT64_MAX, "attachment");
-  if (!id) return no_such("attachment", request.param("attachment"));
-  return id;
+Result<AttachmentId> attachment_id(const Request& request) {
+  return id_of<AttachmentId>(request, "attachment");
 }
 
 Result<int> thumbnail_side(const Request& request) {
@@ -299,7 +298,7 @@ Result<Response> change_attachment(const RouteContext& context, const Request& r
   const auto answer = [](const Attachment& now) { return json_response(to_json(now)); };
   auto now = STRATA_TRY(context.store.attachments().show(
       id, body.visibility, idempotent_response<Attachment>(request, answer)));
-  if (auto table = context.store.tables().find(std::to_string(now.table_id), Role::owner))
+  if (auto table = context.store.tables().find(to_string(now.table_id), Role::owner))
     tell_table(context.live_sockets, protocol::TableEventEvent::changed, *table, request.user());
   return answer(now);
 }

@@ -40,7 +40,7 @@ Result<Response> list_tables(const RouteContext& context, const Request& request
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(tables.size());
   const auto part = STRATA_TRY(slice_by_name(page, tables, context.store, [](const Table& table) {
-    return store::NamedId{table.name, table.id};
+    return store::NamedId{table.name, table.id.number()};
   }));
   for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(tables[i]));
   Response response = json_response({{"tables", list}, {"total", total}});
@@ -120,7 +120,7 @@ Result<const Column*> column_of(const Table& table, const Request& request) {
   return column;
 }
 
-nlohmann::json column_json(const TableChange& change, std::int64_t id) {
+nlohmann::json column_json(const TableChange& change, ColumnId id) {
   nlohmann::json json{{"sequence", change.sequence ? change.sequence : change.table.sequence}};
   for (const Column& column : change.table.columns)
     if (column.id == id) json["column"] = to_json(column);
@@ -133,7 +133,7 @@ Result<Response> list_columns(const RouteContext& context, const Request& reques
   const auto page = STRATA_TRY(page_of(request, kMaxPage));
   auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
   const auto part = STRATA_TRY(slice_by(page, table.columns, [](const Column& column) {
-    return NumberKey{column.order, column.id};
+    return NumberKey{column.order, column.id.number()};
   }));
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(table.columns[i]));
@@ -150,9 +150,9 @@ Result<Response> create_column(const RouteContext& context, const Request& reque
   auto column = STRATA_TRY(new_column(context.store, table.project_id, body));
   for (const Column& other : table.columns) column.order = std::max(column.order, other.order + 1);
   const auto answer = [](const TableChange& change) {
-    const std::int64_t id = change.record.at("column").get<std::int64_t>();
+    const ColumnId id = change.record.at("column").get<ColumnId>();
     return json_response(column_json(change, id), 201)
-        .with("Location", "/api/v1/tables/" + change.table.slug + "/columns/" + std::to_string(id))
+        .with("Location", "/api/v1/tables/" + change.table.slug + "/columns/" + to_string(id))
         .with("ETag", etag_of(change.table.version));
   };
   auto change = STRATA_TRY(context.store.tables().create_column(
@@ -385,7 +385,7 @@ Result<Response> areas(const RouteContext& context, const Request& request) {
   auto painted = STRATA_TRY(app::painted_layers(context, table.id, request.role()));
   struct Sum {
     CompensatedSum area_m2;
-    std::map<std::int64_t, std::pair<CompensatedSum, nlohmann::json>> models;
+    std::map<ModelId, std::pair<CompensatedSum, nlohmann::json>> models;
   };
   std::map<std::int64_t, Sum> sums;
   for (const app::PaintedLayer& layer : painted)
