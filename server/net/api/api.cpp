@@ -362,14 +362,13 @@ void Api::answer_read(const Request& request, const Route& route, const Respond&
     if (before && response.header("ETag").empty() && state_now() == before) {
       if (response.header("Vary").empty()) response.with("Vary", "Accept");
       response.with("ETag", *before);
-      return respond(names_tag(known_tags, *before) ? not_modified(std::move(response))
-                                                    : std::move(response));
+      return respond(names_tag(known_tags, *before) ? not_modified(response) : std::move(response));
     }
     const auto tag = tag_of_body(response);
     if (!tag) return respond(std::move(response));
     // For programs; a browser that several people use keeps no lists of people and sessions.
     response.with("ETag", *tag).with("Cache-Control", "private, no-store");
-    respond(names_tag(known_tags, *tag) ? not_modified(std::move(response)) : std::move(response));
+    respond(names_tag(known_tags, *tag) ? not_modified(response) : std::move(response));
   });
   route.handler(request, with_tag);
 }

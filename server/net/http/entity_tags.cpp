@@ -111,12 +111,11 @@ bool names_tag(std::string_view if_none_match, std::string_view etag) {
   return false;
 }
 
-Response not_modified(Response response) {
+Response not_modified(const Response& response) {
   Response unchanged = empty_response(304);
-  for (auto& [name, value] : response.headers) {
+  for (const auto& [name, value] : response.headers) {
     const std::string lower = to_lower(name);
-    if (!lower.starts_with("content-") && lower != "accept-ranges")
-      unchanged.with(std::move(name), std::move(value));
+    if (!lower.starts_with("content-") && lower != "accept-ranges") unchanged.with(name, value);
   }
   return unchanged;
 }

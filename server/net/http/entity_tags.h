@@ -17,7 +17,7 @@ struct RouteContext;
 bool names_tag(std::string_view if_none_match, std::string_view etag);
 
 // The answer that nothing changed. Of the headers those stay that describe more than a body.
-Response not_modified(Response response);
+Response not_modified(const Response& response);
 
 // Of an answer that was made: of its bytes. Nothing: it is sent as a file or while it is made, is
 // too large to be hashed on the way, must not be kept, or has a tag already.

@@ -22,9 +22,9 @@ std::string_view Request::header(std::string_view lower_case_name) const {
   return {};
 }
 
-std::string Request::query_or(const std::string& key, std::string fallback) const {
+std::string Request::query_or(const std::string& key, const std::string& fallback) const {
   auto found = query.find(key);
-  return found == query.end() ? std::move(fallback) : found->second;
+  return found == query.end() ? fallback : found->second;
 }
 
 Response& Response::with(std::string header_name, std::string value) {

@@ -73,7 +73,7 @@ struct Request {
 
   std::string_view header(std::string_view lower_case_name) const;  // empty when absent
   const std::string& param(const std::string& name) const { return params.at(name); }
-  std::string query_or(const std::string& name, std::string fallback) const;
+  std::string query_or(const std::string& name, const std::string& fallback) const;
   // routes that need a principal have one
   const std::string& user() const { return principal->user; }
   Role role() const { return principal->role; }                         // the same

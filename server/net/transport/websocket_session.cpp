@@ -249,7 +249,7 @@ void start_websocket(ConnectionStream stream, http::request<http::empty_body> re
       [session, request = std::move(request), entry = std::move(entry)]() mutable {
         return session->run(std::move(request), std::move(entry));
       },
-      [](std::exception_ptr failure) {
+      [](const std::exception_ptr& failure) {
         if (!failure) return;
         try {
           std::rethrow_exception(failure);

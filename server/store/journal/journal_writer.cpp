@@ -188,7 +188,7 @@ struct JournalWriter::Impl {
         continue;
       }
       auto to = STRATA_TRY(connected());
-      const auto committed = commit_entries(*to, std::span(&entry, 1));
+      auto committed = commit_entries(*to, std::span(&entry, 1));
       if (!committed && committed.error().transient) return committed;
       bool saved = committed.has_value();
       if (!saved) {

@@ -20,7 +20,7 @@ struct StoredTile {
 
 using Decoded = std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>>;
 
-Result<Decoded> decode(std::vector<StoredTile> tiles, ValueType type) {
+Result<Decoded> decode(const std::vector<StoredTile>& tiles, ValueType type) {
   Decoded decoded;
   for (const StoredTile& stored : tiles) {
     TileData tile(type);

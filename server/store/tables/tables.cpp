@@ -36,7 +36,7 @@ Result<TableChange> refused_by_records(Result<TableChange> change) {
 // named.
 Result<TableChange> retype(PgConnection& connection, OpenTable& open, const Column& old,
                            Column column, const std::string& user) {
-  auto made = STRATA_TRY(insert_column(connection, open, column));
+  auto made = STRATA_TRY(insert_column(connection, open, std::move(column)));
   open.all.push_back(made);
   TableEdit edit{user, "retype-column", {{"column", made.id}, {"from", old.id}}, {}, {}};
   edit.columns[old.id] = {{"hidden", true}};

@@ -76,7 +76,8 @@ class ActivityOfAProject : public ::testing::Test {
   void save() {
     JournalWriter writer(*store_, {});
     for (JournalEntry& entry : entries_)
-      ASSERT_TRUE(writer.submit(std::move(entry), [](Result<void> saved) { EXPECT_TRUE(saved); }));
+      ASSERT_TRUE(
+          writer.submit(std::move(entry), [](const Result<void>& saved) { EXPECT_TRUE(saved); }));
     writer.drain();
     entries_.clear();
   }
@@ -256,7 +257,8 @@ TEST_F(ActivityOfAProject, a_model_has_the_lines_of_the_tables_whose_records_lie
   for (ActivityQuery query{.model = model_.id, .limit = 1};;) {
     const ActivityPage part = page(query);
     for (const std::string& line : told(part)) read.push_back(line);
-    if (!(query.before = part.next)) break;
+    query.before = part.next;
+    if (!query.before) break;
   }
   EXPECT_EQ(read, told(page({.model = model_.id})));
 }

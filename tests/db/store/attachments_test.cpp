@@ -188,8 +188,8 @@ TEST_F(Attachments, cells_list_the_tables_own_files_and_pictures_only) {
   const json id = paper->attachments[0].id;
   EXPECT_EQ(patch(2, "photos", json({id})).error().code, ErrorCode::invalid)
       << "a PDF is no picture";
-  EXPECT_EQ(patch(2, "papers", json({4711})).error().code, ErrorCode::invalid);
-  EXPECT_EQ(patch(2, "papers", json({0})).error().code, ErrorCode::invalid);
+  EXPECT_EQ(patch(2, "papers", json::array({4711})).error().code, ErrorCode::invalid);
+  EXPECT_EQ(patch(2, "papers", json::array({0})).error().code, ErrorCode::invalid);
   EXPECT_EQ(patch(2, "papers", json("a.pdf")).error().code, ErrorCode::invalid);
   ASSERT_TRUE(patch(2, "papers", json({id, id})));
   EXPECT_EQ(cell(2, "papers"), json({id})) << "once";

@@ -331,7 +331,7 @@ class RandomFormula {
 
   std::string number(int depth) {
     if (depth == 0) return one_of({"a", "b", "c", "2", "0.5", "3", "0", "null"});
-    const std::string x = number(depth - 1), y = number(depth - 1);
+    std::string x = number(depth - 1), y = number(depth - 1);
     switch (random_() % 8) {
       case 0: return "(" + x + one_of({" + ", " - ", " * ", " / ", " div "}) + y + ")";
       case 1:

@@ -112,10 +112,8 @@ TEST(People, names_are_one_persons_in_any_case) {
 
 TEST(People, names_for_signing_in_are_plain) {
   auto store = test::fresh_store();
-  for (const std::string name : {"", "a b", "-a", "<b>", "ada/..",
-                                 "\xc3\xa4"
-                                 "da",
-                                 "\xe2\x84\xaairk", "\xff"})
+  for (const std::string name :
+       {"", "a b", "-a", "<b>", "ada/..", "äda", "\xe2\x84\xaairk", "\xff"})
     EXPECT_EQ(store->accounts().create(name, "", Role::viewer).error().code, ErrorCode::invalid)
         << name;
   EXPECT_EQ(store->accounts().create(std::string(65, 'x'), "", Role::viewer).error().code,

@@ -74,7 +74,7 @@ TEST_F(Writer, answers_come_in_the_order_of_submission_after_the_commit) {
   std::vector<int> order;
   auto reader = test::open_store(dsn_, 1);
   for (int i = 1; i <= 50; ++i)
-    ASSERT_TRUE(writer.submit(painter_.paint(i, 1, 4), [&, i](Result<void> result) {
+    ASSERT_TRUE(writer.submit(painter_.paint(i, 1, 4), [&, i](const Result<void>& result) {
       EXPECT_TRUE(result);
       EXPECT_GE(reader->journal().last_sequence(model_.id).value(), i);
       order.push_back(i);

@@ -45,8 +45,8 @@ struct Target {
 
 // Runs `paint` for the layer that the path names.
 template <class Paint>
-Handler painting(const RouteContext& context, std::string op, Paint paint) {
-  return [&context, op = std::move(op), paint](const Request& request, const Respond& respond) {
+Handler painting(const RouteContext& context, const std::string& op, Paint paint) {
+  return [&context, op, paint](const Request& request, const Respond& respond) {
     auto room = context.rooms.open(request.param("model"), request.role());
     if (!room) return respond(room.error());
     auto layer = (*room)->layers().find(request.param("layer"));

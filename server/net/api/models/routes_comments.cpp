@@ -323,7 +323,7 @@ void add_comment_routes(Router& router, const RouteContext& context) {
     const auto found = STRATA_TRY(stored_comment(of, request));
     nlohmann::json answer = to_json(found);
     STRATA_TRY(People::add_to(of.store, answer));
-    return with_etag(json_response(std::move(answer)), request, found.version);
+    return with_etag(json_response(answer), request, found.version);
   });
   routes.change(Method::patch, comment, change_comment);
   routes.change(Method::remove, comment, delete_comment);

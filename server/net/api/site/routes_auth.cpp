@@ -34,7 +34,7 @@ Result<Response> who_is_signed_in(const RouteContext& context, const std::string
                     {"role", std::string(name(role))},
                     {"has_password", person->has_password}};
   add_color(me, *person);
-  return json_response(std::move(me));
+  return json_response(me);
 }
 
 Result<Response> signed_in(const RouteContext& context, const Request& request,
@@ -218,8 +218,8 @@ Result<Response> create_token(const RouteContext& context, const Request& reques
 void add_auth_routes(Router& router, const RouteContext& context) {
   auto gate = std::make_shared<LoginThrottle>();
   // What people change of themselves.
-  const auto add = [&](Method method, std::string pattern, auto answer,
-                       std::vector<std::string> query = {}) {
+  const auto add = [&](Method method, const std::string& pattern, auto answer,
+                       const std::vector<std::string>& query = {}) {
     const bool has_body = method == Method::post || method == Method::patch;
     router.add({.method = method,
                 .pattern = std::move(pattern),

@@ -29,7 +29,7 @@ Response readiness(const RouteContext& context) {
 Response revalidated(Response response, const Request& request) {
   const auto tag = tag_of_body(response).value_or("");
   response.with("ETag", tag).with("Cache-Control", "no-cache");
-  return names_tag(request.header("if-none-match"), tag) ? not_modified(std::move(response))
+  return names_tag(request.header("if-none-match"), tag) ? not_modified(response)
                                                          : std::move(response);
 }
 

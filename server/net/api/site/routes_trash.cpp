@@ -63,7 +63,7 @@ Response to_response(const TrashRestored& restored) {
   if (entry.kind == TrashEntry::Kind::record) json["table"] = entry.table_id;
   if (!restored.slug.empty()) json["slug"] = restored.slug;
   if (!restored.former_slug.empty()) json["former_slug"] = restored.former_slug;
-  return json_response(std::move(json));
+  return json_response(json);
 }
 
 Result<std::optional<store::Trash::Place>> trash_place(const Page& page) {
