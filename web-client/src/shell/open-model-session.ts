@@ -6,25 +6,17 @@
 // kept to come back to, `tours` what curators make of views, `measuring` what is measured,
 // `figures` what is drawn to scale, `face` the one that is asked for. Elements subscribe and draw
 // themselves from their state; they change it only through their methods.
+// Long, because here alone each part is told what it may ask of the others.
 
-import type { Api, Versioned } from "../net/api";
+import type { Api } from "../net/api";
 import { ApiError } from "../net/api-error";
 import { Connection, type ConnectionState, type SavingState } from "../net/connection";
 import type { SocketLike } from "../net/socket";
-import type { Point } from "../net/stroke";
 import type { FrameMessage } from "../net/frame-header";
 import type { GestureHandler, PointerSample } from "../ui/input";
-import type {
-  Background,
-  LayerEvent,
-  ModelEvent,
-  Picked,
-  ProblemMessage,
-  Welcome,
-} from "../core/protocol.gen";
+import type { Background, ModelEvent, ProblemMessage, Welcome } from "../core/protocol.gen";
 import {
   completeLayer,
-  isAsComputed,
   mayCurate,
   mayPaint,
   type Column,
@@ -34,31 +26,16 @@ import {
   type Role,
 } from "../core/types";
 import { OfflineQueue } from "../net/offline-queue";
-import { BrushTool } from "../features/painting/brush-tool";
-import { BucketTool } from "../features/painting/bucket-tool";
-import { CommentTool } from "../features/comments/comment-tool";
 import { Activities } from "../features/activity/activity";
-import { FaceTool } from "../features/figures/face-tool";
-import { LineTool } from "../features/records/line-tool";
-import { MeasureTool } from "../features/measuring/measure-tool";
-import { OrbitTool, PanTool } from "../tools/navigate";
-import { LassoTool, PolygonTool } from "../tools/outline";
-import { PickTool } from "../features/painting/pick-tool";
-import { PointTool } from "../features/records/point-tool";
-import {
-  kChangingTools,
-  kMarkingTools,
-  kPaintingTools,
-  type Tool,
-  type ToolName,
-} from "../tools/tool";
-import { ToolManager } from "../tools/tool-manager";
+import { kChangingTools, kMarkingTools, type ToolName } from "../tools/tool";
+import type { ToolManager } from "../tools/tool-manager";
+import { EditableModel, type ModelScale } from "../session/editable-model";
 import { Appearance } from "../features/appearance/appearance";
 import { Comments } from "../features/comments/comments";
 import { FacePick } from "../features/figures/face-pick";
 import { Figures } from "../features/figures/figures";
 import { LayerJobs } from "../session/layer-jobs";
-import { whyLocked } from "../session/layer-lock";
+import { LockWatch } from "../session/lock-watch";
 import { LayerList } from "../features/layers/layer-list";
 import { MarkDrawing } from "../features/records/mark-drawing";
 import { Measuring } from "../features/measuring/measuring";
@@ -67,7 +44,8 @@ import { Painting } from "../features/painting/painting";
 import { PeopleCursors } from "../features/presence/people-cursors";
 import { PointerWatch } from "../session/pointer-watch";
 import { RecordEditors } from "../session/record-editors";
-import { RecordHover, type RecordAt } from "../features/records/record-hover";
+import { RecordHover } from "../features/records/record-hover";
+import { RecordSight } from "../features/records/record-sight";
 import { Reviews } from "../features/review/reviews";
 import { forget, remember } from "../session/sessions";
 import { Tables } from "../features/tables/tables";
@@ -79,9 +57,10 @@ import { ViewControl, wantsLessMotion } from "../session/view-control";
 import { Views } from "../features/views/views";
 import type { ModelSession, SessionPart } from "../session/model-session";
 import { Signals } from "../session/signals";
+import { eventsOfParts } from "./live-events";
+import { makeTools } from "./make-tools";
 
 export class OpenModelSession implements ModelSession {
-  model: Model | null = null;
   deleted = false;
   signedOut = false; // the server no longer knows who this is
   role: Role = "viewer";
@@ -117,14 +96,13 @@ export class OpenModelSession implements ModelSession {
   onResetFrames: () => void = () => {};
 
   private readonly _connection: Connection;
+  private readonly _sight: RecordSight;
+  private readonly _model: EditableModel;
+  private readonly _locks: LockWatch;
   private readonly _signals = new Signals<SessionPart>("session");
-  private _etag = "";
-  private _preview: Pick<Model, "unit" | "up"> | null = null;
   private _wasOpen = false;
   private _closed = false; // its page is gone
   private _toldLeft = false;
-  // the layer of which the person knows that it is locked
-  private _toldLocked: number | null = null;
 
   constructor(
     readonly api: Api,
@@ -132,6 +110,19 @@ export class OpenModelSession implements ModelSession {
     makeSocket?: (url: string, protocol: string) => SocketLike,
   ) {
     this._connection = this.makeConnection(makeSocket);
+    this._model = new EditableModel(api, modelId, {
+      view: () => this.view,
+      changed: () => this.changed(),
+    });
+    this._locks = new LockWatch({
+      selected: () => this.layers.selected,
+      tool: () => this.tools.active,
+      canCurate: () => this.canCurate,
+      stop: () => {
+        this.painting.breakOff();
+        this.tools.stop();
+      },
+    });
     const changes = (part: SessionPart) => (): void => this.changed(part);
     this.view = new ViewControl({
       send: (moving) => {
@@ -172,7 +163,7 @@ export class OpenModelSession implements ModelSession {
         this.painting.takePicked(message);
         this.tables.showCard(this.layers.selected, message);
       },
-      looked: (message) => this.tables.showCard(this.layerWithRecord(message), message),
+      looked: (message) => this.tables.showCard(this._sight.layerWithRecord(message), message),
       learned: () => this.hovered.picked(),
       changed: changes("pointer"),
     });
@@ -247,8 +238,14 @@ export class OpenModelSession implements ModelSession {
       canCurate: () => this.canCurate,
       changed: changes("reviews"),
     });
+    this._sight = new RecordSight({
+      layers: this.layers,
+      picked: () => this.pointer.picked,
+      tool: () => this.tools.active,
+      card: () => this.tables.card,
+    });
     this.hovered = new RecordHover({
-      here: () => this.recordHere(),
+      here: () => this._sight.here,
       settled: () => this.pointer.settled,
       changed: changes("hovered"),
     });
@@ -284,7 +281,10 @@ export class OpenModelSession implements ModelSession {
       begin: () => this.tools.borrow("face"),
       end: () => this.tools.giveBack(),
     });
-    this.tools = this.makeTools();
+    this.tools = makeTools(this, {
+      chosen: () => this.targetChanged("tools"),
+      outline: () => this.changed("tools"),
+    });
   }
 
   readonly gestures: GestureHandler = {
@@ -308,6 +308,7 @@ export class OpenModelSession implements ModelSession {
     const { protocol, host } = window.location;
     const url = `${protocol === "https:" ? "wss" : "ws"}://${host}/api/v1/models/${encodeURIComponent(this.modelId)}/live`;
     const client = "strata-page/0.1";
+    const events = eventsOfParts(this);
     return new Connection(
       {
         url,
@@ -321,118 +322,16 @@ export class OpenModelSession implements ModelSession {
         welcome: (message) => this.onWelcome(message),
         frame: (part) => this.onFrame(part),
         saving: (state) => this.onSaving(state),
-        applied: (message) => {
-          this.painting.onApplied(message);
-          this.pointer.askAgain();
+        ...events,
+        presence: (message) => {
+          if (!this._closed) events.presence(message);
         },
-        saved: () => {
-          this.reviews.saved();
-          this.tables.refreshAreas(); // with the areas that this person's own strokes leave
-          this.activity.outdated();
-        },
-        layer: (event) => this.onLayer(event),
-        look: (event) => {
-          this.appearance.onEvent(event);
-          this.activity.outdated();
-        },
-        tool: (event) => this.shapes.onEvent(event),
         model: (event) => this.onModel(event),
-        record: (event) => {
-          this.tables.onRecord(event);
-          this.activity.outdated();
-        },
-        table: (event) => {
-          this.tables.onTable(event);
-          this.activity.outdated();
-        },
-        comment: (event) => {
-          this.comments.onEvent(event);
-          this.activity.outdated();
-        },
-        view: (event) => this.views.onEvent(event),
-        editors: (message) => this.editors.onMessage(message),
-        presence: ({ users }) => {
-          if (this._closed) return;
-          this.together.receive(users);
-          this.cursors.receive(users.filter(({ session }) => session !== this.session));
-        },
-        picked: (message) => {
-          if (!this.cursors.answer(message) && !this.together.answer(message))
-            this.pointer.answer(message);
-        },
         problem: (problem) => this.onProblem(problem),
         takenUp: (changes) =>
           notices.show("info", texts.saving.taken_up(changes), texts.saving.taken_up_hint),
       },
     );
-  }
-
-  private makeTools(): ToolManager {
-    const brushHost = {
-      beginStroke: (erase: boolean) => this.painting.beginStroke(erase),
-      strokeEnded: () => this.painting.strokeEnded(),
-      radiusPx: () => this.painting.radiusWindowPx(),
-      widthOf: (pressure: number) => this.painting.widthOf(pressure),
-      nextFrame: (callback: () => void) => void requestAnimationFrame(callback),
-    };
-    const comment = (sample: PointerSample): void => void this.comments.begin(sample);
-    const navigator = {
-      orbit: (dx: number, dy: number) => this.view.orbitPixels(dx, dy),
-      pan: (dx: number, dy: number) => this.view.panPixels(dx, dy),
-      tap: (sample: PointerSample) => this.pointer.look(sample),
-    };
-    const { measuring } = this;
-    const measureHost = {
-      ...navigator,
-      tap: (sample: PointerSample) => measuring.setAt(sample),
-      pointAt: (sample: PointerSample | null) => measuring.pointAt(sample),
-      setInMiddle: () => measuring.setInMiddle(),
-      end: () => measuring.end(),
-      takeBack: () => measuring.takeBack(),
-      clear: () => measuring.clear(),
-      begun: () => measuring.begun,
-    };
-    const faceHost = {
-      ...navigator,
-      tap: (sample: PointerSample) => void this.face.takeAt(sample),
-      takeInMiddle: () => this.face.takeInMiddle(),
-      giveUp: () => this.face.giveUp(),
-    };
-    const outlineHost = {
-      beginOutline: () => this.painting.beginOutline(),
-      finishOutline: (path: Point[]) => this.painting.finishOutline(path),
-      outlineEnded: () => this.painting.strokeEnded(),
-      scale: () => this.view.scale,
-      outlineChanged: () => this.changed("tools"),
-    };
-    const lineHost = {
-      ...outlineHost,
-      beginOutline: () => this.marks.beginLine(),
-      finishOutline: (path: Point[]) => this.marks.finishLine(path),
-      outlineChanged: () => {
-        this.marks.lineChanged(this.tools.outline);
-        this.changed("tools");
-      },
-    };
-    const tools: Readonly<Record<ToolName, Tool>> = {
-      orbit: new OrbitTool(navigator),
-      pan: new PanTool(navigator),
-      brush: new BrushTool("brush", brushHost),
-      eraser: new BrushTool("eraser", brushHost),
-      polygon: new PolygonTool(outlineHost),
-      lasso: new LassoTool(outlineHost),
-      bucket: new BucketTool((sample) => this.painting.fillAt(sample)),
-      pick: new PickTool((sample) => this.pointer.take(sample)),
-      line: new LineTool(lineHost),
-      point: new PointTool((sample) => this.marks.setPoint(sample)),
-      measure: new MeasureTool(measureHost),
-      face: new FaceTool(faceHost),
-      comment: new CommentTool({ ...navigator, tap: comment }, () => ({
-        x: this.view.camera.width / 2,
-        y: this.view.camera.height / 2,
-      })),
-    };
-    return new ToolManager(Object.values(tools), "orbit", () => this.targetChanged("tools"));
   }
 
   // ── life
@@ -443,11 +342,9 @@ export class OpenModelSession implements ModelSession {
   }
 
   async open(): Promise<void> {
-    const model = await this.api.versioned("GET /models/{model}", {
-      path: { model: this.modelId },
-    });
+    const model = await this._model.read();
     if (this._closed) return;
-    this.takeModel(model);
+    this._model.take(model);
     remember(this);
     this._connection.open();
   }
@@ -499,73 +396,21 @@ export class OpenModelSession implements ModelSession {
     return mayCurate(this.role);
   }
 
-  /**
-   * To this person: curators change locked layers, too, but for those that are as they were
-   * computed.
-   */
   isLocked(layer: Layer): boolean {
-    return layer.locked && (!this.canCurate || isAsComputed(layer));
+    return this._locks.isLocked(layer);
   }
-
-  /** The chosen layer, where a tool is in hand that would change its texels but may not. */
   get lockedTarget(): Layer | null {
-    const { selected } = this.layers;
-    const { active } = this.tools;
-    const paints = kPaintingTools.includes(active) && !kMarkingTools.includes(active);
-    return paints && selected && this.isLocked(selected) ? selected : null;
+    return this._locks.target;
   }
 
-  /**
-   * Another tool, another layer, or another lock: who cannot paint any more is told so once, before
-   * they try.
-   */
+  /** Another tool, another layer, or another lock. */
   private targetChanged(part: "layers" | "tools"): void {
-    const locked = this.lockedTarget;
-    const told = this._toldLocked;
-    this._toldLocked = locked?.id ?? null;
-    if (locked && locked.id !== told) {
-      this.painting.breakOff();
-      this.tools.stop();
-      this.tellLocked(locked);
-    }
+    this._locks.lookAgain();
     this.changed(part);
   }
 
   private changed(part: SessionPart = "session"): void {
     this._signals.tell(part);
-  }
-
-  /** The one that is painted on, if there is a record, or the topmost that shows one. */
-  private layerWithRecord(picked: Picked): Layer | null {
-    const { selected, all } = this.layers;
-    if (selected && this.showsRecord(selected, picked)) return selected;
-    return [...all].reverse().find((layer) => this.showsRecord(layer, picked)) ?? null;
-  }
-  private showsRecord(layer: Layer, { values }: Picked): boolean {
-    return (
-      layer.table !== undefined &&
-      this.layers.visible(layer) &&
-      values?.[layer.slug]?.valid === true
-    );
-  }
-
-  /** Under the pointer, where the tool's tap would show its card, and does not already. */
-  private recordHere(): RecordAt | null {
-    const { picked } = this.pointer;
-    const { active } = this.tools;
-    const { selected } = this.layers;
-    if (!picked) return null;
-    const looks = active === "orbit" || active === "pan";
-    const layer = looks
-      ? this.layerWithRecord(picked)
-      : active === "pick" && selected && this.showsRecord(selected, picked)
-        ? selected
-        : null;
-    const key = layer ? picked.values?.[layer.slug]?.value : undefined;
-    const { card } = this.tables;
-    return !layer || key === undefined || (card?.layer.id === layer.id && card.key === key)
-      ? null
-      : { layer, key };
   }
 
   /** The table of the layer that is painted on: shown, or no longer. */
@@ -643,50 +488,20 @@ export class OpenModelSession implements ModelSession {
     }
   }
 
-  async changeModel(change: ModelPatch): Promise<void> {
-    this.takeModel(
-      await this.api.versioned("PATCH /models/{model}", {
-        path: { model: this.modelId },
-        body: change,
-        header: { "If-Match": this._etag },
-      }),
-    );
+  changeModel(change: ModelPatch): Promise<void> {
+    return this._model.change(change);
   }
-
   async reloadModel(): Promise<void> {
-    this.takeModel(
-      await this.api.versioned("GET /models/{model}", { path: { model: this.modelId } }),
-    );
+    this._model.take(await this._model.read());
   }
-
-  /**
-   * Shows the model as if it had this unit and up direction, without keeping them; null: as it has
-   * them.
-   */
-  previewScale(scale: Pick<Model, "unit" | "up"> | null): void {
-    if (!this.model) return;
-    this._preview = scale;
-    this.view.previewUp(this.model, scale?.up ?? this.model.up);
-    this.changed();
+  previewScale(scale: ModelScale | null): void {
+    this._model.preview(scale);
   }
-
-  /** What lengths on the screen are told in. */
+  get model(): Model | null {
+    return this._model.value;
+  }
   get shownUnit(): Model["unit"] {
-    return this._preview?.unit ?? this.model?.unit ?? "m";
-  }
-
-  private takeModel({ value, etag }: Versioned<Model>): void {
-    this._etag = etag;
-    this.putModel(value);
-  }
-
-  private putModel(model: Model): void {
-    const turned = this.model !== null && this.model.up !== model.up;
-    this.model = model;
-    // What somebody else changes meanwhile does not end the preview.
-    if (this._preview) this.view.setModel({ ...model, up: this._preview.up }, false);
-    else this.view.setModel(model, turned);
-    this.changed();
+    return this._model.shownUnit;
   }
 
   // ── messages
@@ -711,7 +526,7 @@ export class OpenModelSession implements ModelSession {
   /** A refused socket does not say why; the same question over HTTP does. */
   private async findWhyLost(): Promise<void> {
     try {
-      await this.api.versioned("GET /models/{model}", { path: { model: this.modelId } });
+      await this._model.read();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.status === 404) this.onDeleted();
@@ -770,7 +585,7 @@ export class OpenModelSession implements ModelSession {
     if (!this.canPaint && kChangingTools.includes(this.tools.active)) this.tools.choose("orbit");
     this.session = message.session;
     this.editors.joined(message.session, message.user);
-    this.putModel(message.model);
+    this._model.put(message.model);
     this.layers.takeAll(message.layers.map(completeLayer), message.personal_view);
     this.appearance.takeLooks(message.looks);
     this.shapes.refresh();
@@ -793,19 +608,6 @@ export class OpenModelSession implements ModelSession {
     return { pointer: [pointer.x, pointer.y], ...(inHand ? { radius } : {}) };
   }
 
-  private onLayer(event: LayerEvent): void {
-    this.layers.onEvent(event);
-    this.reviews.onEvent(event);
-    this.activity.outdated();
-    if (event.event === "edited") {
-      this.pointer.askAgain();
-      this.measuring.onLayerEdited(event.layer_id);
-      this.tables.onLayerEdited(event.layer_id);
-    } else if (event.event === "deleted") {
-      this.tables.onLayerDeleted(event.layer_id);
-    }
-  }
-
   private onModel(event: ModelEvent): void {
     this.activity.outdated();
     if (event.event === "deleted") this.onDeleted();
@@ -821,14 +623,7 @@ export class OpenModelSession implements ModelSession {
     const { ref } = problem;
     if (this.pointer.refused(ref) || this.cursors.refused(ref) || this.together.refused(problem))
       return;
-    const { selected } = this.layers;
-    if (isOfLock(problem) && selected && this.isLocked(selected)) this.tellLocked(selected);
-    else notices.problem(problem);
-  }
-
-  /** In the words that the page has for it, whoever noticed: one notice stands for all. */
-  private tellLocked(layer: Layer): void {
-    notices.show("problem", texts.layers.locked, whyLocked(layer));
+    if (!this._locks.explains(problem)) notices.problem(problem);
   }
 }
 
@@ -838,7 +633,3 @@ const notKept = (why: unknown): void => {
   toldNotKept = true;
   notices.show("problem", texts.saving.not_kept, `${texts.saving.not_kept_hint} (${String(why)})`);
 };
-
-/** It is painting that was on its way when the layer was locked. */
-const isOfLock = ({ status, field }: Omit<ProblemMessage, "op">): boolean =>
-  status === 403 && field === "layer";

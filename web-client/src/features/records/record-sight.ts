@@ -1,0 +1,53 @@
+// Which record lies under the pointer, by the layers that are shown and the tool in hand.
+
+import type { Picked } from "../../core/protocol.gen";
+import type { Layer } from "../../core/types";
+import type { LayersPart } from "../../session/parts";
+import type { ToolName } from "../../tools/tool";
+import type { RecordAt } from "./record-hover";
+
+export interface RecordSightHost {
+  layers: Pick<LayersPart, "all" | "selected" | "visible">;
+  /** What is known to lie under the pointer. */
+  picked(): Picked | null;
+  tool(): ToolName;
+  /** The record whose card is shown. */
+  card(): RecordAt | null;
+}
+
+export class RecordSight {
+  constructor(private readonly _host: RecordSightHost) {}
+
+  /** The layer that is painted on, if there is a record, or the topmost that shows one. */
+  layerWithRecord(picked: Picked): Layer | null {
+    const { selected, all } = this._host.layers;
+    if (selected && this.showsRecord(selected, picked)) return selected;
+    return [...all].reverse().find((layer) => this.showsRecord(layer, picked)) ?? null;
+  }
+
+  /** Where the tool's tap would show its card, and does not already. */
+  get here(): RecordAt | null {
+    const picked = this._host.picked();
+    const layer = picked && this.layerOfTap(picked);
+    const key = layer ? picked.values?.[layer.slug]?.value : undefined;
+    const card = this._host.card();
+    return !layer || key === undefined || (card?.layer.id === layer.id && card.key === key)
+      ? null
+      : { layer, key };
+  }
+
+  private layerOfTap(picked: Picked): Layer | null {
+    const tool = this._host.tool();
+    const { selected } = this._host.layers;
+    if (tool === "orbit" || tool === "pan") return this.layerWithRecord(picked);
+    return tool === "pick" && selected && this.showsRecord(selected, picked) ? selected : null;
+  }
+
+  private showsRecord(layer: Layer, { values }: Picked): boolean {
+    return (
+      layer.table !== undefined &&
+      this._host.layers.visible(layer) &&
+      values?.[layer.slug]?.valid === true
+    );
+  }
+}

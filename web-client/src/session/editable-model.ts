@@ -1,0 +1,73 @@
+// What is known about the open model itself: its version, changes of it, and how it would look with
+// another unit and up direction.
+
+import type { Api, Versioned } from "../net/api";
+import type { Model, ModelPatch } from "../core/types";
+import type { ViewControl } from "./view-control";
+
+export type ModelScale = Pick<Model, "unit" | "up">;
+
+export class EditableModel {
+  private _value: Model | null = null;
+  private _etag = "";
+  private _preview: ModelScale | null = null;
+
+  constructor(
+    private readonly _api: Api,
+    private readonly _id: string,
+    private readonly _host: {
+      view: () => ViewControl;
+      changed(): void;
+    },
+  ) {}
+
+  get value(): Model | null {
+    return this._value;
+  }
+
+  /** As the server has it now; nothing takes it over. */
+  read(): Promise<Versioned<Model>> {
+    return this._api.versioned("GET /models/{model}", { path: { model: this._id } });
+  }
+
+  async change(change: ModelPatch): Promise<void> {
+    this.take(
+      await this._api.versioned("PATCH /models/{model}", {
+        path: { model: this._id },
+        body: change,
+        header: { "If-Match": this._etag },
+      }),
+    );
+  }
+
+  /**
+   * Shows the model as if it had this unit and up direction, without keeping them; null: as it has
+   * them.
+   */
+  preview(scale: ModelScale | null): void {
+    if (!this.value) return;
+    this._preview = scale;
+    this._host.view().previewUp(this.value, scale?.up ?? this.value.up);
+    this._host.changed();
+  }
+
+  /** What lengths on the screen are told in. */
+  get shownUnit(): Model["unit"] {
+    return this._preview?.unit ?? this.value?.unit ?? "m";
+  }
+
+  take({ value, etag }: Versioned<Model>): void {
+    this._etag = etag;
+    this.put(value);
+  }
+
+  put(model: Model): void {
+    const turned = this.value !== null && this.value.up !== model.up;
+    this._value = model;
+    // What somebody else changes meanwhile does not end the preview.
+    const view = this._host.view();
+    if (this._preview) view.setModel({ ...model, up: this._preview.up }, false);
+    else view.setModel(model, turned);
+    this._host.changed();
+  }
+}

@@ -1,0 +1,63 @@
+// What the server tells of while a model is open, and the parts that are to know it.
+
+import type { ConnectionCallbacks } from "../net/connection";
+import type { ModelSession } from "../session/model-session";
+
+/** What concerns the session itself, too, is not among it. */
+export type EventsOfParts = Omit<
+  ConnectionCallbacks,
+  "state" | "welcome" | "frame" | "saving" | "model" | "problem" | "takenUp"
+>;
+
+export function eventsOfParts(session: ModelSession): EventsOfParts {
+  return {
+    applied: (message) => {
+      session.painting.onApplied(message);
+      session.pointer.askAgain();
+    },
+    saved: () => {
+      session.reviews.saved();
+      session.tables.refreshAreas(); // with the areas that this person's own strokes leave
+      session.activity.outdated();
+    },
+    layer: (event) => {
+      session.layers.onEvent(event);
+      session.reviews.onEvent(event);
+      session.activity.outdated();
+      if (event.event === "edited") {
+        session.pointer.askAgain();
+        session.measuring.onLayerEdited(event.layer_id);
+        session.tables.onLayerEdited(event.layer_id);
+      } else if (event.event === "deleted") {
+        session.tables.onLayerDeleted(event.layer_id);
+      }
+    },
+    look: (event) => {
+      session.appearance.onEvent(event);
+      session.activity.outdated();
+    },
+    tool: (event) => session.shapes.onEvent(event),
+    record: (event) => {
+      session.tables.onRecord(event);
+      session.activity.outdated();
+    },
+    table: (event) => {
+      session.tables.onTable(event);
+      session.activity.outdated();
+    },
+    comment: (event) => {
+      session.comments.onEvent(event);
+      session.activity.outdated();
+    },
+    view: (event) => session.views.onEvent(event),
+    editors: (message) => session.editors.onMessage(message),
+    presence: ({ users }) => {
+      session.together.receive(users);
+      session.cursors.receive(users.filter((user) => user.session !== session.session));
+    },
+    picked: (message) => {
+      if (!session.cursors.answer(message) && !session.together.answer(message))
+        session.pointer.answer(message);
+    },
+  };
+}

@@ -1,0 +1,92 @@
+// The tools of an open model, and what each of them moves in its parts.
+
+import type { Point } from "../net/stroke";
+import type { PointerSample } from "../ui/input";
+import type { ModelSession } from "../session/model-session";
+import { BrushTool } from "../features/painting/brush-tool";
+import { BucketTool } from "../features/painting/bucket-tool";
+import { CommentTool } from "../features/comments/comment-tool";
+import { FaceTool } from "../features/figures/face-tool";
+import { LineTool } from "../features/records/line-tool";
+import { MeasureTool } from "../features/measuring/measure-tool";
+import { OrbitTool, PanTool } from "../tools/navigate";
+import { LassoTool, PolygonTool } from "../tools/outline";
+import { PickTool } from "../features/painting/pick-tool";
+import { PointTool } from "../features/records/point-tool";
+import type { Tool, ToolName } from "../tools/tool";
+import { ToolManager } from "../tools/tool-manager";
+
+export interface ToolChanges {
+  /** Another tool is in hand. */
+  chosen(): void;
+  /** The outline that is being drawn. */
+  outline(): void;
+}
+
+export function makeTools(session: ModelSession, told: ToolChanges): ToolManager {
+  const brushHost = {
+    beginStroke: (erase: boolean) => session.painting.beginStroke(erase),
+    strokeEnded: () => session.painting.strokeEnded(),
+    radiusPx: () => session.painting.radiusWindowPx(),
+    widthOf: (pressure: number) => session.painting.widthOf(pressure),
+    nextFrame: (callback: () => void) => void requestAnimationFrame(callback),
+  };
+  const comment = (sample: PointerSample): void => void session.comments.begin(sample);
+  const navigator = {
+    orbit: (dx: number, dy: number) => session.view.orbitPixels(dx, dy),
+    pan: (dx: number, dy: number) => session.view.panPixels(dx, dy),
+    tap: (sample: PointerSample) => session.pointer.look(sample),
+  };
+  const { measuring } = session;
+  const measureHost = {
+    ...navigator,
+    tap: (sample: PointerSample) => measuring.setAt(sample),
+    pointAt: (sample: PointerSample | null) => measuring.pointAt(sample),
+    setInMiddle: () => measuring.setInMiddle(),
+    end: () => measuring.end(),
+    takeBack: () => measuring.takeBack(),
+    clear: () => measuring.clear(),
+    begun: () => measuring.begun,
+  };
+  const faceHost = {
+    ...navigator,
+    tap: (sample: PointerSample) => void session.face.takeAt(sample),
+    takeInMiddle: () => session.face.takeInMiddle(),
+    giveUp: () => session.face.giveUp(),
+  };
+  const outlineHost = {
+    beginOutline: () => session.painting.beginOutline(),
+    finishOutline: (path: Point[]) => session.painting.finishOutline(path),
+    outlineEnded: () => session.painting.strokeEnded(),
+    scale: () => session.view.scale,
+    outlineChanged: () => told.outline(),
+  };
+  const lineHost = {
+    ...outlineHost,
+    beginOutline: () => session.marks.beginLine(),
+    finishOutline: (path: Point[]) => session.marks.finishLine(path),
+    outlineChanged: () => {
+      session.marks.lineChanged(session.tools.outline);
+      told.outline();
+    },
+  };
+  const tools: Readonly<Record<ToolName, Tool>> = {
+    orbit: new OrbitTool(navigator),
+    pan: new PanTool(navigator),
+    brush: new BrushTool("brush", brushHost),
+    eraser: new BrushTool("eraser", brushHost),
+    polygon: new PolygonTool(outlineHost),
+    lasso: new LassoTool(outlineHost),
+    bucket: new BucketTool((sample) => session.painting.fillAt(sample)),
+    pick: new PickTool((sample) => session.pointer.take(sample)),
+    line: new LineTool(lineHost),
+    point: new PointTool((sample) => session.marks.setPoint(sample)),
+    measure: new MeasureTool(measureHost),
+    face: new FaceTool(faceHost),
+    comment: new CommentTool({ ...navigator, tap: comment }, () => ({
+      x: session.view.camera.width / 2,
+      y: session.view.camera.height / 2,
+    })),
+  };
+  return new ToolManager(Object.values(tools), "orbit", () => told.chosen());
+}
