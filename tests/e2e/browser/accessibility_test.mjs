@@ -12,6 +12,8 @@ import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 import { bea_at, make_site, screens_of } from "../support/js/screens.mjs";
 
+const words = texts_of("en");
+
 const kSizes = [
   [390, 844],
   [820, 1180],
@@ -101,7 +103,7 @@ async function locked_for_bea(language, site) {
   await check(language, bea, { name: "brush on a locked layer", keyboard: true });
 }
 
-const account_of_owner = (page) => page.getByRole("button", { name: "Account of owner" });
+const account_of_owner = (page) => page.getByRole("button", { name: words.account.menu("owner") });
 
 async function focus_of_a_dialog(page) {
   step = "a dialog keeps the focus and gives it back";
@@ -152,8 +154,8 @@ async function chosen_theme(page) {
     wait_for(async () => (await theme()) === name, `the theme to be ${name}`);
   const choose_theme = async (name) => {
     await account_of_owner(page).click();
-    await page.getByRole("menuitem", { name: "Language and theme…" }).click();
-    await page.getByRole("combobox", { name: "Theme" }).selectOption(name);
+    await page.getByRole("menuitem", { name: words.settings.open }).click();
+    await page.getByRole("combobox", { name: words.settings.theme }).selectOption(name);
     await page.keyboard.press("Escape");
   };
   await choose_theme("Dark");

@@ -5,6 +5,9 @@ import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
@@ -55,7 +58,7 @@ test.beforeAll(async () => {
 test("the panel tells what was done, the newest first", async () => {
   await ada.page.goto(`${server.url}/models/${id}`);
   await ada.drawn();
-  await panel(ada).getByRole("button", { name: "Activity" }).click();
+  await panel(ada).getByRole("button", { name: words.activity.title }).click();
   await panel(ada).getByRole("heading", { name: "today" }).waitFor();
   await line(ada, "changed the model").waitFor();
   await line(ada, "Handle").waitFor();
@@ -99,18 +102,18 @@ test("earlier lines are shown when asked for, and those of the whole project", a
   await ada.drawn();
   await line(ada, "Note 59").waitFor();
   assert.equal(await line(ada, "filled in Finds").count(), 0);
-  await panel(ada).getByRole("button", { name: "Show earlier" }).click();
+  await panel(ada).getByRole("button", { name: words.activity.more }).click();
   await line(ada, "filled in").first().waitFor();
-  await panel(ada).getByRole("radio", { name: "Whole project" }).click();
+  await panel(ada).getByRole("radio", { name: words.activity.of_project }).click();
   await line(ada, "Note 59").waitFor();
 });
 
 test("it can be read and used on a phone", async () => {
   await phone.page.goto(`${server.url}/models/${id}`);
   await phone.drawn();
-  const shown = panel(phone).getByRole("button", { name: "Activity" });
+  const shown = panel(phone).getByRole("button", { name: words.activity.title });
   if (!(await shown.isVisible()))
-    await phone.page.getByRole("button", { name: "Show the panel" }).click();
+    await phone.page.getByRole("button", { name: words.model.show_panel }).click();
   await shown.tap();
   await line(phone, "Note 59").scrollIntoViewIfNeeded();
   await shot(phone, "activity_phone");

@@ -5,6 +5,9 @@ import { join } from "node:path";
 import { Browser, rgb } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kMagenta = "#ff00ffff"; // nothing on the pot has this hue
 
@@ -83,9 +86,9 @@ test.beforeAll(async () => {
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
   await browser.drawn();
-  const later = page.getByRole("button", { name: "Decide later" });
+  const later = page.getByRole("button", { name: words.scale.later });
   if (await later.isVisible()) await later.click();
-  await button("Paint on Test").click();
+  await button(words.layers.select("Test")).click();
 });
 
 test("a polygon is closed with Enter, and its inside is painted", async () => {
@@ -148,7 +151,7 @@ test("what is connected is erased by one click, and what is not stays", async ()
   await away();
   const both = (await statistics("test")).area_m2;
   await page.keyboard.press("g");
-  await radio("Erase").click();
+  await radio(words.areas.erases).click();
   await shot("bucket");
   await click([0.5, 0.58]);
   await browser.saved();
@@ -163,8 +166,8 @@ test("what is connected is erased by one click, and what is not stays", async ()
 });
 
 test("a condition over other layers; a wrong one says where it is wrong", async () => {
-  await button("Fill where…").click();
-  const condition = page.getByLabel("Condition");
+  await button(words.areas.where).click();
+  const condition = page.getByLabel(words.areas.condition);
   await condition.fill("cracks >");
   await page.keyboard.press("Enter");
   await page
@@ -179,7 +182,7 @@ test("a condition over other layers; a wrong one says where it is wrong", async 
   await condition.press("Tab");
   assert.equal(await condition.inputValue(), "not cracks");
   await condition.fill("valid(cracks)");
-  await button("Fill").click();
+  await button(words.areas.apply).click();
   // closed once it is durable
   await page.getByRole("heading", { name: /where…/ }).waitFor({ state: "hidden" });
   const cracks = (await statistics("cracks")).area_m2;
@@ -189,8 +192,8 @@ test("a condition over other layers; a wrong one says where it is wrong", async 
 
 test("the whole piece under a point is the whole pot, and that is one step back", async () => {
   await page.keyboard.press("g");
-  await radio("Paint").click();
-  await radio("Whole piece").click();
+  await radio(words.areas.paints).click();
+  await radio(words.areas.island).click();
   await click([0.5, 0.58]);
   await browser.saved();
   const whole = (await server.json("GET", base)).area_m2;

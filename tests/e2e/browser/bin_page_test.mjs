@@ -6,6 +6,9 @@ import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
@@ -24,7 +27,7 @@ const bin = ({ page }) => page.locator("strata-bin-dialog");
 const entry = (who, name) => bin(who).locator("li", { hasText: name });
 const notice = ({ page }, text) => page.locator("strata-notices").getByText(text);
 const undo = (who) =>
-  who.page.locator("strata-notices").getByRole("button", { name: "Undo", exact: true });
+  who.page.locator("strata-notices").getByRole("button", { name: words.model.undo, exact: true });
 const layers_of = async () =>
   (await server.json("GET", `${kBase}/layers`)).layers.map(({ name }) => name);
 // what is deleted while it is drawn is a refused request
@@ -64,12 +67,10 @@ test("a layer that was deleted comes back by Undo", async () => {
   ({ name } = layer);
   await carl.page.goto(`${server.url}/models/${pot.id}`);
   await carl.drawn();
-  await menu(carl, `Options for ${name}`, "Delete…");
-  await carl.page
-    .getByText("For 30 days it can be restored from the Bin of the project.")
-    .waitFor();
+  await menu(carl, `Options for ${name}`, words.layers.delete);
+  await carl.page.getByText(words.bin.kept(30)).waitFor();
   await shoot(carl, "question");
-  await confirm(carl, "Delete");
+  await confirm(carl, words.delete);
   await notice(carl, `The layer “${name}” was deleted.`).waitFor();
   await shoot(carl, "undo");
   assert.deepEqual((await layers_of()).includes(name), false);
@@ -80,10 +81,10 @@ test("a layer that was deleted comes back by Undo", async () => {
 });
 
 test("the Bin lists it, and gives it back by keys", async () => {
-  await menu(carl, `Options for ${name}`, "Delete…");
-  await confirm(carl, "Delete");
+  await menu(carl, `Options for ${name}`, words.layers.delete);
+  await confirm(carl, words.delete);
   await notice(carl, `The layer “${name}” was deleted.`).waitFor();
-  await menu(carl, "More about layers", "Bin…");
+  await menu(carl, words.layers.more, words.bin.open);
   await entry(carl, name).waitFor();
   await shoot(carl, "list");
   assert.match(await entry(carl, name).textContent(), /Layer of Demo pot[\s\S]*deleted by carl/);
@@ -92,7 +93,7 @@ test("the Bin lists it, and gives it back by keys", async () => {
     .focus();
   await carl.page.keyboard.press("Enter");
   await bin(carl).getByText(`“${name}” is back.`).waitFor();
-  await bin(carl).getByText("Nothing lies in the Bin.").waitFor();
+  await bin(carl).getByText(words.bin.none).waitFor();
   assert.deepEqual(await layers_of(), before);
   await carl.page.keyboard.press("Escape");
   await wait_for(async () => (await bin(carl).count()) === 0, "the Bin to close");
@@ -102,18 +103,18 @@ test("annotators find records in it, and nothing else", async () => {
   await server.request("DELETE", `${kBase}/layers/${layer.id}`);
   await bea.page.goto(`${server.url}/models/${pot.id}`);
   await bea.drawn();
-  await menu(bea, "Options for Finds", "Table of records");
+  await menu(bea, words.layers.options("Finds"), words.tables.open);
   await bea.page.getByRole("rowheader", { name: /^1\b/ }).click();
-  await button(bea, "Delete the record").click();
-  await confirm(bea, "Delete");
-  await notice(bea, "The record “Handle” was deleted.").waitFor();
+  await button(bea, words.tables.delete).click();
+  await confirm(bea, words.delete);
+  await notice(bea, words.bin.deleted.record("Handle")).waitFor();
   await undo(bea).click();
-  await notice(bea, "“Handle” is back.").waitFor();
+  await notice(bea, words.bin.restored("Handle")).waitFor();
   await bea.page.getByRole("rowheader", { name: /^1\b/ }).click();
-  await button(bea, "Delete the record").click();
-  await confirm(bea, "Delete");
-  await notice(bea, "The record “Handle” was deleted.").waitFor();
-  await menu(bea, "More about the table", "Bin…");
+  await button(bea, words.tables.delete).click();
+  await confirm(bea, words.delete);
+  await notice(bea, words.bin.deleted.record("Handle")).waitFor();
+  await menu(bea, words.tables.more, words.bin.open);
   await entry(bea, "Handle").waitFor();
   assert.equal(await bin(bea).locator("li").count(), 1, "layers are for curators");
   assert.equal(
@@ -123,46 +124,48 @@ test("annotators find records in it, and nothing else", async () => {
     0,
   );
   await shoot(bea, "records");
-  await button(bea, "Restore Handle").click();
-  await bin(bea).getByText("“Handle” is back.").waitFor();
+  await button(bea, words.bin.restore_of("Handle")).click();
+  await bin(bea).getByText(words.bin.restored("Handle")).waitFor();
 });
 
 test("a model comes back, too, and its project waits for it", async () => {
   await phone.page.goto(`${server.url}/projects/${pot.project}`);
-  await phone.page.getByRole("link", { name: "Open Demo pot" }).waitFor();
+  await phone.page.getByRole("link", { name: words.home.open("Demo pot") }).waitFor();
   await pictured(phone);
-  await menu(phone, "Options for Demo pot", "Delete…");
-  await confirm(phone, "Delete");
-  await notice(phone, "“Demo pot” was deleted.").waitFor();
-  await phone.page.getByText("No models yet").waitFor();
+  await menu(phone, words.home.options("Demo pot"), words.layers.delete);
+  await confirm(phone, words.delete);
+  await notice(phone, words.home.deleted("Demo pot")).waitFor();
+  await phone.page.getByText(words.home.empty_title).waitFor();
   await undo(phone).tap();
-  await phone.page.getByRole("link", { name: "Open Demo pot" }).waitFor();
+  await phone.page.getByRole("link", { name: words.home.open("Demo pot") }).waitFor();
   await pictured(phone);
-  await menu(phone, "Options for Demo pot", "Delete…");
-  await confirm(phone, "Delete");
-  await phone.page.getByText("No models yet").waitFor();
-  await menu(phone, "Options for Demo", "Delete…");
-  await phone.page.getByRole("heading", { name: "Models of “Demo” lie in the Bin" }).waitFor();
+  await menu(phone, words.home.options("Demo pot"), words.layers.delete);
+  await confirm(phone, words.delete);
+  await phone.page.getByText(words.home.empty_title).waitFor();
+  await menu(phone, words.home.options("Demo"), words.layers.delete);
+  await phone.page
+    .getByRole("heading", { name: words.projects.kept_by_bin_title("Demo") })
+    .waitFor();
   await shoot(phone, "project_kept");
   await phone.page
     .locator("strata-delete-project-dialog")
-    .getByRole("button", { name: "Bin…" })
+    .getByRole("button", { name: words.bin.open })
     .tap();
   await entry(phone, "Demo pot").waitFor();
   await shoot(phone, "phone");
-  await button(phone, "Restore Demo pot").tap();
-  await bin(phone).getByText("“Demo pot” is back.").waitFor();
-  await bin(phone).getByRole("button", { name: "Close" }).last().tap();
+  await button(phone, words.bin.restore_of("Demo pot")).tap();
+  await bin(phone).getByText(words.bin.restored("Demo pot")).waitFor();
+  await bin(phone).getByRole("button", { name: words.close }).last().tap();
 });
 
 test("for ever is asked before, and is for ever", async () => {
   await phone.page.goto(`${server.url}/projects/${pot.project}`);
-  await menu(phone, "Options for Demo", "Bin…");
+  await menu(phone, words.home.options("Demo"), words.bin.open);
   await entry(phone, name).waitFor();
   await button(phone, `Delete ${name} for ever`).tap();
   await phone.page.getByRole("heading", { name: `Delete “${name}” for ever?` }).waitFor();
   await shoot(phone, "for_ever");
-  await confirm(phone, "Delete for ever");
+  await confirm(phone, words.bin.erase_yes);
   await bin(phone).getByText(`“${name}” was deleted for ever.`).waitFor();
   assert.deepEqual((await server.json("GET", `/projects/${pot.project}/bin`)).entries, []);
   assert.equal((await layers_of()).includes(name), false);

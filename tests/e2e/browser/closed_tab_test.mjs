@@ -4,6 +4,9 @@ import assert from "node:assert/strict";
 import { Browser, kOfLostServer } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { kLong_ms, StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 /** Ids of the batches of strokes that the browser keeps, or of other messages, in their order. */
 const kept = (wanted = "stroke.extend") =>
@@ -30,7 +33,7 @@ const ids = async () => (await history()).map(({ id }) => id);
 async function open_model() {
   await page.goto(`${server.url}/models/demo-pot`);
   await browser.drawn();
-  await page.getByRole("button", { name: "Paint on Marks" }).click();
+  await page.getByRole("button", { name: words.layers.select("Marks") }).click();
   await page.keyboard.press("b");
 }
 

@@ -6,6 +6,9 @@ import { join } from "node:path";
 import { Browser, kOfLostServer, rgb } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kScan = join(process.env.STRATA_TEST_DATA ?? "", "statue_nefertiti_70k.ply");
 const has_scan = existsSync(kScan);
@@ -29,7 +32,7 @@ test.beforeAll(async () => {
 
 test("a scan is imported by the page's file input, which opens it", async () => {
   await anna.page.goto(server.link);
-  await anna.page.getByRole("heading", { name: "Models", exact: true }).waitFor();
+  await anna.page.getByRole("heading", { name: words.home.title, exact: true }).waitFor();
   if (has_scan) await anna.page.locator("input[type=file]").setInputFiles(kScan);
   else await anna.page.getByRole("link", { name: /Demo pot/ }).click();
   await anna.page.waitForURL(/\/models\/\d+/);
@@ -37,20 +40,20 @@ test("a scan is imported by the page's file input, which opens it", async () => 
   id = Number(/\/models\/(\d+)/.exec(anna.page.url())[1]);
   if (has_scan) {
     await anna.page.getByText(/This object is .*: right\?/).waitFor();
-    await anna.page.getByRole("button", { name: "Decide later" }).click();
+    await anna.page.getByRole("button", { name: words.scale.later }).click();
   }
 });
 
 test("a layer of classes is created in the dialog", async () => {
-  await anna.page.getByRole("button", { name: "New layer" }).click();
+  await anna.page.getByRole("button", { name: words.layers.new }).click();
   await anna.page.getByRole("radio", { name: /^Class/ }).click();
-  await anna.page.getByRole("button", { name: "Create layer" }).click();
-  await anna.page.getByText("Give the layer a name.").waitFor();
-  await anna.page.getByLabel("Name", { exact: true }).fill("Finds");
-  await anna.page.getByLabel("Label of class 1").fill("Bone");
-  await anna.page.getByRole("button", { name: "Add a class" }).click();
-  await anna.page.getByLabel("Label of class 2").fill("Glass");
-  await anna.page.getByRole("button", { name: "Create layer" }).click();
+  await anna.page.getByRole("button", { name: words.layer_dialog.create }).click();
+  await anna.page.getByText(words.layer_dialog.name_missing).waitFor();
+  await anna.page.getByLabel(words.layer_dialog.name, { exact: true }).fill("Finds");
+  await anna.page.getByLabel(words.layer_dialog.class_label(1)).fill("Bone");
+  await anna.page.getByRole("button", { name: words.layer_dialog.class_add }).click();
+  await anna.page.getByLabel(words.layer_dialog.class_label(2)).fill("Glass");
+  await anna.page.getByRole("button", { name: words.layer_dialog.create }).click();
   await choose_class(anna, "Bone");
   const layers = await server.json("GET", `/models/${id}/layers`);
   const layer = layers.layers.find((each) => each.slug === "finds");
@@ -71,12 +74,12 @@ test("somebody else opens the same model and looks from another side", async () 
   await bea.page.goto(`${server.url}/models/${id}`);
   await bea.drawn();
   // She may paint, but not say what layers there are and how large the model is.
-  assert.equal(await bea.page.getByRole("button", { name: "New layer" }).count(), 0);
-  assert.equal(await bea.page.getByRole("button", { name: "Check the size" }).count(), 0);
+  assert.equal(await bea.page.getByRole("button", { name: words.layers.new }).count(), 0);
+  assert.equal(await bea.page.getByRole("button", { name: words.model.check_size }).count(), 0);
   await bea.page.keyboard.press("v");
   for (let i = 0; i < 4; ++i) await bea.page.keyboard.press("ArrowLeft");
   await anna.page.getByLabel(/2 people are here/).waitFor();
-  await bea.page.getByRole("button", { name: "Paint on Finds" }).click();
+  await bea.page.getByRole("button", { name: words.layers.select("Finds") }).click();
   await bea.page.keyboard.press("b");
   await choose_class(bea, "Glass");
   for (const who of [anna, bea]) {
@@ -121,13 +124,13 @@ test("undo takes back one's own stroke only", async () => {
     console.log("the size question: another unit keeps the paint");
     const before = await server.json("GET", `${path}/statistics`);
     const model = await server.json("GET", `/models/${id}`);
-    await anna.page.getByRole("button", { name: "Check the size" }).click();
-    await anna.page.getByRole("radio", { name: "centimetres" }).click();
-    await anna.page.getByRole("radio", { name: "millimetres" }).click();
+    await anna.page.getByRole("button", { name: words.model.check_size }).click();
+    await anna.page.getByRole("radio", { name: words.scale.cm }).click();
+    await anna.page.getByRole("radio", { name: words.scale.mm }).click();
     await anna.page
       .getByText(/This object is .*mm: right\?|This object is .*cm: right\?/)
       .waitFor();
-    await anna.page.getByRole("button", { name: "Yes, that is right" }).click();
+    await anna.page.getByRole("button", { name: words.scale.yes }).click();
     await wait_for(
       async () => (await server.json("GET", `/models/${id}`)).scale_verified,
       "the size to be confirmed",

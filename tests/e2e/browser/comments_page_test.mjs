@@ -6,6 +6,9 @@ import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
@@ -80,22 +83,22 @@ test("a click with the tool begins a comment there, and one beside the model non
   await open_model(ada);
   await open_model(bea);
   await ada.page.keyboard.press("c");
-  assert.equal(await button(ada, "Comment").getAttribute("aria-pressed"), "true");
+  assert.equal(await button(ada, words.comments.text).getAttribute("aria-pressed"), "true");
   await click_at(ada, 0.04, 0.5);
-  await ada.page.getByText("There is no surface there.").waitFor();
+  await ada.page.getByText(words.comments.missed).waitFor();
   await click_at(ada, 0.47, 0.62);
-  await card(ada).getByRole("textbox", { name: "Comment" }).waitFor();
+  await card(ada).getByRole("textbox", { name: words.comments.text }).waitFor();
   assert.equal(await focused(ada), "textarea");
-  assert.equal(await button(ada, "Comment").first().isDisabled(), false);
+  assert.equal(await button(ada, words.comments.text).first().isDisabled(), false);
   assert.equal(
-    await card(ada).getByRole("button", { name: "Comment", exact: true }).isDisabled(),
+    await card(ada).getByRole("button", { name: words.comments.send, exact: true }).isDisabled(),
     true,
     "nothing is written yet",
   );
   await ada.page.keyboard.type(
     "Is this the crack of 2019?\nSee https://example.org/report (page 3).",
   );
-  await card(ada).getByLabel("About").selectOption({ label: "Handle (Finds)" });
+  await card(ada).getByLabel(words.comments.about).selectOption({ label: "Handle (Finds)" });
   await shot(ada, "composer");
 });
 
@@ -104,9 +107,9 @@ test("what is not sent outlives the card and the page, and is nobody else's", as
   await gone(card(ada));
   await ada.page.reload();
   await ada.drawn();
-  await button(ada, "Your comment that is not sent yet").click();
+  await button(ada, words.comments.pin_draft).click();
   assert.match(
-    await card(ada).getByRole("textbox", { name: "Comment" }).inputValue(),
+    await card(ada).getByRole("textbox", { name: words.comments.text }).inputValue(),
     /^Is this the crack of 2019\?\nSee/,
   );
   assert.equal((await comments()).length, 0);
@@ -114,7 +117,7 @@ test("what is not sent outlives the card and the page, and is nobody else's", as
 });
 
 test("it is sent by the keyboard, and seen by others without asking", async () => {
-  await card(ada).getByRole("textbox", { name: "Comment" }).focus();
+  await card(ada).getByRole("textbox", { name: words.comments.text }).focus();
   await ada.page.keyboard.press("Control+Enter");
   await article(ada, "Is this the crack").waitFor();
   first = await comment_with("Is this the crack");
@@ -124,11 +127,11 @@ test("it is sent by the keyboard, and seen by others without asking", async () =
     await pin(bea, first.id).getAttribute("aria-label"),
     /^Comment by ada: something new: Is this the crack of 2019\? See/,
   );
-  assert.equal(await button(ada, "Your comment that is not sent yet").count(), 0);
+  assert.equal(await button(ada, words.comments.pin_draft).count(), 0);
   assert.match(ada.page.url(), new RegExp(`#comment=${first.id}$`));
   const link = card(ada).getByRole("link", { name: "https://example.org/report", exact: true });
   assert.equal(await link.getAttribute("rel"), "noopener noreferrer nofollow");
-  await card(ada).getByText("About Handle (Finds)").waitFor();
+  await card(ada).getByText(words.comments.about_is("Handle (Finds)")).waitFor();
   await shot(ada, "thread");
 });
 
@@ -142,25 +145,25 @@ test("a reply with somebody's name reaches them", async () => {
   await ada.page.keyboard.press("Escape");
   await gone(card(ada));
   await card(bea)
-    .getByRole("textbox", { name: "Reply" })
+    .getByRole("textbox", { name: words.comments.reply_text })
     .fill("@ada yes, <b>it</b> has grown.\nMore in May.");
-  await card(bea).getByRole("button", { name: "Reply", exact: true }).click();
+  await card(bea).getByRole("button", { name: words.comments.send_reply, exact: true }).click();
   await article(bea, "it has grown").or(article(bea, "has grown.")).first().waitFor();
   assert.equal(await card(bea).locator(".mention").innerText(), "@ada");
-  await ada.page.getByText("bea wrote to you").waitFor();
+  await ada.page.getByText(words.comments.mentioned("bea")).waitFor();
   assert.match(await pin(ada, first.id).getAttribute("aria-label"), /something new/);
-  await ada.page.getByRole("button", { name: "Show", exact: true }).click();
+  await ada.page.getByRole("button", { name: words.comments.show, exact: true }).click();
   await article(ada, "<b>it</b> has grown.").waitFor();
   await shot(bea, "reply");
 });
 
 test("names are completed behind an @, by keys and by the mouse", async () => {
   const writing = card(bea).locator("textarea");
-  const names = card(bea).getByRole("listbox", { name: "People whom you may name" });
+  const names = card(bea).getByRole("listbox", { name: words.comments.names });
   await writing.focus();
   await bea.page.keyboard.type("Ask @ca");
   await names.getByRole("option", { name: "carl" }).waitFor();
-  await card(bea).getByRole("combobox", { name: "Reply" }).waitFor();
+  await card(bea).getByRole("combobox", { name: words.comments.reply_text }).waitFor();
   assert.equal(await names.getByRole("option").count(), 1, "bea herself is not among them");
   await shot(bea, "names");
   await bea.page.keyboard.press("Escape");
@@ -200,7 +203,7 @@ test("pins are hidden behind the surface: on the far side, and inside where the 
   await bea.page.keyboard.press("Escape");
   await bea.page.keyboard.press("c");
   await click_at(bea, 0.44, 0.42); // through the gap, the inside of the far wall
-  await card(bea).getByRole("textbox", { name: "Comment" }).fill("Inside");
+  await card(bea).getByRole("textbox", { name: words.comments.text }).fill("Inside");
   await bea.page.keyboard.press("Control+Enter");
   const inside = await comment_with("Inside");
   await bea.page.keyboard.press("Escape");
@@ -225,10 +228,15 @@ test("one who has the keyboard comes from the pin to the thread and back", async
 });
 
 test("texts are edited by who wrote them, and others see it", async () => {
-  await article(ada, "Is this the crack").getByRole("button", { name: "Edit" }).click();
-  assert.equal(await article(ada, "has grown").getByRole("button", { name: "Edit" }).count(), 0);
+  await article(ada, "Is this the crack")
+    .getByRole("button", { name: words.comments.edit })
+    .click();
+  assert.equal(
+    await article(ada, "has grown").getByRole("button", { name: words.comments.edit }).count(),
+    0,
+  );
   await card(ada).locator(`textarea[name="edit ${first.id}"]`).fill("Is this the crack of 2020?");
-  await card(ada).getByRole("button", { name: "Save" }).click();
+  await card(ada).getByRole("button", { name: words.save }).click();
   await article(ada, "Is this the crack of 2020?")
     .getByText(/^edited/)
     .waitFor();
@@ -237,14 +245,14 @@ test("texts are edited by who wrote them, and others see it", async () => {
 });
 
 test("of two who change one text at once the later is told", async () => {
-  await article(ada, "of 2020?").getByRole("button", { name: "Edit" }).click();
+  await article(ada, "of 2020?").getByRole("button", { name: words.comments.edit }).click();
   await card(ada).locator(`textarea[name="edit ${first.id}"]`).fill("Is this the crack of 2021?");
   await ada.page.route(`**/comments/${first.id}`, async (route) => {
     if (route.request().method() === "PATCH")
       await server.json("PATCH", `/comments/${first.id}`, { state: "open" });
     await route.continue();
   });
-  await card(ada).getByRole("button", { name: "Save" }).click();
+  await card(ada).getByRole("button", { name: words.save }).click();
   await card(ada)
     .getByRole("alert")
     .getByText(/changed this since/i)
@@ -254,12 +262,12 @@ test("of two who change one text at once the later is told", async () => {
     await card(ada).locator(`textarea[name="edit ${first.id}"]`).inputValue(),
     "Is this the crack of 2021?",
   );
-  await card(ada).getByRole("button", { name: "Save" }).click();
+  await card(ada).getByRole("button", { name: words.save }).click();
   await article(bea, "Is this the crack of 2021?").waitFor();
 });
 
 test("a thread is resolved by anybody who writes; its pin is shown only when asked for", async () => {
-  await card(bea).getByRole("button", { name: "Resolve" }).click();
+  await card(bea).getByRole("button", { name: words.comments.resolve }).click();
   await card(bea)
     .getByText(/^Resolved by bea/)
     .waitFor();
@@ -271,8 +279,8 @@ test("a thread is resolved by anybody who writes; its pin is shown only when ask
   await panel(ada)
     .getByRole("button", { name: /^Comments/ })
     .click();
-  await panel(ada).getByText("None is like that.").waitFor();
-  await panel(ada).getByRole("radio", { name: "Resolved" }).click();
+  await panel(ada).getByText(words.comments.none_found).waitFor();
+  await panel(ada).getByRole("radio", { name: words.comments.states.resolved }).click();
   await pin(ada, first.id).waitFor();
   await panel(ada).getByText("Is this the crack of 2021?").waitFor();
   await bea.page.keyboard.press("Escape");
@@ -292,15 +300,17 @@ test("the list finds threads by words, state and person, and goes to them", asyn
     .click();
   const rows = panel(bea).locator("li button");
   await wait_for(async () => (await rows.count()) === 3, "three open threads");
-  await panel(bea).getByRole("img", { name: "3 threads with something new" }).waitFor();
-  await panel(bea).getByRole("textbox", { name: "Find comments" }).fill("RIM owner");
+  await panel(bea)
+    .getByRole("img", { name: words.comments.unread(3) })
+    .waitFor();
+  await panel(bea).getByRole("textbox", { name: words.comments.find }).fill("RIM owner");
   await wait_for(async () => (await rows.count()) === 1, "the one with these words");
-  await panel(bea).getByRole("textbox", { name: "Find comments" }).fill("");
-  await panel(bea).getByRole("button", { name: "With me" }).click();
+  await panel(bea).getByRole("textbox", { name: words.comments.find }).fill("");
+  await panel(bea).getByRole("button", { name: words.comments.mine }).click();
   await wait_for(async () => (await rows.count()) === 1, "the one that names bea");
-  await panel(bea).getByRole("radio", { name: "All" }).click();
+  await panel(bea).getByRole("radio", { name: words.comments.states.all }).click();
   await wait_for(async () => (await rows.count()) === 2, "those with bea");
-  await panel(bea).getByRole("button", { name: "With me" }).click();
+  await panel(bea).getByRole("button", { name: words.comments.mine }).click();
   await shot(bea, "panel");
   await bea.page.keyboard.press("2");
   await rows.filter({ hasText: "Fingerprint" }).click();
@@ -308,7 +318,7 @@ test("the list finds threads by words, state and person, and goes to them", asyn
   fingerprint = await comment_with("Fingerprint");
   await pin(bea, fingerprint.id).waitFor();
   await shot(bea, "flown");
-  await panel(bea).getByRole("button", { name: "Mark all as read" }).click();
+  await panel(bea).getByRole("button", { name: words.comments.mark_all_read }).click();
   await gone(panel(bea).getByRole("img", { name: /something new/ }));
 });
 
@@ -319,35 +329,35 @@ test("an address leads to its comment, also to a reply", async () => {
   await article(bea, "has grown").waitFor();
   await pin(bea, first.id).waitFor();
   await bea.page.goto(`${server.url}/models/${id}#comment=999999`);
-  await bea.page.getByText("This comment is not here any more.").waitFor();
+  await bea.page.getByText(words.comments.missing).waitFor();
 });
 
 test("a first comment that is deleted leaves its place while there are replies", async () => {
   await pin(ada, first.id).click();
-  await article(ada, "of 2021?").getByRole("button", { name: "Delete" }).click();
-  await ada.page.getByRole("button", { name: "Cancel" }).click();
-  await article(ada, "of 2021?").getByRole("button", { name: "Delete" }).click();
-  await ada.page.locator("strata-dialog").getByRole("button", { name: "Delete" }).click();
-  await card(ada).getByText("This comment was deleted.").waitFor();
+  await article(ada, "of 2021?").getByRole("button", { name: words.delete }).click();
+  await ada.page.getByRole("button", { name: words.cancel }).click();
+  await article(ada, "of 2021?").getByRole("button", { name: words.delete }).click();
+  await ada.page.locator("strata-dialog").getByRole("button", { name: words.delete }).click();
+  await card(ada).getByText(words.comments.deleted).waitFor();
   assert.equal(
-    await article(ada, "has grown").getByRole("button", { name: "Delete" }).count(),
+    await article(ada, "has grown").getByRole("button", { name: words.delete }).count(),
     0,
     "it is bea's",
   );
-  await card(ada).getByRole("button", { name: "Open again" }).click();
+  await card(ada).getByRole("button", { name: words.comments.reopen }).click();
   await gone(card(ada).getByText(/^Resolved by/));
-  await panel(ada).getByRole("radio", { name: "Open" }).click();
+  await panel(ada).getByRole("radio", { name: words.comments.states.open }).click();
   await shot(ada, "deleted");
 });
 
 test("on a phone the thread is a sheet, and a finger writes", async () => {
   await open_model(phone);
   const box = await phone.stage_box();
-  await button(phone, "Comment").click();
+  await button(phone, words.comments.text).click();
   await phone.page.touchscreen.tap(box.x + 0.35 * box.width, box.y + 0.62 * box.height);
-  await card(phone).getByRole("textbox", { name: "Comment" }).fill("Glaze?");
+  await card(phone).getByRole("textbox", { name: words.comments.text }).fill("Glaze?");
   await shot(phone, "phone_composer");
-  await card(phone).getByRole("button", { name: "Comment", exact: true }).click();
+  await card(phone).getByRole("button", { name: words.comments.send, exact: true }).click();
   await article(phone, "Glaze?").waitFor();
   await shot(phone, "phone_thread");
 });
@@ -364,14 +374,14 @@ test("what somebody says meanwhile is shown above the sheet", async () => {
     const [notice, sheet] = [await told.boundingBox(), await card(phone).boundingBox()];
     return notice.y + notice.height <= sheet.y;
   }, "the notice to be above the sheet");
-  await told.getByRole("button", { name: "Close" }).click();
+  await told.getByRole("button", { name: words.close }).click();
   await server.request("DELETE", `/comments/${aside}`);
   await gone(pin(phone, aside));
-  await button(phone, "Close the comment").click();
+  await button(phone, words.comments.close).click();
   await pin(phone, first.id).tap();
-  await card(phone).getByText("This comment was deleted.").waitFor();
-  await article(phone, "has grown").getByRole("button", { name: "Delete" }).click();
-  await phone.page.locator("strata-dialog").getByRole("button", { name: "Delete" }).click();
+  await card(phone).getByText(words.comments.deleted).waitFor();
+  await article(phone, "has grown").getByRole("button", { name: words.delete }).click();
+  await phone.page.locator("strata-dialog").getByRole("button", { name: words.delete }).click();
   await gone(card(phone));
   await gone(pin(ada, first.id));
   await pin(ada, (await comment_with("Glaze?")).id).waitFor();
@@ -382,15 +392,15 @@ test("without a pointer a comment goes to the middle of the view", async () => {
   await ada.page.locator("strata-stage .surface").focus();
   await ada.page.keyboard.press("c");
   await ada.page.keyboard.press("Enter");
-  await card(ada).getByRole("textbox", { name: "Comment" }).waitFor();
+  await card(ada).getByRole("textbox", { name: words.comments.text }).waitFor();
   await wait_for(
     async () => (await focused(ada)) === "textarea",
     "the composer to have the keyboard",
   );
   await ada.page.keyboard.type("In the middle");
-  await card(ada).getByRole("button", { name: "Discard" }).click();
+  await card(ada).getByRole("button", { name: words.comments.give_up }).click();
   await gone(card(ada));
-  assert.equal(await button(ada, "Your comment that is not sent yet").count(), 0);
+  assert.equal(await button(ada, words.comments.pin_draft).count(), 0);
 });
 
 test("pins let paint through, and can be hidden", async () => {
@@ -398,7 +408,7 @@ test("pins let paint through, and can be hidden", async () => {
   const pin_of_paint = pins(ada).first();
   assert.equal(await pin_of_paint.evaluate((each) => getComputedStyle(each).pointerEvents), "none");
   await ada.page.keyboard.press("v");
-  await panel(ada).getByRole("button", { name: "Hide them on the model" }).click();
+  await panel(ada).getByRole("button", { name: words.comments.hide_pins }).click();
   await wait_for(async () => (await pins(ada).count()) === 0, "the pins to go");
 });
 
@@ -406,7 +416,7 @@ test("who only looks reads, and is not offered to write", async () => {
   await phone.page.context().clearCookies();
   await phone.sign_in(server, await server.add_person("vera", "viewer"));
   await open_model(phone);
-  assert.equal(await button(phone, "Comment").count(), 0);
+  assert.equal(await button(phone, words.comments.text).count(), 0);
   await pin(phone, fingerprint.id).tap();
   await article(phone, "Fingerprint").waitFor();
   assert.equal(await card(phone).getByRole("textbox").count(), 0);

@@ -51,7 +51,7 @@ test("names are completed, and what the expression holds for is told", async ({ 
 });
 
 test("the layer is computed first and gets its colours then", async ({ server, page }) => {
-  await page.getByLabel("Name", { exact: true }).fill("Risk");
+  await page.getByLabel(w.layer_dialog.name, { exact: true }).fill("Risk");
   await shot(page, "dialog");
   await button(page, w.layer_dialog.compute).click();
   await page.locator("strata-layer-dialog").waitFor({ state: "detached" });

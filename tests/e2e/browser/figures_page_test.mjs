@@ -7,6 +7,9 @@ import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
@@ -98,7 +101,7 @@ async function download(who, act) {
   const [file] = await Promise.all([who.page.waitForEvent("download"), act()]);
   return { name: file.suggestedFilename(), bytes: readFileSync(await file.path()) };
 }
-const make = (who) => download(who, () => button(who, "Make the figure").click());
+const make = (who) => download(who, () => button(who, words.figures.make).click());
 
 let ada, phone, server, model, hidden, hidden_name, finds, ada_person, preview, half, downloads;
 
@@ -142,11 +145,11 @@ test.beforeAll(async () => {
 test("the dialog shows the sheet: white paper with the model on it, of all that the person sees", async () => {
   await open_model(ada);
   const panel = ada.page.locator("strata-view-panel");
-  await panel.getByRole("button", { name: "View", exact: true }).click();
-  await panel.getByRole("radio", { name: "Raking", exact: true }).click();
-  await panel.getByRole("radio", { name: "X", exact: true }).click();
+  await panel.getByRole("button", { name: words.view.title, exact: true }).click();
+  await panel.getByRole("radio", { name: words.view.lights.raking, exact: true }).click();
+  await panel.getByRole("radio", { name: words.view.sections.x, exact: true }).click();
   await ada.page.getByRole("button", { name: `Hide ${hidden_name}` }).click();
-  await panel.getByRole("button", { name: "Make a figure…" }).click();
+  await panel.getByRole("button", { name: words.figures.open }).click();
   await dialog(ada).getByRole("dialog").waitFor();
   const first = await sheet(ada);
   assert.deepEqual(first.corners, Array(4).fill([255, 255, 255]));
@@ -200,7 +203,7 @@ test("another scale is another sheet: twice as small is a quarter of the area", 
     .getByText(/^Write it as 1 : 40/)
     .waitFor();
   assert.equal(await field(ada, "own_scale").getAttribute("aria-invalid"), "true");
-  await button(ada, "Make the figure").click();
+  await button(ada, words.figures.make).click();
   assert.equal(asked.get(ada).file, undefined);
   half = await sheet_after(ada, two, () => field(ada, "own_scale").fill("2:3"));
   assert.equal(asked.get(ada).preview.scale, 1.5);
@@ -254,7 +257,7 @@ test("square to a face: the dialog steps aside, Escape leads back as it was, a c
     Math.abs(Math.hypot(...normal) - 1) < 1e-3 && center.length === 3 && direction === undefined,
   );
   assert.equal(await field(ada, "from").inputValue(), "face");
-  await button(ada, "Pick another face…").click();
+  await button(ada, words.figures.pick_again).click();
   await hint.waitFor();
   await sheet_after(ada, square, async () => {
     await ada.page.keyboard.press("Enter"); // on the button for the middle, which has the focus
@@ -266,7 +269,9 @@ test("square to a face: the dialog steps aside, Escape leads back as it was, a c
 test("labels are what records have in a column; in SVG they are words", async () => {
   const unlabelled = await sheet(ada);
   await field(ada, "caption").fill("The handle,\nfrom the side");
-  await sheet_after(ada, unlabelled, () => field(ada, "labels").selectOption({ label: "Finds" }));
+  await sheet_after(ada, unlabelled, () =>
+    field(ada, "labels").selectOption({ label: words.layer_dialog.name_hint.records }),
+  );
   assert.deepEqual(await field(ada, "column").locator("option").allTextContents(), [
     "Name",
     "Depth",
@@ -310,11 +315,11 @@ test("one that takes long is given up", async () => {
         new URL(answer.url()).pathname.endsWith("/figures") &&
         answer.status() === 202,
     ),
-    button(ada, "Make the figure").click(),
+    button(ada, words.figures.make).click(),
   ]);
   await bar(ada).waitFor();
   await shot(ada, "making");
-  await button(ada, "Cancel the figure").click();
+  await button(ada, words.figures.cancel).click();
   await bar(ada).waitFor({ state: "detached" });
   const job = await ada.page.evaluate(
     async (at) => (await fetch(`/api/v1/jobs/${at}`)).json(),
@@ -333,19 +338,19 @@ test("one whose dialog is closed goes on, and is offered", async () => {
     await held;
     await route.continue();
   });
-  await button(ada, "Make the figure").click();
+  await button(ada, words.figures.make).click();
   await bar(ada).waitFor();
   await ada.page.keyboard.press("Escape");
   await closed(ada);
   const row = ada.page.locator("strata-layer-panel .job");
-  await row.getByText("Figure: Pot of Agathe").waitFor();
+  await row.getByText(words.figures.job("Pot of Agathe")).waitFor();
   release();
-  await notice(ada, "The figure is ready").waitFor();
+  await notice(ada, words.figures.ready).waitFor();
   await shot(ada, "ready");
   assert.deepEqual(downloads, []);
   await ada.page.unroute("**/api/v1/jobs/*");
   const png = await download(ada, () =>
-    notice(ada, "The figure is ready").getByRole("button", { name: "Save the file" }).click(),
+    notice(ada, words.figures.ready).getByRole("button", { name: words.figures.save }).click(),
   );
   assert.match(png.name, /\.png$/);
   assert.equal(png.bytes.subarray(1, 4).toString("latin1"), "PNG");
@@ -375,7 +380,7 @@ test("what was written is there again, also what was chosen, in another visit as
 });
 
 test("what the server refuses stands at its field", async () => {
-  await field(ada, "labels").selectOption({ label: "Finds" });
+  await field(ada, "labels").selectOption({ label: words.layer_dialog.name_hint.records });
   await field(ada, "column").selectOption("depth");
   await sheet(ada);
   const columns = (await server.json("GET", `/tables/${finds.id}`)).columns;
@@ -383,7 +388,7 @@ test("what the server refuses stands at its field", async () => {
     "DELETE",
     `/tables/${finds.id}/columns/${columns.find(({ slug }) => slug === "depth").id}`,
   );
-  await button(ada, "Make the figure").click();
+  await button(ada, words.figures.make).click();
   await dialog(ada).locator("#labels_problem").waitFor();
   assert.equal(await field(ada, "labels").getAttribute("aria-invalid"), "true");
   await wait_for(
@@ -422,9 +427,11 @@ test("of a kept view, by its menu: what it shows, not what is seen", async () =>
     body: JSON.stringify({ name: "West wall", text: "", ...kept }),
   });
   assert.equal(made.status, 201, await made.clone().text());
-  await list.getByRole("button", { name: "Options for West wall" }).click();
-  await list.getByRole("menuitem", { name: "Figure of this view…" }).click();
-  await dialog(ada).getByRole("heading", { name: "Figure of the view “West wall”" }).waitFor();
+  await list.getByRole("button", { name: words.layers.options("West wall") }).click();
+  await list.getByRole("menuitem", { name: words.figures.of_view }).click();
+  await dialog(ada)
+    .getByRole("heading", { name: words.figures.title_of_view("West wall") })
+    .waitFor();
   await sheet(ada);
   assert.deepEqual(
     [asked.get(ada).preview.view, asked.get(ada).preview.camera, asked.get(ada).preview.direction],
@@ -450,14 +457,14 @@ test("what a browser kept and is no choice does no harm", async () => {
 
 test("on a phone, by who may only look", async () => {
   await open_model(phone);
-  await phone.page.getByRole("button", { name: "Show the panel" }).tap();
+  await phone.page.getByRole("button", { name: words.model.show_panel }).tap();
   await phone.page
     .locator("strata-view-panel")
-    .getByRole("button", { name: "View", exact: true })
+    .getByRole("button", { name: words.view.title, exact: true })
     .tap();
   await phone.page
     .locator("strata-view-panel")
-    .getByRole("button", { name: "Make a figure…" })
+    .getByRole("button", { name: words.figures.open })
     .tap();
   const small = await sheet(phone);
   assert.ok(small.drawn > 0.03);
@@ -483,7 +490,7 @@ test("on a phone, by who may only look", async () => {
   await radio(phone, "150 dpi").tap();
   const [of_viewer] = await Promise.all([
     phone.page.waitForEvent("download"),
-    button(phone, "Make the figure").tap(),
+    button(phone, words.figures.make).tap(),
   ]);
   assert.match(of_viewer.suggestedFilename(), /\.png$/);
 });

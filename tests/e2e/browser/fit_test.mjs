@@ -10,6 +10,8 @@ import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
+const words = texts_of("en");
+
 const kWindows = {
   desk: { width: 1440, height: 900 },
   tablet: { width: 820, height: 1180 },
@@ -134,9 +136,9 @@ test.beforeAll(async () => {
       all.map((each) => {
         const range = document.createRange();
         range.selectNodeContents(each);
-        const words = range.getBoundingClientRect();
+        const text = range.getBoundingClientRect();
         const box = each.getBoundingClientRect();
-        return Math.min(words.left - box.left, box.right - words.right);
+        return Math.min(text.left - box.left, box.right - text.right);
       }),
     );
     assert.ok(
@@ -240,7 +242,7 @@ test("controls are named by what is seen on them, and everything lies in a landm
   await desk.drawn();
   assert.deepEqual(await violations(page, kHeadRules), []);
   // the chosen layer after a reload has no table
-  await button(texts_of("en").layers.select("Stone observations")).click();
+  await button(words.layers.select("Stone observations")).click();
   await page.locator("strata-stage .surface").focus();
   await page.keyboard.press("t");
   await page.getByRole("grid").waitFor();
@@ -280,7 +282,7 @@ test("on a phone what is painted and undo are always in sight", async () => {
     });
     assert.ok(hit, `something lies over ${what}`);
   };
-  await button("Brush", phone).click();
+  await button(words.brush.title, phone).click();
   chip = phone.page.locator("strata-paint-chip button");
   await chip.waitFor();
   for (const place of [0, 60, 100_000]) {
@@ -297,9 +299,12 @@ test("on a phone what is painted and undo are always in sight", async () => {
 
 test("the line that says so leads to what can be chosen", async () => {
   if ((await phone.page.locator("strata-model-page aside").count()) > 0)
-    await button("Hide the panel", phone).click();
+    await button(words.model.hide_panel, phone).click();
   await chip.click();
-  await phone.page.locator("strata-brush-panel").getByRole("heading", { name: "Brush" }).waitFor();
+  await phone.page
+    .locator("strata-brush-panel")
+    .getByRole("heading", { name: words.brush.title })
+    .waitFor();
   await shoot(phone, "phone_options");
   await phone.page.evaluate(() => (document.documentElement.dataset.theme = "dark"));
   await shoot(phone, "phone_dark");

@@ -9,6 +9,9 @@ import { kRoot } from "../support/js/modules.mjs";
 import { decode_png, encode_png } from "../support/js/png.mjs";
 import { pot_camera } from "../support/js/pot-camera.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kGolden = join(kRoot, "tests", "golden");
 const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-golden";
@@ -124,7 +127,7 @@ async function compare_page(server) {
   try {
     const { page } = laptop;
     await page.goto(server.link);
-    await page.getByRole("heading", { name: "Models", exact: true }).waitFor();
+    await page.getByRole("heading", { name: words.home.title, exact: true }).waitFor();
     await page.locator("strata-thumbnail canvas.drawn").waitFor();
     compare("gallery", await laptop.settled(), kPageLimits);
     await page.getByRole("link", { name: /Demo pot/ }).click();
@@ -163,7 +166,7 @@ async function compare_page(server) {
       assert_noticed("model", name, details[name], await laptop.settled());
       await element.evaluate((each) => (each.style.visibility = ""));
     }
-    await page.getByRole("button", { name: "New layer" }).click();
+    await page.getByRole("button", { name: words.layers.new }).click();
     await page.getByRole("radio", { name: /^Class/ }).click();
     compare("new_layer", await laptop.settled(), kPageLimits);
     if (is_update) await write_readme_picture(laptop);

@@ -6,6 +6,9 @@ import { join } from "node:path";
 import { Browser, kOfLostServer } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 // What the browser says of answers that the test wants, and of sockets that the server ends.
 const kExpected = [
@@ -57,58 +60,64 @@ test.beforeAll(async () => {
 });
 
 test("a group is made with the keyboard; a name that is taken is told at its field", async () => {
-  await choose_in_menu(owner, "People…");
+  await choose_in_menu(owner, words.account.people);
   await owner.page.getByRole("row", { name: /Gil Guest/ }).waitFor();
   await show("Groups");
-  await owner.page.getByText("There are no groups yet.").waitFor();
-  await owner.page.getByLabel("New group").press("Enter");
-  await owner.page.getByRole("alert").getByText("Give the group a name.").waitFor();
-  await owner.page.getByLabel("New group").fill("Students");
+  await owner.page.getByText(words.groups.none).waitFor();
+  await owner.page.getByLabel(words.groups.new_name).press("Enter");
+  await owner.page.getByRole("alert").getByText(words.groups.name_empty).waitFor();
+  await owner.page.getByLabel(words.groups.new_name).fill("Students");
   await owner.page.keyboard.press("Enter");
-  await owner.page.getByRole("heading", { name: "Who is in “Students”" }).waitFor();
+  await owner.page.getByRole("heading", { name: words.groups.members_of("Students") }).waitFor();
   await owner.page.getByText("0 people are in it.").waitFor();
   await leave_inner_dialog();
-  await owner.page.getByLabel("New group").fill("STUDENTS");
+  await owner.page.getByLabel(words.groups.new_name).fill("STUDENTS");
   await owner.page.keyboard.press("Enter");
   await owner.page.getByRole("alert").getByText("There is a group called `Students`.").waitFor();
-  assert.equal(await owner.page.getByLabel("New group").getAttribute("aria-invalid"), "true");
+  assert.equal(
+    await owner.page.getByLabel(words.groups.new_name).getAttribute("aria-invalid"),
+    "true",
+  );
 });
 
 test("people are put into it and taken out, found by their names", async () => {
-  await choose_for("Options for the group Students", "Who is in it…");
+  await choose_for(words.groups.options("Students"), words.groups.members);
   await owner.page.getByRole("checkbox", { name: "max" }).check();
   await owner.page.getByText("1 person is in it.").waitFor();
   await owner.page.getByRole("checkbox", { name: "max" }).uncheck();
-  await owner.page.getByText("Is out now.").waitFor();
-  await owner.page.getByLabel("Find people").last().fill("gil");
+  await owner.page.getByText(words.groups.taken_out).waitFor();
+  await owner.page.getByLabel(words.site_people.filter).last().fill("gil");
   await wait_for(
     async () => (await owner.page.getByRole("checkbox").count()) === 1,
     "gil alone to be listed",
   );
   await owner.page.getByRole("checkbox", { name: /Gil Guest/ }).focus();
   await owner.page.keyboard.press("Space");
-  await owner.page.getByText("Is in it now.").waitFor();
+  await owner.page.getByText(words.groups.put_in).waitFor();
   await shot(owner, "members");
   await leave_inner_dialog();
   await owner.page.getByText("1 person · no role in any project").waitFor();
 });
 
 test("it gets a role in the project of the demo: its people see it, and where that comes from", async () => {
-  await choose_for("Options for the group Students", "Roles in projects…");
+  await choose_for(words.groups.options("Students"), words.site_people.projects);
   in_demo = owner.page
     .locator("strata-project-roles-dialog")
-    .getByRole("combobox", { name: "Role in Demo" });
+    .getByRole("combobox", { name: words.project_roles.role_in("Demo") });
   assert.equal(await in_demo.inputValue(), "");
   await in_demo.selectOption("annotator");
-  await owner.page.locator("strata-project-roles-dialog").getByText("Is annotator now.").waitFor();
+  await owner.page
+    .locator("strata-project-roles-dialog")
+    .getByText(words.site_people.role_changed("annotator"))
+    .waitFor();
   await shot(owner, "roles");
   await leave_inner_dialog();
   await owner.page.getByText("1 person · a role in 1 project").waitFor();
   await shot(owner, "list");
   await gil.page.reload();
   await gil.page.getByRole("link", { name: /Demo pot/ }).waitFor();
-  await choose_in_menu(gil, "Account…");
-  await gil.page.getByText("Annotator by group: Students").waitFor();
+  await choose_in_menu(gil, words.account.open);
+  await gil.page.getByText(words.account.role_by_groups("Annotator", "Students")).waitFor();
   await shot(gil, "account");
   await gil.page.keyboard.press("Escape");
 });
@@ -119,34 +128,36 @@ test("administrators see it of the person, too", async () => {
     .getByRole("row", { name: /Gil Guest/ })
     .getByText("Students")
     .waitFor();
-  await owner.page.getByLabel("Find people").fill("students");
+  await owner.page.getByLabel(words.site_people.filter).fill("students");
   await owner.page.getByText(/^1 of \d people$/).waitFor();
   await shot(owner, "people");
-  await choose_for("Options for Gil Guest", "Roles in projects…");
-  await owner.page.getByText("Is annotator there by group: Students.").waitFor();
+  await choose_for(words.site_people.options("Gil Guest"), words.site_people.projects);
+  await owner.page.getByText(words.project_roles.by_groups("annotator", "Students")).waitFor();
   await in_demo.selectOption("curator");
-  await owner.page.getByText("Also annotator by group: Students.").waitFor();
+  await owner.page.getByText(words.project_roles.by_groups_also("annotator", "Students")).waitFor();
   await in_demo.selectOption("");
-  await owner.page.getByText("Is annotator there by group: Students.").waitFor();
+  await owner.page.getByText(words.project_roles.by_groups("annotator", "Students")).waitFor();
   await shot(owner, "of_person");
   await leave_inner_dialog();
-  await owner.page.getByLabel("Find people").fill("");
+  await owner.page.getByLabel(words.site_people.filter).fill("");
 });
 
 test("somebody invited comes with the group, and is told so", async () => {
-  await owner.page.getByRole("button", { name: "Invite somebody" }).click();
-  await owner.page.getByLabel("Name for signing in").fill("ida");
-  await owner.page.getByRole("combobox", { name: "Role", exact: true }).selectOption("guest");
+  await owner.page.getByRole("button", { name: words.site_people.invite }).click();
+  await owner.page.getByLabel(words.site_people.invite_user).fill("ida");
+  await owner.page
+    .getByRole("combobox", { name: words.site_people.role, exact: true })
+    .selectOption("guest");
   await owner.page.getByRole("checkbox", { name: "Students" }).check();
   await shot(owner, "invite");
-  await owner.page.getByRole("button", { name: "Make link" }).click();
+  await owner.page.getByRole("button", { name: words.site_people.invite_button }).click();
   const link = await owner.page
-    .getByRole("textbox", { name: "Link for ida", exact: true })
+    .getByRole("textbox", { name: words.site_people.link("ida"), exact: true })
     .inputValue();
   await owner.page.getByRole("row", { name: /ida/ }).getByText("Students").waitFor();
   const guest = await Browser.open();
   await guest.page.goto(link);
-  await guest.page.getByText("You are in: Students.").waitFor();
+  await guest.page.getByText(words.join.groups("Students")).waitFor();
   await shot(guest, "join");
   await guest.close();
 });
@@ -154,27 +165,29 @@ test("somebody invited comes with the group, and is told so", async () => {
 test("a page that is open follows the group's role, and ends with the group", async () => {
   await gil.page.goto(`${server.url}/models/${slug}`);
   await gil.drawn();
-  await gil.page.getByRole("button", { name: "Brush", exact: true }).waitFor();
+  await gil.page.getByRole("button", { name: words.tools.brush, exact: true }).waitFor();
   await show("Groups");
-  await choose_for("Options for the group Students", "Roles in projects…");
+  await choose_for(words.groups.options("Students"), words.site_people.projects);
   await in_demo.selectOption("viewer");
-  await gil.page.getByText("Your role is viewer now.").waitFor();
-  await gil.page.getByRole("button", { name: "Brush", exact: true }).waitFor({ state: "detached" });
+  await gil.page.getByText(words.people.role_now("viewer")).waitFor();
+  await gil.page
+    .getByRole("button", { name: words.tools.brush, exact: true })
+    .waitFor({ state: "detached" });
   await leave_inner_dialog();
-  await choose_for("Options for the group Students", "Rename…");
-  await owner.page.getByLabel("Name", { exact: true }).fill("Pupils");
+  await choose_for(words.groups.options("Students"), words.view.look_rename);
+  await owner.page.getByLabel(words.groups.name, { exact: true }).fill("Pupils");
   await owner.page.keyboard.press("Enter");
   await owner.page.getByText("Pupils").waitFor();
-  await choose_for("Options for the group Pupils", "Delete…");
+  await choose_for(words.groups.options("Pupils"), words.layers.delete);
   await owner.page
     .getByText("2 people of the 2 in it will see fewer projects, or may do less there.")
     .waitFor();
   await shot(owner, "delete");
   await owner.page.keyboard.press("Escape");
   await owner.page.getByText("2 people · a role in 1 project").waitFor();
-  await choose_for("Options for the group Pupils", "Delete…");
-  await owner.page.getByRole("button", { name: "Delete", exact: true }).click();
-  await owner.page.getByText("There are no groups yet.").waitFor();
+  await choose_for(words.groups.options("Pupils"), words.layers.delete);
+  await owner.page.getByRole("button", { name: words.delete, exact: true }).click();
+  await owner.page.getByText(words.groups.none).waitFor();
   await gil.page.goto(server.url);
   await gil.page.getByText("You see the models of projects that you have a role in.").waitFor();
 });
@@ -184,9 +197,9 @@ test("the project's activity tells it", async () => {
   await owner.page.goto(`${server.url}/models/${slug}`);
   await owner.drawn();
   const activity = owner.page.locator("strata-activity-panel");
-  await activity.getByRole("button", { name: "Activity", expanded: false }).click();
-  await activity.getByRole("radio", { name: "Whole project" }).click();
-  await activity.getByText("took the role in the project from the group").waitFor();
+  await activity.getByRole("button", { name: words.activity.title, expanded: false }).click();
+  await activity.getByRole("radio", { name: words.activity.of_project }).click();
+  await activity.getByText(words.activity.done["group removed"]).waitFor();
   await activity.getByText("put into a group").first().waitFor();
   await activity.evaluate((panel) => panel.scrollIntoView());
   await shot(owner, "activity");

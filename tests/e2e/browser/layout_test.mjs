@@ -8,6 +8,9 @@ import { active } from "../support/js/accessible.mjs";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const kTablet = { width: 820, height: 1180 };
@@ -49,7 +52,7 @@ test.beforeAll(async () => {
 test("a project without models asks for one thing", async () => {
   await desk.sign_in(server, server.token);
   await page.goto(`${server.url}/projects/empty`);
-  await button("Choose a file").waitFor();
+  await button(words.home.choose_file).waitFor();
   assert.deepEqual(await page.locator("strata-home-page button.primary").allInnerTexts(), [
     "Choose a file",
   ]);
@@ -58,7 +61,7 @@ test("a project without models asks for one thing", async () => {
 test("the options of a tool come into sight with it, and stay away when only the layer changes", async () => {
   await page.goto(`${server.url}/models/${model.id}`);
   await desk.drawn();
-  await button("Paint on cracks").click();
+  await button(words.layers.select("cracks")).click();
   await page.locator("strata-stage .surface").focus();
   await page.keyboard.press("b");
   const scroller = page.locator("strata-model-page aside .scroll");
@@ -71,23 +74,27 @@ test("the options of a tool come into sight with it, and stay away when only the
     await scroll_down();
     assert.ok((await scrolled()) > 0, "the panel need not scroll");
     await page.keyboard.press("a");
-    await page.getByRole("heading", { name: "Polygon" }).waitFor();
+    await page.getByRole("heading", { name: words.tools.polygon }).waitFor();
     await is_seen("the polygon");
     await scroll_down();
-    await button("Eraser").click();
+    await button(words.tools.eraser).click();
     await is_seen("the eraser");
     await scroll_down();
-    await page.getByRole("button", { name: "Paint on pieces" }).evaluate((each) => each.click());
+    await page
+      .getByRole("button", { name: words.layers.select("pieces") })
+      .evaluate((each) => each.click());
     await page.locator("strata-brush-panel").getByText("pieces").waitFor();
     assert.ok((await scrolled()) > 0, "a layer that is chosen scrolls the panel");
-    await page.getByRole("button", { name: "Paint on cracks" }).evaluate((each) => each.click());
+    await page
+      .getByRole("button", { name: words.layers.select("cracks") })
+      .evaluate((each) => each.click());
   }
   await page.setViewportSize(kDesk);
 });
 
 test("a question begins at the answer that harms nothing", async () => {
-  await button("Options for cracks").click();
-  await page.getByRole("menuitem", { name: "Delete…" }).click();
+  await button(words.layers.options("cracks")).click();
+  await page.getByRole("menuitem", { name: words.layers.delete }).click();
   await page.locator("strata-question dialog[open]").waitFor();
   await wait_for(
     async () => (await active(page)) === "button.way-out “Cancel”",
@@ -95,15 +102,15 @@ test("a question begins at the answer that harms nothing", async () => {
   );
   await page.keyboard.press("Enter");
   await page.locator("strata-question").waitFor({ state: "detached" });
-  assert.equal(await button("Options for cracks").count(), 1, "Enter deleted the layer");
+  assert.equal(await button(words.layers.options("cracks")).count(), 1, "Enter deleted the layer");
 });
 
 test("a menu that is open stays inside the window when either changes its width", async () => {
-  await button("Paint on Finds").click();
+  await button(words.layers.select("Finds")).click();
   await page.locator("strata-stage .surface").focus();
   await page.keyboard.press("t");
   await page.getByRole("grid").getByText("Handle").first().waitFor();
-  await button("More about the table").click();
+  await button(words.tables.more).click();
   const list = page.locator("strata-table-panel .list:popover-open");
   const items = () => page.getByRole("menuitem").count();
   const before = await items();
@@ -161,7 +168,7 @@ test("tools that a phone has no room for are hinted at, at the end where they ar
 test("the help speaks of the pointers that there are", async () => {
   const parts = (who) => who.page.locator("strata-help-sheet h3").allInnerTexts();
   for (const who of [desk, phone]) {
-    await who.page.getByRole("button", { name: "Help", exact: true }).click();
+    await who.page.getByRole("button", { name: words.model.help, exact: true }).click();
     await who.page.locator("strata-help-sheet dialog[open]").waitFor();
   }
   assert.deepEqual((await parts(desk)).slice(0, 3), ["Mouse", "Touch", "Keys"]);
@@ -207,7 +214,9 @@ test("what is pointed at is where the pointer is, also where words are larger", 
 test("the panel is as wide as it is drawn, and grows with the words in it", async () => {
   const panel = page.locator("strata-model-page aside");
   assert.ok(Math.abs((await panel.boundingBox()).width - 330 * 1.25) < 1);
-  const splitter = await page.getByRole("separator", { name: "Width of the panel" }).boundingBox();
+  const splitter = await page
+    .getByRole("separator", { name: words.model.resize_panel })
+    .boundingBox();
   await page.mouse.move(splitter.x + 3, 400);
   await page.mouse.down();
   await page.mouse.move(kLarge.width - 600, 400, { steps: 4 });
@@ -220,7 +229,7 @@ test("the panel is as wide as it is drawn, and grows with the words in it", asyn
 
 test("the gallery takes the width of a wall", async () => {
   await page.goto(server.url);
-  await page.getByRole("heading", { name: "Projects" }).waitFor();
+  await page.getByRole("heading", { name: words.home.projects }).waitFor();
   await page.setViewportSize(kWall);
   const { width } = await page.locator("ul.gallery").boundingBox();
   assert.ok(width > 0.9 * kWall.width, `the gallery has ${width} px of ${kWall.width}`);

@@ -5,6 +5,9 @@ import { join } from "node:path";
 import { Browser, rgb } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kEnough = 150; // pixels of a stroke that is there
 
@@ -19,11 +22,9 @@ async function choose_for({ page }, name, command) {
 const cursor = ({ page }) =>
   page.locator("strata-stage .surface").evaluate((surface) => getComputedStyle(surface).cursor);
 const notice = ({ page }) =>
-  page.locator("strata-notices").getByText("The layer Finds is locked: a curator can unlock it.");
+  page.locator("strata-notices").getByText(words.layers.locked_detail("Finds"));
 const told_in_panel = ({ page }) =>
-  page
-    .locator("strata-brush-panel")
-    .getByText("The layer Finds is locked: a curator can unlock it.");
+  page.locator("strata-brush-panel").getByText(words.layers.locked_detail("Finds"));
 const lock_of = ({ page }, says) =>
   page.locator("strata-layer-panel").getByRole("img", { name: says });
 /** What this page sends from now on that would change something. */
@@ -81,7 +82,7 @@ test("a curator and two annotators look at the model; one of them paints", async
     await who.page.goto(`${server.url}/models/${model.id}`);
     await who.drawn();
   }
-  await ada.page.getByRole("button", { name: "Paint on Finds" }).click();
+  await ada.page.getByRole("button", { name: words.layers.select("Finds") }).click();
   await ada.page.keyboard.press("b");
   await ada.drag([
     [0.46, 0.5],
@@ -90,10 +91,13 @@ test("a curator and two annotators look at the model; one of them paints", async
   await ada.saved();
   await wait_for(async () => (await ada.count(bone)) > kEnough, "the stroke", 150);
   assert.equal(await cursor(ada), "none");
-  assert.equal(await ada.page.getByRole("button", { name: "Options for Finds" }).count(), 1);
-  await ada.page.getByRole("button", { name: "Options for Finds" }).click();
   assert.equal(
-    await ada.page.getByRole("menuitem", { name: "Lock", exact: true }).count(),
+    await ada.page.getByRole("button", { name: words.layers.options("Finds") }).count(),
+    1,
+  );
+  await ada.page.getByRole("button", { name: words.layers.options("Finds") }).click();
+  assert.equal(
+    await ada.page.getByRole("menuitem", { name: words.layers.lock, exact: true }).count(),
     0,
     "an annotator is offered to lock",
   );
@@ -114,10 +118,10 @@ test("the lock falls while her button is down: what she painted stays, and nothi
   await ada.page.mouse.move(...at(0.48, 0.4), { steps: 5 });
   await wait_for(async () => (await edits()) > before, "the beginning of the stroke to be saved");
   await ada.saved();
-  await choose_for(carl, "Finds", "Lock");
+  await choose_for(carl, words.layer_dialog.name_hint.records, words.layers.lock);
   await notice(ada).waitFor();
   await told_in_panel(ada).waitFor();
-  await lock_of(ada, "Locked: a curator can unlock it.").waitFor();
+  await lock_of(ada, words.layers.locked_to_you).waitFor();
   texels = (await server.json("GET", `${finds}/statistics`)).texels;
   [saved, known] = [await edits(), sent.length];
   await ada.page.mouse.move(...at(0.56, 0.44), { steps: 5 });
@@ -141,12 +145,12 @@ test("no tool sends anything, and each says why", async () => {
   await ada.page.keyboard.press("Control+Shift+z");
   await notice(ada).waitFor();
   assert.equal(
-    await ada.page.locator("strata-notices").getByText("Layer locked").count(),
+    await ada.page.locator("strata-notices").getByText(words.layers.locked).count(),
     1,
     "one notice is enough",
   );
-  assert.equal(await ada.page.getByRole("button", { name: "Fill the whole surface" }).count(), 0);
-  await ada.page.getByRole("button", { name: "Options for Finds" }).click();
+  assert.equal(await ada.page.getByRole("button", { name: words.brush.fill }).count(), 0);
+  await ada.page.getByRole("button", { name: words.layers.options("Finds") }).click();
   assert.equal(
     await ada.page
       .getByRole("menuitem", { name: /^(Paint from a file|Replace from a raster)/ })
@@ -164,7 +168,7 @@ test("no tool sends anything, and each says why", async () => {
 
 test("another layer is painted as before, and coming back to the locked one says so again", async () => {
   await server.json("POST", layers, { name: "Open", type: "u8", palette });
-  await ada.page.getByRole("button", { name: "Paint on Open" }).click();
+  await ada.page.getByRole("button", { name: words.layers.select("Open") }).click();
   await ada.page.keyboard.press("b");
   assert.equal(await cursor(ada), "none");
   await ada.drag([
@@ -173,25 +177,25 @@ test("another layer is painted as before, and coming back to the locked one says
   ]);
   await ada.saved();
   assert.ok(sent.length > known);
-  const close = ada.page.locator("strata-notices").getByRole("button", { name: "Close" });
+  const close = ada.page.locator("strata-notices").getByRole("button", { name: words.close });
   while ((await close.count()) > 0) await close.first().click();
-  await ada.page.getByRole("button", { name: "Paint on Finds" }).click();
+  await ada.page.getByRole("button", { name: words.layers.select("Finds") }).click();
   await notice(ada).waitFor();
 });
 
 test("on a phone", async () => {
-  await phone.page.getByRole("button", { name: "Show the panel" }).click();
-  await lock_of(phone, "Locked: a curator can unlock it.").waitFor();
-  await phone.page.getByRole("button", { name: "Paint on Finds" }).click();
-  await phone.page.getByRole("button", { name: "Brush", exact: true }).click();
+  await phone.page.getByRole("button", { name: words.model.show_panel }).click();
+  await lock_of(phone, words.layers.locked_to_you).waitFor();
+  await phone.page.getByRole("button", { name: words.layers.select("Finds") }).click();
+  await phone.page.getByRole("button", { name: words.tools.brush, exact: true }).click();
   await notice(phone).waitFor();
   await told_in_panel(phone).waitFor();
   await shoot(phone, "phone");
 });
 
 test("the curator sees the lock, paints all the same, and unlocks", async () => {
-  await lock_of(carl, "Locked for annotators. You may still change it.").waitFor();
-  await carl.page.getByRole("button", { name: "Paint on Finds" }).click();
+  await lock_of(carl, words.layers.locked_to_others).waitFor();
+  await carl.page.getByRole("button", { name: words.layers.select("Finds") }).click();
   await carl.page.keyboard.press("b");
   assert.equal(await cursor(carl), "none");
   await carl.drag([
@@ -202,8 +206,8 @@ test("the curator sees the lock, paints all the same, and unlocks", async () => 
   await wait_for(async () => (await edits()) > saved, "the curator's stroke");
   await carl.page.locator("strata-layer-panel").getByText("Locked for annotators.").waitFor();
   await shoot(carl, "curator");
-  await carl.page.getByRole("button", { name: "Unlock", exact: true }).click();
-  await lock_of(ada, "Locked: a curator can unlock it.").waitFor({ state: "detached" });
+  await carl.page.getByRole("button", { name: words.layers.unlock, exact: true }).click();
+  await lock_of(ada, words.layers.locked_to_you).waitFor({ state: "detached" });
   await wait_for(async () => (await cursor(ada)) === "none", "her brush to come back");
   const now = await edits();
   await ada.drag([

@@ -11,6 +11,9 @@ import { findings } from "../support/js/accessible.mjs";
 import { Browser, rgb } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kSupport = join(dirname(fileURLToPath(import.meta.url)), "..", "support");
 const kMagenta = "#ff00ffff"; // nothing on the pot has this hue
@@ -26,16 +29,16 @@ const shot = async (name) => {
 };
 async function open_dialog(name) {
   await button(`Options for ${name}`).click();
-  await page.getByRole("menuitem", { name: "Paint from a file…" }).click();
+  await page.getByRole("menuitem", { name: words.maps.menu }).click();
 }
 async function give(...names) {
   await dialog.locator("input[type=file]").setInputFiles(names.map(file));
 }
 async function seen_from_front() {
-  await page.getByLabel("The map is looked at").selectOption({ value: "+y" });
+  await page.getByLabel(words.maps.along).selectOption({ value: "+y" });
 }
 async function paint() {
-  await button("Paint").click();
+  await button(words.maps.paint).click();
   await page
     .getByText(/m² changed\./)
     .first()
@@ -97,7 +100,7 @@ test.beforeAll(async () => {
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
   await browser.drawn();
-  const later = button("Decide later");
+  const later = button(words.scale.later);
   if (await later.isVisible()) await later.click();
 });
 
@@ -106,8 +109,8 @@ test("a shapefile tells its attributes, and names become classes", async () => {
   await shot("maps-empty");
   await give("walls.shp", "walls.dbf");
   await page.getByText("2 areas · 2 attributes").waitFor();
-  await page.getByLabel("Each area gets").selectOption("STATE");
-  await page.getByText("Such as Salt, Moss").waitFor();
+  await page.getByLabel(words.maps.attribute).selectOption("STATE");
+  await page.getByText(words.maps.samples("Salt, Moss")).waitFor();
   await page.getByText("others become new classes").waitFor();
   await seen_from_front();
   await shot("maps-shapefile");
@@ -132,8 +135,8 @@ test("a shapefile tells its attributes, and names become classes", async () => {
 test("numbers with the names of another attribute", async () => {
   await open_dialog("States");
   await give("walls.shp", "walls.dbf");
-  await page.getByLabel("Each area gets").selectOption("ID");
-  await page.getByLabel("Names of the classes").selectOption("STATE");
+  await page.getByLabel(words.maps.attribute).selectOption("ID");
+  await page.getByLabel(words.maps.names).selectOption("STATE");
   await seen_from_front();
   await paint();
   assert.deepEqual((await statistics("states")).keys.map(({ key }) => key).sort(), [7, 9]);
@@ -142,7 +145,7 @@ test("numbers with the names of another attribute", async () => {
 test("a scanned map: its colours are found, and get values", async () => {
   await open_dialog("States");
   await give("plan.png", "plan.pgw");
-  await page.getByText("The file says where it lies.").waitFor();
+  await page.getByText(words.maps.world_known).waitFor();
   const values = page.locator("strata-map-colors input[type=text]");
   await wait_for(async () => (await values.count()) === 3, "the three colours");
   assert.deepEqual(await Promise.all([0, 1, 2].map((i) => values.nth(i).isDisabled())), [
@@ -152,7 +155,7 @@ test("a scanned map: its colours are found, and get values", async () => {
   ]);
   await values.nth(1).fill("");
   await seen_from_front();
-  await button("Paint").click();
+  await button(words.maps.paint).click();
   await page.getByRole("alert").getByText("Give every colour that is used a number").waitFor();
   await values.nth(1).fill("4");
   await values.nth(2).fill("11");
@@ -187,7 +190,7 @@ test("a map with a coordinate system on a model without one is asked about", asy
   await give("utm.tif");
   await page.getByText("16 × 16 px · 1 band · EPSG:25830").waitFor();
   await seen_from_front();
-  await button("Paint").click();
+  await button(words.maps.paint).click();
   const question = page.getByRole("alertdialog", {
     name: /The map lies in EPSG:25830, and this model has no coordinate system/,
   });
@@ -195,18 +198,18 @@ test("a map with a coordinate system on a model without one is asked about", asy
   await wait_for(
     () =>
       question
-        .getByRole("button", { name: "No", exact: true })
+        .getByRole("button", { name: words.maps.crs.no, exact: true })
         .evaluate((each) => each.matches(":focus")),
     "the keyboard in the question",
   );
-  assert.ok(await button("Paint").isDisabled());
+  assert.ok(await button(words.maps.paint).isDisabled());
   assert.deepEqual(await findings(page), []);
   await shot("maps-coordinate-system");
-  await question.getByRole("button", { name: "No", exact: true }).click();
+  await question.getByRole("button", { name: words.maps.crs.no, exact: true }).click();
   await question.waitFor({ state: "detached" });
   assert.ok((await statistics("depth")).max <= 7.5, "nothing was painted");
-  await button("Paint").click();
-  await button("Yes, use the map").click();
+  await button(words.maps.paint).click();
+  await button(words.maps.crs.yes).click();
   await dialog.waitFor({ state: "detached" });
   assert.equal((await statistics("depth")).max, 115);
 });
@@ -245,7 +248,7 @@ test("what is no map, and numbers for vertices", async () => {
   await page.getByRole("alert").getByText("walls.dbf is no map by itself").waitFor();
   await give("values.csv");
   await page.getByText("One number a line").waitFor();
-  await button("Paint").click();
+  await button(words.maps.paint).click();
   await page.getByRole("alert").waitFor();
   await shot("maps-vertices");
   await page.keyboard.press("Escape");
@@ -253,7 +256,7 @@ test("what is no map, and numbers for vertices", async () => {
 
 test("outlines of a layer are saved for a map", async () => {
   const saved = async (command) => {
-    await button("Options for pieces").click();
+    await button(words.layers.options("pieces")).click();
     if (command === "Save outlines as GeoJSON") await shot("maps-outlines");
     const [download] = await Promise.all([
       page.waitForEvent("download"),
@@ -264,7 +267,7 @@ test("outlines of a layer are saved for a map", async () => {
   const pieces = (await server.json("GET", `${base}/layers`)).layers.find(
     ({ name }) => name === "pieces",
   );
-  const json = await saved("Save outlines as GeoJSON");
+  const json = await saved(words.rasters.save_outlines.geojson);
   const outlines = JSON.parse(json.bytes.toString());
   assert.deepEqual(
     [json.name, outlines.name],
@@ -277,7 +280,7 @@ test("outlines of a layer are saved for a map", async () => {
     painted,
   );
   assert.ok(areas.some(({ geometry }) => geometry.coordinates.length > 0));
-  const gpkg = await saved("Save outlines as GeoPackage");
+  const gpkg = await saved(words.rasters.save_outlines.gpkg);
   assert.deepEqual(
     [gpkg.name, gpkg.bytes.subarray(0, 15).toString()],
     [`demo-pot-${pieces.slug}.gpkg`, "SQLite format 3"],
@@ -289,19 +292,19 @@ test("an orthophoto becomes a look", async () => {
     await server.json("PATCH", `${base}/layers/${id}`, { visible: false });
   await page
     .locator("strata-view-panel")
-    .getByRole("button", { name: "View", exact: true })
+    .getByRole("button", { name: words.view.title, exact: true })
     .click();
-  await button("More about looks").click();
-  await page.getByRole("menuitem", { name: "Add an orthophoto…" }).click();
+  await button(words.view.look_more).click();
+  await page.getByRole("menuitem", { name: words.orthophoto.open }).click();
   await give("photo.png", "photo.pgw");
-  await page.getByLabel("Name", { exact: true }).waitFor();
-  assert.equal(await page.getByLabel("Name", { exact: true }).inputValue(), "photo");
-  await page.getByLabel("Name", { exact: true }).fill("Ortho");
+  await page.getByLabel(words.orthophoto.name, { exact: true }).waitFor();
+  assert.equal(await page.getByLabel(words.orthophoto.name, { exact: true }).inputValue(), "photo");
+  await page.getByLabel(words.orthophoto.name, { exact: true }).fill("Ortho");
   await seen_from_front();
   await shot("maps-orthophoto");
-  await button("Add").click();
+  await button(words.orthophoto.add).click();
   await dialog.waitFor({ state: "detached" });
-  await button("Hide Ortho").waitFor();
+  await button(words.layers.hide("Ortho")).waitFor();
   await wait_for(
     async () => (await browser.count(rgb(kMagenta))) > 5000,
     "the orthophoto on the pot",
@@ -312,14 +315,14 @@ test("an orthophoto becomes a look", async () => {
 
 test("it is renamed and moved", async () => {
   const names = () => page.locator("strata-view-panel li .name").allTextContents();
-  await button("Options for Ortho").click();
-  await page.getByRole("menuitem", { name: "Rename…" }).click();
-  await page.getByLabel("Name", { exact: true }).fill("Front 2024");
+  await button(words.layers.options("Ortho")).click();
+  await page.getByRole("menuitem", { name: words.view.look_rename }).click();
+  await page.getByLabel(words.view.look_name, { exact: true }).fill("Front 2024");
   await page.keyboard.press("Enter");
-  await button("Options for Front 2024").waitFor();
+  await button(words.layers.options("Front 2024")).waitFor();
   assert.deepEqual(await names(), ["Front 2024", "Infrared"]);
-  await button("Options for Front 2024").click();
-  await page.getByRole("menuitem", { name: "Move down" }).click();
+  await button(words.layers.options("Front 2024")).click();
+  await page.getByRole("menuitem", { name: words.layers.down }).click();
   await wait_for(async () => (await names())[1] === "Front 2024", "the look below the other");
   await wait_for(
     async () => (await server.json("GET", `${base}/looks`)).looks.at(-1).name === "Infrared",

@@ -7,6 +7,9 @@ import { join } from "node:path";
 import { Browser, rgb } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const shot = async (name, of = page) => {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -219,7 +222,9 @@ test("who may only look has the tool, by its key, with no layer chosen", async (
   near = 2.5 * mm_per_px; // two ends, each within a pixel and a bit
   await page.keyboard.press("m");
   assert.equal(
-    await page.getByRole("button", { name: "Measure", exact: true }).getAttribute("aria-pressed"),
+    await page
+      .getByRole("button", { name: words.tools.measure, exact: true })
+      .getAttribute("aria-pressed"),
     "true",
   );
   await desk.panel.getByText(/Click or tap places/).waitFor();
@@ -274,8 +279,8 @@ test("a second click on the last place ends; a rectangle on one side of the roof
     await click(x, y);
   await desk.places(4);
   await click(30, 50);
-  await desk.panel.getByRole("heading", { name: "Profile" }).waitFor();
-  assert.equal(await desk.button("End").count(), 0);
+  await desk.panel.getByRole("heading", { name: words.measure.profile }).waitFor();
+  assert.equal(await desk.button(words.measure.end).count(), 0);
   const [wide, deep] = [120, 40 * kAlong];
   await desk.is_about("area", wide * deep, near * (wide + deep));
   await desk.is_about("perimeter", 2 * (wide + deep), 4 * near);
@@ -295,7 +300,7 @@ test("the next click begins anew; what is measured stays when the camera moves",
   await click(20, 110);
   await desk.places(2);
   await page.keyboard.press("Enter");
-  plot = desk.panel.getByRole("slider", { name: "Place along the profile" });
+  plot = desk.panel.getByRole("slider", { name: words.measure.plot });
   await plot.locator("path.curve").waitFor();
   const drawn = async () =>
     page
@@ -354,7 +359,7 @@ test("at one scale for both the roof is as steep as it is", async () => {
   };
   const shown = kSlope / kAlong; // to the length of the slope
   assert.ok(Math.abs((await slope()) / shown - 1) > 0.1, "blown up at first");
-  await desk.panel.getByLabel("Same scale (1:1)").check();
+  await desk.panel.getByLabel(words.measure.equal).check();
   await wait_for(async () => Math.abs((await slope()) / shown - 1) < 0.03, "the true slope");
   await shot("equal_scale");
 });
@@ -367,12 +372,12 @@ test("the curve of a layer has a gap where there is no value", async () => {
   await click(190, 30);
   await desk.places(2);
   await page.keyboard.press("Enter");
-  await desk.panel.getByLabel("Shows").waitFor(); // with the profile, which the server answers
-  assert.deepEqual(await desk.panel.getByLabel("Shows").locator("option").allInnerTexts(), [
-    "Height (z)",
-    "Moisture (%)",
-  ]);
-  await desk.panel.getByLabel("Shows").selectOption("Moisture (%)");
+  await desk.panel.getByLabel(words.measure.shows).waitFor(); // with the profile, which the server answers
+  assert.deepEqual(
+    await desk.panel.getByLabel(words.measure.shows).locator("option").allInnerTexts(),
+    ["Height (z)", "Moisture (%)"],
+  );
+  await desk.panel.getByLabel(words.measure.shows).selectOption("Moisture (%)");
   await wait_for(async () => {
     const d =
       (await plot.locator("path.curve").count()) === 1 &&
@@ -412,7 +417,7 @@ test("the profile is saved as the server's CSV and as a picture", async () => {
       text: readFileSync(await download.path(), "utf8"),
     };
   };
-  const csv = await save("Save as CSV");
+  const csv = await save(words.tables.save_csv);
   assert.equal(csv.name, "roof-profile.csv");
   const [head, ...lines] = csv.text
     .trim()
@@ -426,7 +431,7 @@ test("the profile is saved as the server's CSV and as a picture", async () => {
     assert.ok(Math.abs(Number(line[z]) - height_at(Number(line[y]))) < 0.01, line.join());
   assert.deepEqual([Number(lines[0][moisture]), Number(lines.at(-1)[moisture])], [7, 2]);
   assert.ok(Math.abs(Number(lines[0][x]) - 10) < near);
-  const picture = await save("Save as SVG");
+  const picture = await save(words.measure.save_svg);
   assert.equal(picture.name, "roof-profile.svg");
   const drawing = await page.evaluate((text) => {
     const { documentElement: root } = new DOMParser().parseFromString(text, "image/svg+xml");
@@ -475,7 +480,7 @@ test("keys alone: a place in the middle, the model is moved, another one", async
 });
 
 test("buttons do the same, and the keyboard stays in the panel when the one that was pressed goes", async () => {
-  await desk.button("Clear").focus();
+  await desk.button(words.measure.clear).focus();
   await page.keyboard.press("Enter");
   await desk.none();
   const focused = () =>
@@ -493,9 +498,9 @@ test("buttons do the same, and the keyboard stays in the panel when the one that
   for (let n = 0; n < 3; ++n) await page.keyboard.press("Shift+ArrowRight");
   await page.keyboard.press("Enter");
   await desk.places(2);
-  await desk.button("End").focus();
+  await desk.button(words.measure.end).focus();
   await page.keyboard.press("Enter");
-  await desk.panel.getByRole("heading", { name: "Profile" }).waitFor();
+  await desk.panel.getByRole("heading", { name: words.measure.profile }).waitFor();
   await wait_for(
     async () => (await focused()) === "Take back",
     "the keyboard at the first button that is left",
@@ -504,10 +509,10 @@ test("buttons do the same, and the keyboard stays in the panel when the one that
 });
 
 test("where not all places are seen at once, the nearest surface counts, and the panel says so", async () => {
-  await desk.panel.getByRole("radio", { name: "What is nearest" }).click();
+  await desk.panel.getByRole("radio", { name: words.measure.ways.nearest }).click();
   await desk.panel.getByText(/Of each step of the straight lines/).waitFor();
   await desk.is_about("along", moved_px * mm_per_px, near);
-  await desk.panel.getByRole("radio", { name: "What is seen" }).click();
+  await desk.panel.getByRole("radio", { name: words.measure.ways.seen }).click();
   await desk.panel.getByText(/The surface that was seen/).waitFor();
 });
 
@@ -526,7 +531,7 @@ test("what lies on two sides is measured straight; a line through the object is 
   await page.keyboard.press("Enter");
   await shot("through");
   await page.keyboard.press("5"); // both are seen from above
-  await desk.panel.getByRole("radio", { name: "What is seen" }).click();
+  await desk.panel.getByRole("radio", { name: words.measure.ways.seen }).click();
   await desk.is_about("along", 60 * kAlong, near * kAlong);
   assert.equal(await desk.panel.getByText(/The straight lines pass/).count(), 0);
 });
@@ -546,7 +551,7 @@ test("by fingers, on a phone: taps set places, a drag turns, buttons end and cle
   await phone.sign_in(server, viewer);
   await phone.page.goto(`${server.url}/models/${model}`);
   await phone.drawn();
-  await phone.page.getByRole("button", { name: "Measure", exact: true }).tap();
+  await phone.page.getByRole("button", { name: words.tools.measure, exact: true }).tap();
   await hand.panel.getByText(/Click or tap places/).waitFor();
   const stage = await phone.stage_box();
   const tap = (share_x, share_y) =>
@@ -556,11 +561,11 @@ test("by fingers, on a phone: taps set places, a drag turns, buttons end and cle
   await tap(0.58, 0.5);
   await hand.places(2);
   await shot("phone_places", phone.page);
-  await hand.button("End").tap();
-  await hand.panel.getByRole("heading", { name: "Profile" }).waitFor();
+  await hand.button(words.measure.end).tap();
+  await hand.panel.getByRole("heading", { name: words.measure.profile }).waitFor();
   assert.ok((await hand.told("along")) >= (await hand.told("straight")) - 0.01);
   await shot("phone", phone.page);
-  await hand.button("Clear").tap();
+  await hand.button(words.measure.clear).tap();
   await hand.none();
   await tap(0.5, 0.5);
   await hand.places(1);

@@ -6,6 +6,9 @@ import { join } from "node:path";
 import { Browser, has_hue, kOfLostServer, rgb } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kMagenta = "#ff00ffff"; // nothing on the pot has this hue
 const kEdge_px = 3; // of the footprint's edge: half a texel, and JPEG's blocks of colour
@@ -157,13 +160,13 @@ test.beforeAll(async () => {
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
   await browser.drawn();
-  await button("Paint on Test").click();
+  await button(words.layers.select("Test")).click();
 });
 
 test("the cursor shows the true footprint, in pixels and in millimetres, far and near", async () => {
   await page.keyboard.press("b");
   await compare_footprint("40 px");
-  await radio("on the object").click();
+  await radio(words.brush.on_object).click();
   await page.getByRole("textbox", { name: "Width, mm" }).fill("9");
   await page.keyboard.press("Enter");
   const far = await compare_footprint("9 mm");
@@ -171,12 +174,12 @@ test("the cursor shows the true footprint, in pixels and in millimetres, far and
   const near = await compare_footprint("9 mm, nearer");
   assert.ok(near > far * 1.4, `the circle of 9 mm grows from ${far} to ${near} px only`);
   await page.keyboard.press("Home");
-  await radio("on screen").click();
+  await radio(words.brush.on_screen).click();
 });
 
 test("Space turns the model, also after a tool was chosen with the mouse", async () => {
-  await button("Eraser").click();
-  await button("Brush").click();
+  await button(words.tools.eraser).click();
+  await button(words.tools.brush).click();
   const painted = await edits("test");
   const canvas = page.locator("strata-stage canvas").first();
   const camera = () => canvas.evaluate((each) => Number(each.dataset.cameraSeq));
@@ -192,27 +195,27 @@ test("Space turns the model, also after a tool was chosen with the mouse", async
   await browser.saved();
   assert.equal(await edits("test"), painted, "Space and a drag painted");
   assert.equal(
-    await button("Brush").getAttribute("aria-pressed"),
+    await button(words.tools.brush).getAttribute("aria-pressed"),
     "true",
     "Space pressed a button",
   );
 });
 
 test("keys do not act behind a question; a choice obeys the arrows", async () => {
-  await button("Fill the whole surface").click();
-  await page.getByRole("heading", { name: "Fill all of “Test”?" }).waitFor();
+  await button(words.brush.fill).click();
+  await page.getByRole("heading", { name: words.brush.fill_title("Test") }).waitFor();
   await page.keyboard.press("e");
-  await page.getByRole("button", { name: "Cancel" }).click();
+  await page.getByRole("button", { name: words.cancel }).click();
   assert.equal(
-    await button("Brush").getAttribute("aria-pressed"),
+    await button(words.tools.brush).getAttribute("aria-pressed"),
     "true",
     "a key chose a tool behind the question",
   );
-  await radio("Round").focus();
+  await radio(words.brush.disc).focus();
   await page.keyboard.press("ArrowRight");
-  assert.equal(await radio("Square").getAttribute("aria-checked"), "true");
+  assert.equal(await radio(words.brush.square).getAttribute("aria-checked"), "true");
   await page.keyboard.press("ArrowRight");
-  assert.equal(await radio("Round").getAttribute("aria-checked"), "true");
+  assert.equal(await radio(words.brush.disc).getAttribute("aria-checked"), "true");
 });
 
 test("keys do not move the camera in mid-stroke", async () => {
@@ -238,10 +241,10 @@ test("a stroke that is not saved yet when its page is left: the server dies, too
   await server.signal("SIGKILL");
   await page.locator('.saving[data-state="not-saved"]').waitFor();
   await page.goBack();
-  await page.getByRole("heading", { name: "Models", exact: true }).waitFor();
+  await page.getByRole("heading", { name: words.home.title, exact: true }).waitFor();
   await page.getByText(/of “Demo pot” not saved yet/).waitFor();
   await server.start();
-  await page.getByText("All changes of “Demo pot” are saved now.").waitFor();
+  await page.getByText(words.saving.left_saved("Demo pot")).waitFor();
   assert.ok((await edits("test")) > known, "what was painted is not in the history");
   await page.goForward();
   await browser.drawn();
@@ -249,21 +252,25 @@ test("a stroke that is not saved yet when its page is left: the server dies, too
 });
 
 test("somebody else changes the layer that is being edited", async () => {
-  await menu("Test", "Edit…");
-  await page.getByLabel("Label of class 1").waitFor();
+  await menu("Test", words.layers.edit);
+  await page.getByLabel(words.layer_dialog.class_label(1)).waitFor();
   await server.json("PATCH", `${base}/layers/test`, { description: "by the other" });
-  await page.getByLabel("Name", { exact: true }).fill("Mine");
-  await button("Save").click();
+  await page.getByLabel(words.layer_dialog.name, { exact: true }).fill("Mine");
+  await button(words.save).click();
   await page.getByText("Somebody else changed this layer meanwhile").waitFor();
-  await button("Show the newest").click();
+  await button(words.layer_dialog.reload).click();
   await wait_for(
-    async () => (await page.getByLabel("Description").inputValue()) === "by the other",
+    async () =>
+      (await page.getByLabel(words.layer_dialog.description).inputValue()) === "by the other",
     "the newest version",
   );
-  assert.equal(await page.getByLabel("Name", { exact: true }).inputValue(), "Test");
-  await button("Add a class").click(); // a layer of one class gets its second one
-  await page.getByLabel("Label of class 2").fill("Second");
-  await button("Save").click();
+  assert.equal(
+    await page.getByLabel(words.layer_dialog.name, { exact: true }).inputValue(),
+    "Test",
+  );
+  await button(words.layer_dialog.class_add).click(); // a layer of one class gets its second one
+  await page.getByLabel(words.layer_dialog.class_label(2)).fill("Second");
+  await button(words.save).click();
   await radio("Second").waitFor();
   const changed = await server.json("GET", `${base}/layers/test`);
   assert.deepEqual(
@@ -273,14 +280,14 @@ test("somebody else changes the layer that is being edited", async () => {
 });
 
 test("a layer of things with records", async () => {
-  await button("New layer").click();
+  await button(words.layers.new).click();
   await radio(/^Things with records/).click();
-  await page.getByLabel("Name", { exact: true }).fill("Finds");
-  await button("Create layer").click();
-  await page.getByLabel("Number of the record").fill("70012");
+  await page.getByLabel(words.layer_dialog.name, { exact: true }).fill("Finds");
+  await button(words.layer_dialog.create).click();
+  await page.getByLabel(words.brush.record).fill("70012");
   await page.keyboard.press("Enter");
-  await button("Make record 70012").click(); // what has no record cannot be painted
-  await button("Make record 70012").waitFor({ state: "detached" });
+  await button(words.brush.make_record(70_012)).click(); // what has no record cannot be painted
+  await button(words.brush.make_record(70_012)).waitFor({ state: "detached" });
   const { table } = await server.json("GET", `${base}/layers/finds`);
   assert.deepEqual(
     (await server.json("GET", `/tables/${table}/records`)).records.map(({ key }) => key),
@@ -292,9 +299,9 @@ test("a layer of things with records", async () => {
   ]);
   await browser.saved();
   await browser.point(0.5, 0.45);
-  await page.locator("strata-value-readout").getByText("Record 70012").waitFor();
-  await menu("Finds", "Areas…");
-  await page.getByText("Record 70012").last().waitFor();
+  await page.locator("strata-value-readout").getByText(words.tables.record(70_012)).waitFor();
+  await menu(words.layer_dialog.name_hint.records, words.layers.statistics);
+  await page.getByText(words.tables.record(70_012)).last().waitFor();
   await page.keyboard.press("Escape");
   assert.deepEqual(
     await server
@@ -305,10 +312,10 @@ test("a layer of things with records", async () => {
 });
 
 test("a unit that was confirmed by mistake is corrected", async () => {
-  await button("About this model").click();
-  await button("Correct size and direction…").click();
-  await radio("centimetres").click();
-  await button("Yes, that is right").click();
+  await button(words.model.details).click();
+  await button(words.model.correct_size).click();
+  await radio(words.scale.cm).click();
+  await button(words.scale.yes).click();
   await wait_for(
     async () => (await server.json("GET", base)).unit === "cm",
     "the unit to be corrected",
@@ -318,9 +325,9 @@ test("a unit that was confirmed by mistake is corrected", async () => {
 test("a scan that is dropped on a model's page is imported, and the person stays until they open it", async () => {
   const here = page.url();
   assert.ok(await drop_scan("dropped_box.ply"), "the browser would have left for the file");
-  await page.getByText("“dropped box” is ready.").waitFor();
+  await page.getByText(words.import.ready("dropped box")).waitFor();
   assert.equal(page.url(), here);
-  await page.getByRole("link", { name: "Open", exact: true }).click();
+  await page.getByRole("link", { name: words.import.open, exact: true }).click();
   await page.getByRole("heading", { name: "dropped box", exact: true }).waitFor();
   await browser.drawn(); // straight from one model to another
   await page.getByText(/This object is .*: right\?/).waitFor();

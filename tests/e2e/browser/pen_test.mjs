@@ -5,6 +5,9 @@ import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 let tilda, server, model, edits, pen, touch, camera, before, painted;
 
@@ -22,8 +25,8 @@ test.beforeAll(async () => {
   await tilda.sign_in(server, await server.add_person("tilda", "annotator"));
   await tilda.page.goto(`${server.url}/models/${model.id}`);
   await tilda.drawn();
-  await tilda.page.getByRole("button", { name: "Paint on cracks" }).click();
-  await tilda.page.getByRole("button", { name: "Brush", exact: true }).click();
+  await tilda.page.getByRole("button", { name: words.layers.select("cracks") }).click();
+  await tilda.page.getByRole("button", { name: words.tools.brush, exact: true }).click();
   const box = await tilda.stage_box();
   const at = ([x, y]) => ({ x: box.x + x * box.width, y: box.y + y * box.height });
   const device = await tilda.context.newCDPSession(tilda.page);
@@ -102,11 +105,9 @@ test("pressed half as hard the pen paints a narrower line, and as wide as ever w
     `the soft line has ${soft / hard} of the hard one's area`,
   );
   await clear();
-  if (
-    (await tilda.page.getByLabel("A pen that is pressed less paints a narrower line").count()) === 0
-  )
-    await tilda.page.getByRole("button", { name: "Show the panel" }).click();
-  await tilda.page.getByLabel("A pen that is pressed less paints a narrower line").uncheck();
+  if ((await tilda.page.getByLabel(words.brush.pressure).count()) === 0)
+    await tilda.page.getByRole("button", { name: words.model.show_panel }).click();
+  await tilda.page.getByLabel(words.brush.pressure).uncheck();
   const wide = await area_of_line(0.62, 0.4);
   assert.ok(wide > 1.5 * soft, `the line is ${wide / soft} of the soft one's area`);
 });

@@ -5,6 +5,9 @@ import { join } from "node:path";
 import { Browser, kOfLostServer } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kOwnersPassword = "four words of mine";
 const kAdasPassword = "engines weave algebra";
@@ -20,15 +23,17 @@ const kExpected = [
   ...kOfLostServer,
 ];
 
-const at_home = ({ page }) => page.getByRole("heading", { name: "Models", exact: true }).waitFor();
+const at_home = ({ page }) =>
+  page.getByRole("heading", { name: words.home.title, exact: true }).waitFor();
 const at_sign_in = ({ page }) =>
-  page.getByRole("heading", { name: "Sign in", exact: true }).waitFor();
+  page.getByRole("heading", { name: words.sign_in.title, exact: true }).waitFor();
 const alert_of = ({ page }, text) => page.getByRole("alert").getByText(text).waitFor();
-const close_dialog = ({ page }) => page.getByRole("button", { name: "Close", exact: true }).click();
+const close_dialog = ({ page }) =>
+  page.getByRole("button", { name: words.close, exact: true }).click();
 
 async function sign_in({ page }, user, password) {
-  await page.getByLabel("Name", { exact: true }).fill(user);
-  await page.getByLabel("Password", { exact: true }).fill(password);
+  await page.getByLabel(words.sign_in.user, { exact: true }).fill(user);
+  await page.getByLabel(words.sign_in.password, { exact: true }).fill(password);
   await page.keyboard.press("Enter");
 }
 async function choose_in_menu({ page }, name) {
@@ -106,26 +111,29 @@ test.beforeAll(async () => {
 test("the owner, who came by the printed link, is asked for a password, and told what is wrong with one", async () => {
   await owner.page.goto(server.link);
   await at_home(owner);
-  await owner.page.getByRole("button", { name: "Choose a password" }).click();
-  await owner.page.getByText("this browser").waitFor();
-  await owner.page.getByLabel("New password", { exact: true }).fill("short");
-  await owner.page.getByRole("button", { name: "Choose password" }).click();
+  await owner.page.getByRole("button", { name: words.account.no_password }).click();
+  await owner.page.getByText(words.account.this_browser).waitFor();
+  await owner.page.getByLabel(words.account.new, { exact: true }).fill("short");
+  await owner.page.getByRole("button", { name: words.account.password_choose }).click();
   await alert_of(owner, "at least 10 characters");
-  await owner.page.getByLabel("New password", { exact: true }).fill(kOwnersPassword);
-  await owner.page.getByLabel("New password, once more").fill("four words of his");
+  await owner.page.getByLabel(words.account.new, { exact: true }).fill(kOwnersPassword);
+  await owner.page.getByLabel(words.account.repeat).fill("four words of his");
   await owner.page.keyboard.press("Enter");
   await alert_of(owner, "not the same");
-  await owner.page.getByLabel("New password, once more").fill(kOwnersPassword);
+  await owner.page.getByLabel(words.account.repeat).fill(kOwnersPassword);
   await owner.page.keyboard.press("Enter");
   await owner.page.getByText("Your password is set.").waitFor();
-  await owner.page.getByLabel("Password until now").waitFor();
+  await owner.page.getByLabel(words.account.current).waitFor();
   await close_dialog(owner);
   await server.sign_in_owner({ user: "owner", password: kOwnersPassword });
-  assert.equal(await owner.page.getByRole("button", { name: "Choose a password" }).count(), 0);
+  assert.equal(
+    await owner.page.getByRole("button", { name: words.account.no_password }).count(),
+    0,
+  );
 });
 
 test("they sign out, and in again by name and password", async () => {
-  await choose_in_menu(owner, "Sign out");
+  await choose_in_menu(owner, words.account.sign_out);
   await at_sign_in(owner);
   await sign_in(owner, "owner", "four words of hers");
   await alert_of(owner, "Name or password does not fit");
@@ -137,42 +145,44 @@ test("they sign out, and in again by name and password", async () => {
 
 test("a token that is not known is told so, and the owner's is one for scripts since they have a password", async () => {
   await phone.page.goto(server.url);
-  await phone.page.getByText("With a link or token").click();
-  await phone.page.getByLabel("Link or token").fill("no such token");
+  await phone.page.getByText(words.sign_in.otherwise).click();
+  await phone.page.getByLabel(words.sign_in.token).fill("no such token");
   await phone.page.keyboard.press("Enter");
   await alert_of(phone, "is not known here");
-  await phone.page.getByLabel("Link or token").fill(server.token);
+  await phone.page.getByLabel(words.sign_in.token).fill(server.token);
   await phone.page.keyboard.press("Enter");
   await alert_of(phone, "for scripts");
   await at_sign_in(phone);
 });
 
 test("Ada is invited; a name that cannot be is told at its field", async () => {
-  await choose_in_menu(owner, "People…");
-  await owner.page.getByRole("button", { name: "Invite somebody" }).click();
-  await owner.page.getByLabel("Name for signing in").fill("owner");
-  await owner.page.getByRole("button", { name: "Make link" }).click();
+  await choose_in_menu(owner, words.account.people);
+  await owner.page.getByRole("button", { name: words.site_people.invite }).click();
+  await owner.page.getByLabel(words.site_people.invite_user).fill("owner");
+  await owner.page.getByRole("button", { name: words.site_people.invite_button }).click();
   await owner.page.locator("strata-people-dialog form small[role=alert]:not([hidden])").waitFor();
   assert.equal(
-    await owner.page.getByLabel("Name for signing in").getAttribute("aria-invalid"),
+    await owner.page.getByLabel(words.site_people.invite_user).getAttribute("aria-invalid"),
     "true",
   );
-  await owner.page.getByLabel("Name for signing in").fill("ada");
-  await owner.page.getByLabel("Full name").fill("Ada Lovelace");
-  await owner.page.getByRole("combobox", { name: "Role", exact: true }).selectOption("annotator");
-  await owner.page.getByRole("button", { name: "Make link" }).click();
+  await owner.page.getByLabel(words.site_people.invite_user).fill("ada");
+  await owner.page.getByLabel(words.site_people.full_name).fill("Ada Lovelace");
+  await owner.page
+    .getByRole("combobox", { name: words.site_people.role, exact: true })
+    .selectOption("annotator");
+  await owner.page.getByRole("button", { name: words.site_people.invite_button }).click();
   link_field = owner.page.getByRole("textbox", {
-    name: "Link for Ada Lovelace",
+    name: words.site_people.link("Ada Lovelace"),
     exact: true,
   });
   link = await link_field.inputValue();
   assert.ok(link.startsWith(`${server.url}/join#`), link);
   await owner.page
     .getByRole("row", { name: /Ada Lovelace/ })
-    .getByText("invited")
+    .getByText(words.site_people.states.invited)
     .waitFor();
   assert.equal(
-    await owner.page.getByLabel("Role of owner").count(),
+    await owner.page.getByLabel(words.site_people.role_of("owner")).count(),
     0,
     "the owner's row can be changed",
   );
@@ -182,28 +192,28 @@ test("at a browser where somebody else is signed in the link says so", async () 
   const beside = await owner.context.newPage();
   await beside.goto(link);
   await beside.getByText(/Somebody else is signed in at this browser: owner/).waitFor();
-  assert.equal(await beside.getByLabel("Password", { exact: true }).count(), 0);
+  assert.equal(await beside.getByLabel(words.join.password, { exact: true }).count(), 0);
   await beside.close();
 });
 
 test("Ada opens her link, chooses a password, and is in; the secret is gone from the address", async () => {
   await ada.page.goto(link);
-  await ada.page.getByRole("heading", { name: "Welcome, Ada Lovelace" }).waitFor();
-  await ada.page.getByLabel("Password", { exact: true }).fill(kAdasPassword);
-  await ada.page.getByLabel("Password, once more").fill(kAdasPassword);
+  await ada.page.getByRole("heading", { name: words.join.greeting("Ada Lovelace") }).waitFor();
+  await ada.page.getByLabel(words.join.password, { exact: true }).fill(kAdasPassword);
+  await ada.page.getByLabel(words.join.repeat).fill(kAdasPassword);
   await ada.page.keyboard.press("Enter");
   await at_home(ada);
   assert.equal(ada.page.url(), `${server.url}/`);
-  await ada.page.getByRole("button", { name: "Account of Ada Lovelace" }).click();
-  await ada.page.getByRole("menuitem", { name: "Account…" }).waitFor();
+  await ada.page.getByRole("button", { name: words.account.menu("Ada Lovelace") }).click();
+  await ada.page.getByRole("menuitem", { name: words.account.open }).waitFor();
   assert.equal(
-    await ada.page.getByRole("menuitem", { name: "People…" }).count(),
+    await ada.page.getByRole("menuitem", { name: words.account.people }).count(),
     0,
     "an annotator is offered the people",
   );
   await ada.page.keyboard.press("Escape");
   assert.equal(
-    await ada.page.getByRole("button", { name: "Import a scan" }).count(),
+    await ada.page.getByRole("button", { name: words.home.import }).count(),
     0,
     "an annotator is offered to import",
   );
@@ -211,16 +221,16 @@ test("Ada opens her link, chooses a password, and is in; the secret is gone from
 
 test("the link was good for one use", async () => {
   await phone.page.goto(link);
-  await phone.page.getByText("This link is of no use any more").waitFor();
+  await phone.page.getByText(words.join.useless_title).waitFor();
   await phone.page.goto(`${server.url}/join`);
-  await phone.page.getByText("This link is not whole").waitFor();
+  await phone.page.getByText(words.join.incomplete_title).waitFor();
 });
 
 test("she sees the model, and paints", async () => {
   await ada.page.getByRole("link", { name: /Demo pot/ }).click();
   await ada.drawn();
   path = new URL(ada.page.url()).pathname;
-  await ada.page.getByRole("button", { name: "Paint on cracks" }).click();
+  await ada.page.getByRole("button", { name: words.layers.select("cracks") }).click();
   await ada.page.keyboard.press("b");
   edits = async () => (await server.json("GET", `${path}/layers/cracks/edits?limit=1`)).total;
   const before = await edits();
@@ -233,14 +243,19 @@ test("she sees the model, and paints", async () => {
 });
 
 test("the owner makes her a viewer: her page, which is open, offers no painting any more", async () => {
-  await owner.page.getByLabel("Role of Ada Lovelace").selectOption("viewer");
-  await owner.page.getByText("Is viewer now.").waitFor();
-  await ada.page.getByText("Your role is viewer now.").waitFor();
-  await ada.page.getByRole("button", { name: "Brush", exact: true }).waitFor({ state: "detached" });
-  assert.equal(await ada.page.getByRole("button", { name: "Undo", exact: true }).count(), 0);
+  await owner.page.getByLabel(words.site_people.role_of("Ada Lovelace")).selectOption("viewer");
+  await owner.page.getByText(words.site_people.role_changed("viewer")).waitFor();
+  await ada.page.getByText(words.people.role_now("viewer")).waitFor();
+  await ada.page
+    .getByRole("button", { name: words.tools.brush, exact: true })
+    .waitFor({ state: "detached" });
+  assert.equal(
+    await ada.page.getByRole("button", { name: words.model.undo, exact: true }).count(),
+    0,
+  );
   const painted = await edits();
   await ada.page.keyboard.press("b");
-  await ada.page.getByText("You may look at this model but not change it.").waitFor();
+  await ada.page.getByText(words.brush.viewer_only).waitFor();
   await ada.page.getByRole("button", { name: /^Account of/ }).click();
   await ada.page.getByText("ada · Viewer").waitFor();
   await ada.page.keyboard.press("Escape");
@@ -248,12 +263,14 @@ test("the owner makes her a viewer: her page, which is open, offers no painting 
 });
 
 test("the owner disables her: she is out, and cannot come back", async () => {
-  await choose_for(owner, "Ada Lovelace", "Disable…");
+  await choose_for(owner, "Ada Lovelace", words.site_people.disable);
   await owner.page.getByText("They are signed out everywhere").waitFor();
-  await owner.page.getByRole("button", { name: "Disable", exact: true }).click();
+  await owner.page
+    .getByRole("button", { name: words.site_people.disable_button, exact: true })
+    .click();
   await owner.page
     .getByRole("row", { name: /Ada Lovelace/ })
-    .getByText("disabled")
+    .getByText(words.site_people.states.disabled)
     .waitFor();
   await at_sign_in(ada);
   await sign_in(ada, "ada", kAdasPassword);
@@ -263,22 +280,22 @@ test("the owner disables her: she is out, and cannot come back", async () => {
 });
 
 test("enabled again she comes back to where she was", async () => {
-  await choose_for(owner, "Ada Lovelace", "Enable");
-  await owner.page.getByText("Can sign in again.").waitFor();
+  await choose_for(owner, "Ada Lovelace", words.site_people.enable);
+  await owner.page.getByText(words.site_people.enabled).waitFor();
   await sign_in(ada, "ada", kAdasPassword);
   await ada.drawn();
 });
 
 test("who forgot a password gets a new link; the old password is good for nothing then", async () => {
-  await choose_for(owner, "Ada Lovelace", "New link…");
-  await owner.page.getByRole("button", { name: "Make link" }).click();
+  await choose_for(owner, "Ada Lovelace", words.site_people.new_link);
+  await owner.page.getByRole("button", { name: words.site_people.new_link_button }).click();
   const next_link = await wait_for(async () => {
     const shown = await link_field.inputValue();
     return shown !== link && shown;
   }, "the new link");
   await phone.page.goto(next_link);
-  await phone.page.getByLabel("Password", { exact: true }).fill(kAdasNext);
-  await phone.page.getByLabel("Password, once more").fill(kAdasNext);
+  await phone.page.getByLabel(words.join.password, { exact: true }).fill(kAdasNext);
+  await phone.page.getByLabel(words.join.repeat).fill(kAdasNext);
   await phone.page.keyboard.press("Enter");
   await at_home(phone);
   await at_sign_in(ada); // the new password has ended her other sessions
@@ -289,12 +306,12 @@ test("who forgot a password gets a new link; the old password is good for nothin
 });
 
 test("she changes her password on the page, with the one until now; it ends her other sessions", async () => {
-  await choose_in_menu(phone, "Account…");
+  await choose_in_menu(phone, words.account.open);
   const change = async (current, password, repeat = password) => {
-    await phone.page.getByLabel("Password until now").fill(current);
-    await phone.page.getByLabel("New password", { exact: true }).fill(password);
-    await phone.page.getByLabel("New password, once more").fill(repeat);
-    await phone.page.getByRole("button", { name: "Change password" }).click();
+    await phone.page.getByLabel(words.account.current).fill(current);
+    await phone.page.getByLabel(words.account.new, { exact: true }).fill(password);
+    await phone.page.getByLabel(words.account.repeat).fill(repeat);
+    await phone.page.getByRole("button", { name: words.account.password_change }).click();
   };
   await change("", kAdasThird);
   await alert_of(phone, "Give the password that you have now.");
@@ -314,8 +331,8 @@ test("she changes her password on the page, with the one until now; it ends her 
 });
 
 test("she signs out at one of her browsers, from another", async () => {
-  await choose_in_menu(phone, "Account…");
-  await phone.page.getByText("this browser").waitFor();
+  await choose_in_menu(phone, words.account.open);
+  await phone.page.getByText(words.account.this_browser).waitFor();
   await phone.page.getByRole("button", { name: /^Sign out: / }).click();
   await at_sign_in(ada);
   await phone.page.getByRole("button", { name: /^Sign out: / }).waitFor({ state: "detached" });
@@ -325,29 +342,32 @@ test("she signs out at one of her browsers, from another", async () => {
 });
 
 test("she sees where she is signed in, and signs out there", async () => {
-  await choose_in_menu(phone, "Account…");
-  await phone.page.getByText("this browser").waitFor();
-  await phone.page.getByRole("button", { name: "Sign out everywhere else" }).click();
-  await phone.page.getByText("You are signed out everywhere else.").waitFor();
+  await choose_in_menu(phone, words.account.open);
+  await phone.page.getByText(words.account.this_browser).waitFor();
+  await phone.page.getByRole("button", { name: words.account.sign_out_others }).click();
+  await phone.page.getByText(words.account.signed_out_others).waitFor();
   await at_sign_in(ada);
-  await phone.page.getByLabel("Full name").fill("Countess of Lovelace");
+  await phone.page.getByLabel(words.account.full_name).fill("Countess of Lovelace");
   await phone.page.keyboard.press("Enter");
   await phone.page
-    .getByRole("button", { name: "Account of Countess of Lovelace", includeHidden: true })
+    .getByRole("button", { name: words.account.menu("Countess of Lovelace"), includeHidden: true })
     .waitFor();
   await close_dialog(phone);
 });
 
 test("a token made on the page works for a script, as its role allows, until it is revoked", async () => {
   await close_dialog(owner);
-  await choose_in_menu(owner, "Account…");
-  await owner.page.getByRole("button", { name: "New token" }).click();
-  await owner.page.getByRole("button", { name: "Make token" }).click();
+  await choose_in_menu(owner, words.account.open);
+  await owner.page.getByRole("button", { name: words.account.token_new }).click();
+  await owner.page.getByRole("button", { name: words.account.token_make }).click();
   await alert_of(owner, "Say what it is for");
-  await owner.page.getByLabel("What it is for").fill("Nightly report");
-  const role_of_token = owner.page.getByRole("combobox", { name: "Role", exact: true });
+  await owner.page.getByLabel(words.account.token_name).fill("Nightly report");
+  const role_of_token = owner.page.getByRole("combobox", {
+    name: words.account.token_role,
+    exact: true,
+  });
   await role_of_token.selectOption("owner");
-  await owner.page.getByRole("combobox", { name: "Good in" }).selectOption("Demo");
+  await owner.page.getByRole("combobox", { name: words.account.token_where }).selectOption("Demo");
   assert.equal(
     await role_of_token.inputValue(),
     "curator",
@@ -355,7 +375,7 @@ test("a token made on the page works for a script, as its role allows, until it 
   );
   await role_of_token.selectOption("viewer");
   await shot(owner, "token_form");
-  await owner.page.getByRole("button", { name: "Make token" }).click();
+  await owner.page.getByRole("button", { name: words.account.token_make }).click();
   await owner.page.getByText("Viewer · only in Demo").waitFor();
   const token = await owner.page.getByLabel(/Copy it now/).inputValue();
   await owner.page.getByText(`Authorization: Bearer ${token}`).waitFor();
@@ -364,21 +384,23 @@ test("a token made on the page works for a script, as its role allows, until it 
     await call(token, `${path}/layers`, { method: "POST", body: JSON.stringify({ name: "No" }) }),
     403,
   );
-  await owner.page.getByRole("button", { name: "Revoke Nightly report" }).click();
-  await owner.page.getByRole("button", { name: "Revoke", exact: true }).last().click();
-  await owner.page.getByText("You have none.").waitFor();
+  await owner.page
+    .getByRole("button", { name: words.account.token_revoke("Nightly report") })
+    .click();
+  await owner.page.getByRole("button", { name: words.account.revoke, exact: true }).last().click();
+  await owner.page.getByText(words.account.no_tokens).waitFor();
   assert.equal(await call(token, "/models"), 401);
   await close_dialog(owner);
 });
 
 test("deleted she is out; what she did stays, under a name that nobody can tell", async () => {
-  await choose_in_menu(owner, "People…");
-  await owner.page.getByLabel("Find people").fill("countess");
-  await owner.page.getByText("1 of 2 people").waitFor();
-  await choose_for(owner, "Countess of Lovelace", "Delete…");
+  await choose_in_menu(owner, words.account.people);
+  await owner.page.getByLabel(words.site_people.filter).fill("countess");
+  await owner.page.getByText(words.site_people.count_of(1, 2)).waitFor();
+  await choose_for(owner, "Countess of Lovelace", words.layers.delete);
   await owner.page.getByText("stays in the history").waitFor();
-  await owner.page.getByRole("button", { name: "Delete", exact: true }).click();
-  await owner.page.getByText("Nobody is called that.").waitFor();
+  await owner.page.getByRole("button", { name: words.delete, exact: true }).click();
+  await owner.page.getByText(words.site_people.none_found).waitFor();
   await phone.page.reload();
   await at_sign_in(phone);
   const { edits: history } = await server.json("GET", `${path}/layers/cracks/edits?limit=1000`);
@@ -395,13 +417,18 @@ test("an administrator lets a guest annotate in one project: they see its models
   await ada.sign_in(server, await server.add_person("anna", "administrator"));
   await phone.sign_in(server, await server.add_person("gil", "guest"));
   await phone.page.getByText("You see the models of projects that you have a role in.").waitFor();
-  await choose_in_menu(ada, "People…");
-  await choose_for(ada, "gil", "Roles in projects…");
+  await choose_in_menu(ada, words.account.people);
+  await choose_for(ada, "gil", words.site_people.projects);
   await ada.page.getByText("Everywhere: guest.").waitFor();
-  const in_villa = ada.page.getByRole("combobox", { name: "Role in Villa Giulia" });
+  const in_villa = ada.page.getByRole("combobox", {
+    name: words.project_roles.role_in("Villa Giulia"),
+  });
   assert.equal(await in_villa.inputValue(), "");
   await in_villa.selectOption("annotator");
-  await ada.page.locator("strata-project-roles-dialog").getByText("Is annotator now.").waitFor();
+  await ada.page
+    .locator("strata-project-roles-dialog")
+    .getByText(words.site_people.role_changed("annotator"))
+    .waitFor();
   await shot(ada, "roles_in_projects");
   await phone.page.reload();
   await phone.page.getByRole("link", { name: /Threshold/ }).waitFor();
@@ -411,19 +438,19 @@ test("an administrator lets a guest annotate in one project: they see its models
     "the guest sees a model of another project",
   );
   assert.equal(
-    await phone.page.getByRole("button", { name: "Import a scan" }).count(),
+    await phone.page.getByRole("button", { name: words.home.import }).count(),
     0,
     "an annotator is offered to import",
   );
   await shot(phone, "guest");
   await phone.page.getByRole("link", { name: /Threshold/ }).click();
   await phone.drawn();
-  await phone.page.getByRole("button", { name: "Brush", exact: true }).waitFor();
+  await phone.page.getByRole("button", { name: words.tools.brush, exact: true }).waitFor();
   await shot(phone, "guest_model");
   await in_villa.selectOption("");
   await ada.page
     .locator("strata-project-roles-dialog")
-    .getByText("Has no role of their own there any more.")
+    .getByText(words.project_roles.removed)
     .waitFor();
   await phone.page.goto(server.url);
   await phone.page.getByText("You see the models of projects that you have a role in.").waitFor();

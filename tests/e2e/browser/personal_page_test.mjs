@@ -6,6 +6,9 @@ import { join } from "node:path";
 import { Browser, rgb } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 async function shoot({ page }, name) {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -51,16 +54,16 @@ test.beforeAll(async () => {
 
 test("an annotator hides a layer and moves another", async () => {
   order = await names(ada);
-  await button(ada, "Hide cracks").click();
-  await choose_for(ada, order[0], "Move down");
+  await button(ada, words.layers.hide("cracks")).click();
+  await choose_for(ada, order[0], words.layers.down);
   const moved = [order[1], order[0], ...order.slice(2)];
   assert.deepEqual(await names(ada), moved);
-  await ada.page.getByText("Back to the default").waitFor();
+  await ada.page.getByText(words.layers.reset_default).waitFor();
   await wait_for(async () => {
     await ada.page.reload();
     await ada.drawn();
     return (
-      (await button(ada, "Show cracks").count()) === 1 &&
+      (await button(ada, words.layers.show("cracks")).count()) === 1 &&
       JSON.stringify(await names(ada)) === JSON.stringify(moved)
     );
   }, "both to be there after a reload");
@@ -79,12 +82,12 @@ test("an annotator hides a layer and moves another", async () => {
 });
 
 test("a curator computes a condition: painted where it holds, hidden for others, locked for everybody", async () => {
-  await cleo.page.getByRole("button", { name: "New layer" }).click();
+  await cleo.page.getByRole("button", { name: words.layers.new }).click();
   await cleo.page.getByRole("radio", { name: /From an expression/ }).click();
   await cleo.page.getByLabel("Expression: a number").fill("z > 0 and not valid(cracks)");
-  await cleo.page.getByLabel("Name", { exact: true }).fill("Risk");
-  await cleo.page.getByRole("button", { name: "Compute layer" }).click();
-  await button(cleo, "Hide Risk").waitFor();
+  await cleo.page.getByLabel(words.layer_dialog.name, { exact: true }).fill("Risk");
+  await cleo.page.getByRole("button", { name: words.layer_dialog.compute }).click();
+  await button(cleo, words.layers.hide("Risk")).waitFor();
   const risk = await layer("risk");
   assert.deepEqual(
     [risk.computed, risk.edited_by_hand, risk.locked, risk.visible, risk.type],
@@ -95,11 +98,11 @@ test("a curator computes a condition: painted where it holds, hidden for others,
     risk.order,
     "it lies below all others",
   );
-  await button(ada, "Show Risk").waitFor();
+  await button(ada, words.layers.show("Risk")).waitFor();
   const { min, max } = await server.json("GET", `${layers}/risk/statistics`);
   assert.deepEqual([min, max], [1, 1]);
-  await button(cleo, "Paint on Risk").click();
-  await panel(cleo).getByText("Locked: its values were computed.").waitFor();
+  await button(cleo, words.layers.select("Risk")).click();
+  await panel(cleo).getByText(words.layers.locked_computed).waitFor();
   edits = async () => (await server.json("GET", `${layers}/risk/edits`)).total;
   computed = await edits();
   await cleo.page.keyboard.press("b");
@@ -113,11 +116,11 @@ test("a curator computes a condition: painted where it holds, hidden for others,
   ]);
   await shoot(cleo, "computed");
   await look(elsewhere, model);
-  await button(elsewhere, "Hide Risk").waitFor();
+  await button(elsewhere, words.layers.hide("Risk")).waitFor();
 });
 
 test("unlocked, it is edited by hand, and says so to everybody", async () => {
-  await panel(cleo).getByRole("button", { name: "Unlock to edit by hand" }).click();
+  await panel(cleo).getByRole("button", { name: words.layers.unlock_computed }).click();
   await panel(cleo)
     .getByText(/^Edited by hand: .* It is not computed again by itself\.$/)
     .waitFor();
@@ -130,26 +133,29 @@ test("unlocked, it is edited by hand, and says so to everybody", async () => {
   ]);
   await cleo.saved();
   await wait_for(async () => (await edits()) > computed, "the stroke");
-  await button(ada, "Paint on Risk").click();
+  await button(ada, words.layers.select("Risk")).click();
   await panel(ada)
     .getByText(/^Edited by hand/)
     .waitFor();
   await shoot(cleo, "by_hand");
-  await panel(cleo).getByRole("button", { name: "Compute again" }).click();
+  await panel(cleo).getByRole("button", { name: words.layers.recompute }).click();
   await cleo.page.getByText("This overwrites what was edited by hand.").waitFor();
-  await cleo.page.locator("strata-question").getByRole("button", { name: "Compute again" }).click();
+  await cleo.page
+    .locator("strata-question")
+    .getByRole("button", { name: words.layers.recompute })
+    .click();
   await wait_for(
     async () => (await layer("risk")).edited_by_hand === false,
     "the layer to be as it was computed",
   );
-  await panel(cleo).getByText("Locked: its values were computed.").waitFor();
+  await panel(cleo).getByText(words.layers.locked_computed).waitFor();
 });
 
 test("what everybody sees at first is changed only by asking for it", async () => {
-  await button(cleo, "Save as default for everyone").click();
+  await button(cleo, words.layers.save_default).click();
   await wait_for(async () => (await layer("risk")).visible, "the default");
-  await button(ada, "Back to the default").click();
-  await button(ada, "Hide cracks").waitFor();
+  await button(ada, words.layers.reset_default).click();
+  await button(ada, words.layers.hide("cracks")).waitFor();
   assert.deepEqual(await names(ada), await names(cleo));
 });
 
@@ -166,12 +172,12 @@ test("one colour and one name", async () => {
   await cleo.page.locator("strata-comment-card textarea").fill("Is this a fresh break?");
   await cleo.page
     .locator("strata-comment-card")
-    .getByRole("button", { name: "Comment", exact: true })
+    .getByRole("button", { name: words.comments.send, exact: true })
     .click();
   await cleo.page.locator("strata-comment-card article").getByText("Cleo Roe").waitFor();
   await cleo.page
     .locator("strata-activity-panel")
-    .getByRole("button", { name: "Activity" })
+    .getByRole("button", { name: words.activity.title })
     .click();
   await cleo.page.locator("strata-activity-panel").getByText("Cleo Roe").first().waitFor();
   const marks = {

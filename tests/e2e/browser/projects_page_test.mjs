@@ -7,6 +7,9 @@ import { active } from "../support/js/accessible.mjs";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const output = process.env.STRATA_TEST_OUTPUT;
@@ -83,12 +86,12 @@ test.beforeAll(async () => {
 test("from a model home is its project, also where the only other one is that of every site", async () => {
   await ada.page.goto(`${server.url}/models/${pot.id}`);
   await ada.drawn();
-  await ada.page.getByRole("link", { name: "All models" }).click();
+  await ada.page.getByRole("link", { name: words.model.back }).click();
   await heading(ada, "Demo");
-  await ada.page.getByRole("link", { name: "Open Demo pot" }).waitFor();
+  await ada.page.getByRole("link", { name: words.home.open("Demo pot") }).waitFor();
   assert.equal(new URL(ada.page.url()).pathname, `/projects/${pot.project}`);
   assert.equal(
-    await ada.page.getByRole("link", { name: "All projects" }).count(),
+    await ada.page.getByRole("link", { name: words.home.all_projects }).count(),
     0,
     "there is nothing to go up to",
   );
@@ -96,10 +99,10 @@ test("from a model home is its project, also where the only other one is that of
 
 test("an administrator makes a project by keyboard, and is led to it", async () => {
   await ada.page.goto(server.url);
-  await heading(ada, "Models");
-  await button(ada, "New project").focus();
+  await heading(ada, words.home.title);
+  await button(ada, words.projects.new).focus();
   await ada.page.keyboard.press("Enter");
-  await heading(ada, "New project");
+  await heading(ada, words.projects.new_title);
   await wait_for(
     async () =>
       await box(ada, "Name").evaluate((input) => input.getRootNode().activeElement === input),
@@ -107,17 +110,17 @@ test("an administrator makes a project by keyboard, and is led to it", async () 
   );
   await ada.page.keyboard.type("   ");
   await ada.page.keyboard.press("Enter");
-  await ada.page.getByText("Give it a name.").waitFor();
+  await ada.page.getByText(words.projects.name_empty).waitFor();
   await ada.page.keyboard.type("Villa Giulia");
   await ada.page.keyboard.press("Tab");
   await ada.page.keyboard.type("Frescoes of the east wing, campaign of 2026.");
   await shoot(ada, "new_desk");
-  await button(ada, "Make the project").click();
-  await heading(ada, "Villa Giulia");
+  await button(ada, words.projects.create).click();
+  await heading(ada, words.projects.name_hint);
   await is_closed(ada);
   assert.equal(new URL(ada.page.url()).pathname, "/projects/villa-giulia");
   await ada.page.getByText("Frescoes of the east wing").waitFor();
-  await heading(ada, "No models yet");
+  await heading(ada, words.home.empty_title);
   await ada.page.getByText("Who may work on it is said in the account menu").waitFor();
   await shoot(ada, "made_desk");
   assert.equal((await server.json("GET", "/projects/villa-giulia")).name, "Villa Giulia");
@@ -125,8 +128,8 @@ test("an administrator makes a project by keyboard, and is led to it", async () 
 
 test("escape leaves everything as it is, and gives the keyboard back", async () => {
   await ada.page.goto(server.url);
-  await heading(ada, "Projects");
-  await from_menu(ada, "Demo", "Rename and describe…");
+  await heading(ada, words.home.projects);
+  await from_menu(ada, "Demo", words.projects.describe);
   await box(ada, "Name").fill("Something else");
   await ada.page.keyboard.press("Escape");
   await is_closed(ada);
@@ -140,24 +143,24 @@ test("escape leaves everything as it is, and gives the keyboard back", async () 
 test("the project that every site has can be named, not deleted", async () => {
   await ada.page.goto(`${server.url}/projects/default`);
   await heading(ada, "Default");
-  await button(ada, "Options for Default").click();
-  await ada.page.getByRole("menuitem", { name: "Rename and describe…" }).waitFor();
+  await button(ada, words.home.options("Default")).click();
+  await ada.page.getByRole("menuitem", { name: words.projects.describe }).waitFor();
   assert.equal(await ada.page.getByRole("menuitem", { name: "Delete…" }).count(), 0);
   await ada.page.keyboard.press("Escape");
 });
 
 test("who changes a project that somebody else changed meanwhile is told, and then may; its address stays", async () => {
-  await ada.page.getByRole("link", { name: "All projects" }).click();
-  await heading(ada, "Projects");
+  await ada.page.getByRole("link", { name: words.home.all_projects }).click();
+  await heading(ada, words.home.projects);
   assert.deepEqual(await cards(ada), ["Demo", "Villa Giulia"]);
-  await from_menu(ada, "Villa Giulia", "Rename and describe…");
+  await from_menu(ada, words.projects.name_hint, words.projects.describe);
   await ada.page.getByText("Its address stays as it is, /projects/villa-giulia").waitFor();
   await server.json("PATCH", "/projects/villa-giulia", { name: "Villa Julia" });
   await box(ada, "Name").fill("Villa Giulia, Rome");
-  await button(ada, "Save").click();
+  await button(ada, words.save).click();
   await ada.page.getByText("it is called “Villa Julia” now").waitFor();
   await shoot(ada, "changed_meanwhile");
-  await button(ada, "Save").click();
+  await button(ada, words.save).click();
   await is_closed(ada);
   await wait_for(
     async () => (await cards(ada)).includes("Villa Giulia, Rome"),
@@ -172,15 +175,14 @@ test("who changes a project that somebody else changed meanwhile is told, and th
 });
 
 test("a project may demand that programs name versions; the page does", async () => {
-  const demand = () =>
-    inside(ada).getByRole("checkbox", { name: "Programs must name the version that they change" });
+  const demand = () => inside(ada).getByRole("checkbox", { name: words.projects.require_version });
   for (const is_demanded of [true, false]) {
-    await from_menu(ada, "Villa Giulia, Rome", "Rename and describe…");
+    await from_menu(ada, "Villa Giulia, Rome", words.projects.describe);
     await ada.page.getByText("Nothing changes for work on this page.").waitFor();
     assert.equal(await demand().isChecked(), !is_demanded);
     await demand().setChecked(is_demanded);
     if (is_demanded) await shoot(ada, "demands_versions");
-    await button(ada, "Save").click();
+    await button(ada, words.save).click();
     await is_closed(ada);
     assert.equal(
       (await server.json("GET", "/projects/villa-giulia")).require_if_match,
@@ -209,13 +211,16 @@ test("with models it stays, and it is said what to do", async () => {
   );
   await pia.page.goto(`${server.url}/projects/villa-giulia`);
   await heading(pia, "Villa Giulia, Rome");
-  await pia.page.getByRole("link", { name: "Open Threshold" }).waitFor();
+  await pia.page.getByRole("link", { name: words.home.open("Threshold") }).waitFor();
   await from_menu(pia, "Villa Giulia, Rome", "Delete…");
-  await heading(pia, "“Villa Giulia, Rome” still has models");
+  await heading(pia, words.projects.kept_title("Villa Giulia, Rome"));
   await pia.page.getByText("Delete its model first").waitFor();
-  assert.equal(await inside(pia).getByRole("button", { name: "Delete", exact: true }).count(), 0);
+  assert.equal(
+    await inside(pia).getByRole("button", { name: words.delete, exact: true }).count(),
+    0,
+  );
   await shoot(pia, "with_models_phone_dark");
-  await inside(pia).locator("footer").getByRole("button", { name: "Close" }).tap();
+  await inside(pia).locator("footer").getByRole("button", { name: words.close }).tap();
   await is_closed(pia);
 });
 
@@ -234,18 +239,18 @@ test("with tables only, these are named, and its name is typed", async () => {
   });
   await server.request("DELETE", `/models/${model}`);
   await pia.page.reload();
-  await heading(pia, "No models yet");
+  await heading(pia, words.home.empty_title);
   await from_menu(pia, "Villa Giulia, Rome", "Delete…");
-  await heading(pia, "Models of “Villa Giulia, Rome” lie in the Bin");
-  await inside(pia).locator("footer").getByRole("button", { name: "Close" }).tap();
+  await heading(pia, words.projects.kept_by_bin_title("Villa Giulia, Rome"));
+  await inside(pia).locator("footer").getByRole("button", { name: words.close }).tap();
   await is_closed(pia);
   await server.request("DELETE", `/projects/villa-giulia/bin/model-${model}`);
   await pia.page.reload();
-  await heading(pia, "No models yet");
+  await heading(pia, words.home.empty_title);
   await from_menu(pia, "Villa Giulia, Rome", "Delete…");
   await pia.page.getByText("Its 2 tables go with it").waitFor();
   await inside(pia).getByText("1 record").waitFor();
-  const remove = inside(pia).getByRole("button", { name: "Delete", exact: true });
+  const remove = inside(pia).getByRole("button", { name: words.delete, exact: true });
   const typed = box(pia, "Type “Villa Giulia, Rome” to delete them");
   for (const wrong of ["", "villa giulia, rome", "Villa Giulia"]) {
     await typed.fill(wrong);
@@ -256,7 +261,7 @@ test("with tables only, these are named, and its name is typed", async () => {
   await shoot(pia, "with_tables_phone_dark");
   await typed.fill("Villa Giulia, Rome");
   await remove.tap();
-  await heading(pia, "Models"); // of the only one that is left
+  await heading(pia, words.home.title); // of the only one that is left
   assert.equal(new URL(pia.page.url()).pathname, "/");
   await pia.page.getByText("“Villa Giulia, Rome” was deleted.").waitFor();
   assert.equal(await status({ token: server.token }, "GET", "/projects/villa-giulia"), 404);
@@ -265,19 +270,19 @@ test("with tables only, these are named, and its name is typed", async () => {
 });
 
 test("by touch: a project is made on a phone, and deleted while it is empty by one more tap", async () => {
-  await button(pia, "New project").tap();
+  await button(pia, words.projects.new).tap();
   await box(pia, "Name").fill("遺跡");
-  await button(pia, "Make the project").tap();
+  await button(pia, words.projects.create).tap();
   await heading(pia, "遺跡");
   await shoot(pia, "empty_phone_dark");
-  await pia.page.getByRole("link", { name: "All projects" }).tap();
-  await heading(pia, "Projects");
+  await pia.page.getByRole("link", { name: words.home.all_projects }).tap();
+  await heading(pia, words.home.projects);
   await shoot(pia, "gallery_phone_dark");
   await from_menu(pia, "遺跡", "Delete…");
   await pia.page.getByText("Links to it lead nowhere").waitFor();
   await shoot(pia, "delete_phone_dark");
-  await inside(pia).getByRole("button", { name: "Delete", exact: true }).tap();
-  await heading(pia, "Models");
+  await inside(pia).getByRole("button", { name: words.delete, exact: true }).tap();
+  await heading(pia, words.home.title);
   await is_closed(pia);
 });
 
@@ -285,9 +290,9 @@ test("who may not is offered none of it, and the server refuses them", async () 
   await server.json("POST", "/projects", { name: "Archive" });
   for (const person of [annotator, curator]) {
     await nora.sign_in(server, person);
-    await heading(nora, "Projects");
+    await heading(nora, words.home.projects);
     await wait_for(async () => (await cards(nora)).length === 2, "both projects");
-    assert.equal(await button(nora, "New project").count(), 0);
+    assert.equal(await button(nora, words.projects.new).count(), 0);
     assert.equal(
       await nora.page.getByRole("button", { name: /^Options for/ }).count(),
       person === curator ? 2 : 0,
@@ -295,7 +300,7 @@ test("who may not is offered none of it, and the server refuses them", async () 
     );
     await nora.page.goto(`${server.url}/projects/archive`);
     await heading(nora, "Archive");
-    await heading(nora, "No models yet");
+    await heading(nora, words.home.empty_title);
     assert.equal(
       await nora.page.getByRole("button", { name: /^Options for/ }).count(),
       person === curator ? 1 : 0,
@@ -310,11 +315,11 @@ test("who may not is offered none of it, and the server refuses them", async () 
 
 test("whose role changes while the dialog is open is told so there", async () => {
   await ada.page.goto(server.url);
-  await heading(ada, "Projects");
-  await button(ada, "New project").click();
+  await heading(ada, words.home.projects);
+  await button(ada, words.projects.new).click();
   await box(ada, "Name").fill("Too late");
   await server.json("PATCH", "/users/ada", { role: "viewer" });
-  await button(ada, "Make the project").click();
+  await button(ada, words.projects.create).click();
   await inside(ada).getByRole("alert").filter({ hasText: /./ }).waitFor();
   await shoot(ada, "refused_desk");
   assert.deepEqual(

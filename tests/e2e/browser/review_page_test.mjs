@@ -5,6 +5,9 @@ import { join } from "node:path";
 import { Browser, rgb } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kEnough = 150; // pixels of a stroke that is there
 
@@ -60,22 +63,19 @@ test("the curator asks for review by the layer's menu; an annotator is told so",
   }
   assert.equal(await panel(cleo).count(), 0, "no layer asks for review yet");
   for (const who of [ada, cleo])
-    await who.page.getByRole("button", { name: "Paint on Finds" }).click();
-  await ada.page.getByRole("button", { name: "Options for Finds" }).click();
+    await who.page.getByRole("button", { name: words.layers.select("Finds") }).click();
+  await ada.page.getByRole("button", { name: words.layers.options("Finds") }).click();
   assert.equal(
-    await ada.page.getByRole("menuitem", { name: "Have edits reviewed" }).count(),
+    await ada.page.getByRole("menuitem", { name: words.review.begin }).count(),
     0,
     "an annotator is offered to ask for review",
   );
   await ada.page.keyboard.press("Escape");
-  await cleo.page.getByRole("button", { name: "Options for Finds" }).click();
-  await cleo.page.getByRole("menuitem", { name: "Have edits reviewed" }).click();
-  await ada.page
-    .locator("strata-layer-panel")
-    .getByText("What you paint here is hatched until a curator accepts it.")
-    .waitFor();
-  await panel(cleo).getByRole("button", { name: "Review" }).click();
-  await panel(cleo).getByText("Nothing waits for review.").waitFor();
+  await cleo.page.getByRole("button", { name: words.layers.options("Finds") }).click();
+  await cleo.page.getByRole("menuitem", { name: words.review.begin }).click();
+  await ada.page.locator("strata-layer-panel").getByText(words.review.asked_of_you).waitFor();
+  await panel(cleo).getByRole("button", { name: words.review.title }).click();
+  await panel(cleo).getByText(words.review.none).waitFor();
 });
 
 test("what she paints is hatched for both, and the curator's list has it", async () => {
@@ -90,8 +90,8 @@ test("what she paints is hatched for both, and the curator's list has it", async
     async () => (await listed(cleo).count()) === 2,
     "both strokes in the curator's list",
   );
-  await cleo.page.locator("strata-layer-panel").getByText("2 strokes wait for review.").waitFor();
-  await panel(ada).getByRole("button", { name: "Review" }).click();
+  await cleo.page.locator("strata-layer-panel").getByText(words.review.waiting(2)).waitFor();
+  await panel(ada).getByRole("button", { name: words.review.title }).click();
   await wait_for(async () => (await listed(ada).count()) === 2, "both strokes in her own list");
   assert.equal(
     await panel(ada)
@@ -119,7 +119,7 @@ test("she accepts one: its hatch is gone, and its author hears so", async () => 
   painted = await texels();
   await panel(cleo).getByRole("button", { name: "Accept: stroke, ada" }).first().click();
   await notice(cleo, "1 edit accepted").waitFor();
-  await notice(ada, "cleo accepted what you painted on Finds").waitFor();
+  await notice(ada, words.review.told.accept("cleo", "Finds")).waitFor();
   await wait_for(async () => (await listed(cleo).count()) === 1, "one stroke left");
   assert.equal(await texels(), painted);
 });
@@ -128,8 +128,8 @@ test("and rejects the other with a reason", async () => {
   await panel(cleo).getByRole("button", { name: "Reject: stroke, ada" }).click();
   await shoot(cleo, "reason");
   await cleo.page.keyboard.type("This is the old restoration");
-  await panel(cleo).getByRole("button", { name: "Reject", exact: true }).click();
-  await notice(ada, "cleo rejected what you painted on Finds").waitFor();
+  await panel(cleo).getByRole("button", { name: words.review.reject, exact: true }).click();
+  await notice(ada, words.review.told.reject("cleo", "Finds")).waitFor();
   await notice(ada, "This is the old restoration").waitFor();
   await shoot(ada, "told");
   await wait_for(async () => (await texels()) < painted, "the stroke to go");
@@ -145,14 +145,17 @@ test("the decision is taken back; once more by the notice, as long as it is ther
   await notice(ada, "waits for review again").waitFor();
   await cleo.close_notices();
   await panel(cleo).getByRole("button", { name: "Reject: stroke, ada" }).click();
-  await panel(cleo).getByRole("button", { name: "Reject", exact: true }).click();
-  await cleo.page.locator("strata-notices").getByRole("button", { name: "Take back" }).click();
+  await panel(cleo).getByRole("button", { name: words.review.reject, exact: true }).click();
+  await cleo.page
+    .locator("strata-notices")
+    .getByRole("button", { name: words.review.take_back })
+    .click();
   await wait_for(
     async () => (await texels()) === painted && (await listed(cleo).count()) === 1,
     "the stroke to be back, and to wait again",
   );
-  await panel(cleo).getByRole("button", { name: "Accept all" }).click();
-  await panel(cleo).getByText("Nothing waits for review.").waitFor();
+  await panel(cleo).getByRole("button", { name: words.review.accept_all }).click();
+  await panel(cleo).getByText(words.review.none).waitFor();
   assert.equal(await texels(), painted);
 });
 
@@ -164,8 +167,8 @@ test("what was accepted the annotator cannot take back", async () => {
 
 test("on a phone", async () => {
   await stroke_by_ada([0.48, 0.4], [0.54, 0.42]);
-  await phone.page.getByRole("button", { name: "Show the panel" }).click();
-  await panel(phone).getByRole("button", { name: "Review" }).click();
+  await phone.page.getByRole("button", { name: words.model.show_panel }).click();
+  await panel(phone).getByRole("button", { name: words.review.title }).click();
   await wait_for(async () => (await listed(phone).count()) === 1, "her stroke on her phone");
   await panel(phone).scrollIntoViewIfNeeded();
   await shoot(phone, "phone");

@@ -8,6 +8,9 @@ import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { kRoot } from "../support/js/modules.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kScan = join(kRoot, "..", "shared", "data", "vessel_lekythos_gigamesh_15k.ply");
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
@@ -73,9 +76,9 @@ const asks = ({ page }) => page.locator("strata-scale-dialog");
 const title = async (who) =>
   (await asks(who).getByRole("heading").innerText()).replace(/\s+/g, " ");
 const reason = (who, of) => who.page.locator(`strata-scale-dialog [data-reason=${of}]`).innerText();
-const texts_of = async (locator) => (await locator.allInnerTexts()).map((text) => text.trim());
+const contents_of = async (locator) => (await locator.allInnerTexts()).map((text) => text.trim());
 const chosen = (who) =>
-  texts_of(who.page.locator("strata-scale-dialog [role=radio][aria-checked=true]"));
+  contents_of(who.page.locator("strata-scale-dialog [role=radio][aria-checked=true]"));
 const choose = (who, name) => asks(who).getByRole("radio", { name, exact: true }).click();
 const bar = (who) => who.page.locator("strata-stage .scale").innerText();
 const model_of = async (name) =>
@@ -146,7 +149,7 @@ test("a PLY whose header has the unit: the card says so, and the scale bar agree
 
 test("six small pictures, each another one", async () => {
   assert.deepEqual(
-    await texts_of(asks(desk).locator("[role=radiogroup]").last().getByRole("radio")),
+    await contents_of(asks(desk).locator("[role=radiogroup]").last().getByRole("radio")),
     kUps,
   );
   const pictures = asks(desk).locator("strata-thumbnail canvas.drawn");
@@ -192,7 +195,7 @@ test("decide later: what the card named is kept, marked, and asked again", async
   await asks(desk)
     .getByText(/“Decide later” keeps millimetres and \+Y up/)
     .waitFor();
-  await asks(desk).getByRole("button", { name: "Decide later" }).click();
+  await asks(desk).getByRole("button", { name: words.scale.later }).click();
   await card(desk).waitFor({ state: "detached" });
   await bar_says(desk, "(mm|cm)");
   assert.match(await bar(desk), /Size not confirmed/);
@@ -208,7 +211,7 @@ test("decide later: what the card named is kept, marked, and asked again", async
 
 test("yes: it is confirmed, upside down as chosen", async () => {
   await choose(desk, "−Y");
-  await asks(desk).getByRole("button", { name: "Yes, that is right" }).click();
+  await asks(desk).getByRole("button", { name: words.scale.yes }).click();
   await wait_for(
     async () => (await model_of("bowl with unit")).scale_verified,
     "the size to be confirmed",

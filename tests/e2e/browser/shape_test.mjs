@@ -6,6 +6,9 @@ import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const pictures = process.env.STRATA_TEST_OUTPUT;
 const button = (name) => page.getByRole("button", { name, exact: true });
@@ -69,9 +72,9 @@ async function import_hill(name, cells) {
 }
 
 async function start_computing(kind, fields = {}) {
-  await button("New layer").click();
+  await button(words.layers.new).click();
   await page.getByRole("radio", { name: /From the shape/ }).click();
-  await page.getByLabel("What to compute").selectOption({ label: kind });
+  await page.getByLabel(words.shape.kind).selectOption({ label: kind });
   for (const [label, value] of Object.entries(fields)) await page.getByLabel(label).fill(value);
 }
 
@@ -89,13 +92,13 @@ test.beforeAll(async () => {
 
 test("a layer is computed from the shape", async () => {
   await start_computing("Curvature", { "Within a radius of": "0" });
-  await button("Compute layer").click();
+  await button(words.layer_dialog.compute).click();
   await page.getByText("Give a length larger than 0").waitFor();
-  await page.getByLabel("Within a radius of").fill("4");
+  await page.getByLabel(words.shape.radius).fill("4");
   await keep_picture("dialog");
-  await button("Compute layer").click();
-  await page.getByText("“Curvature” is being computed.").waitFor();
-  await button("Paint on Curvature").waitFor();
+  await button(words.layer_dialog.compute).click();
+  await page.getByText(words.shape.started("Curvature")).waitFor();
+  await button(words.layers.select("Curvature")).waitFor();
   const layer = await server.json("GET", `${base}/layers/curvature`);
   assert.equal(layer.unit, "1/mm");
   // its description: it is selected
@@ -119,9 +122,9 @@ test("a layer is computed from the shape", async () => {
 });
 
 test("it is locked; unlocked, it can be taken back like a stroke", async () => {
-  await button("Unlock to edit by hand").first().click();
+  await button(words.layers.unlock_computed).first().click();
   await wait_for(
-    async () => (await button("Unlock to edit by hand").count()) === 0,
+    async () => (await button(words.layers.unlock_computed).count()) === 0,
     "the layer to be unlocked",
   );
   await page.keyboard.press("b");
@@ -138,14 +141,18 @@ test("long work shows how far it is, and is cancelled", async () => {
     "Looks as far as": "30",
     "Rays at each point": "7",
   });
-  await button("Compute layer").click();
-  await page.getByText("Give a whole number of rays from 16 to 1024.").waitFor();
-  await page.getByLabel("Rays at each point").fill("128");
+  await button(words.layer_dialog.compute).click();
+  await page.getByText(words.shape.bad_rays(16, 1024)).waitFor();
+  await page.getByLabel(words.shape.rays).fill("128");
   // the finest takes longest
-  await page.getByRole("radiogroup", { name: "Smallest detail" }).getByRole("radio").last().click();
-  await button("Compute layer").click();
+  await page
+    .getByRole("radiogroup", { name: words.layer_dialog.detail })
+    .getByRole("radio")
+    .last()
+    .click();
+  await button(words.layer_dialog.compute).click();
   await page.getByRole("progressbar", { name: "Never" }).waitFor();
-  await button("Cancel Never").click();
+  await button(words.layer_jobs.cancel("Never")).click();
   await page.getByRole("progressbar", { name: "Never" }).waitFor({ state: "detached" });
   assert.ok(
     !(await server.json("GET", `${base}/layers`)).layers.some(({ name }) => name === "Never"),
@@ -154,10 +161,10 @@ test("long work shows how far it is, and is cancelled", async () => {
 
 test("what cannot be computed says why", async () => {
   await start_computing("Distance to the edge");
-  await button("Compute layer").click();
+  await button(words.layer_dialog.compute).click();
   await page.getByText(/This model is closed/).waitFor();
   await keep_picture("failed");
-  await button("Remove the note about Distance to the edge").click();
+  await button(words.layer_jobs.dismiss("Distance to the edge")).click();
 });
 
 test("layers are brought over from another scan, with a report", async () => {
@@ -175,20 +182,20 @@ test("layers are brought over from another scan, with a report", async () => {
   await page.goto(new URL("/projects/default", server.url).href);
   await page.getByRole("link", { name: /Now/ }).click();
   await browser.drawn();
-  await button("More about layers").click();
-  await page.getByRole("menuitem", { name: "Bring layers over…" }).click();
+  await button(words.layers.more).click();
+  await page.getByRole("menuitem", { name: words.transfer.open }).click();
   await page.locator("strata-transfer-dialog select").selectOption({ label: "Then" });
   await page.getByRole("checkbox", { name: "Terraces" }).waitFor();
-  await page.getByLabel("Their surfaces face the same way within").fill("0");
-  await button("Bring over").click();
-  await page.getByText("Give an angle from 1 to 180 degrees.").waitFor();
-  await page.getByLabel("Their surfaces face the same way within").fill("45");
+  await page.getByLabel(words.transfer.angle).fill("0");
+  await button(words.transfer.start).click();
+  await page.getByText(words.transfer.bad_angle).waitFor();
+  await page.getByLabel(words.transfer.angle).fill("45");
   await keep_picture("transfer-dialog");
-  await button("Bring over").click();
+  await button(words.transfer.start).click();
   await page.getByText(/of this surface has a counterpart/).waitFor();
   const row = page.getByRole("row", { name: /Terraces/ });
   assert.match(await row.innerText(), /cm²\s+0 %/);
-  await button("Paint on Terraces").waitFor();
+  await button(words.layers.select("Terraces")).waitFor();
   const [brought] = (await server.json("GET", `/models/${now}/layers/terraces/edits`)).edits;
   assert.equal(brought.recipe.max_angle, 45, JSON.stringify(brought));
   await browser.settled();
@@ -197,8 +204,8 @@ test("layers are brought over from another scan, with a report", async () => {
 
 test("numbers of the scan's file become a layer", async () => {
   await start_computing("Values from the scan's file");
-  await button("Compute layer").click();
-  await button("Paint on quality").waitFor();
+  await button(words.layer_dialog.compute).click();
+  await button(words.layers.select("quality")).waitFor();
   await browser.settled();
   await keep_picture("quality");
 });
@@ -209,17 +216,17 @@ test("a table of numbers for the vertices of the scan is painted", async () => {
     .split("\n")
     .slice(0, 58 * 58)
     .map((line) => Number(line.split(" ")[3]) * 10);
-  await button("Options for quality").click();
-  await page.getByRole("menuitem", { name: "Unlock to edit by hand" }).click();
-  await button("Options for quality").click();
-  await page.getByRole("menuitem", { name: "Paint from a file…" }).click();
+  await button(words.layers.options("quality")).click();
+  await page.getByRole("menuitem", { name: words.layers.unlock_computed }).click();
+  await button(words.layers.options("quality")).click();
+  await page.getByRole("menuitem", { name: words.maps.menu }).click();
   await page.locator("strata-map-dialog input[type=file]").setInputFiles({
     name: "tenfold.csv",
     mimeType: "text/csv",
     buffer: Buffer.from(numbers.join("\n")),
   });
   await page.getByText("One number a line").waitFor();
-  await button("Paint").click();
+  await button(words.maps.paint).click();
   await page.locator("strata-map-dialog").waitFor({ state: "detached" });
   const tenfold = await server.json("GET", `/models/${now}/layers/quality/statistics`);
   assert.ok(

@@ -8,6 +8,9 @@ import { Browser, rgb } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { decode_png } from "../support/js/png.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-together";
 const kMagenta = "#ff00ff"; // nothing on the pot has this hue
@@ -254,7 +257,7 @@ test("from another side it is where the camera's matrices say, and hidden from b
 });
 
 test("the brush in her hand is as large as where she paints, and her paint is there before she lets go", async () => {
-  await bea.page.getByRole("button", { name: "Paint on Traces" }).click();
+  await bea.page.getByRole("button", { name: words.layers.select("Traces") }).click();
   await bea.page.keyboard.press("b");
   for (let i = 0; i < 6; ++i) await bea.page.keyboard.press("]");
   await bea.page.keyboard.press("1");
@@ -290,7 +293,7 @@ test("following: the other's view, in their colour, wherever they turn", async (
   await open_people(anna);
   await shot(anna, "menu_1280");
   await entry(anna, "Follow Bea Ost").click();
-  await bar(anna).getByText("Following Bea Ost").waitFor();
+  await bar(anna).getByText(words.together.following("Bea Ost")).waitFor();
   for (const key of ["ArrowLeft", "ArrowLeft", "ArrowLeft", "ArrowDown", "+"])
     await bea.page.keyboard.press(key);
   await wait_for(() => same_view(anna.sent.camera, bea.sent.camera), "Anna's camera to be Bea's");
@@ -326,7 +329,7 @@ test("following: the other's view, in their colour, wherever they turn", async (
 });
 
 test("on a phone all that she sees is seen, from where she stands", async () => {
-  await anna.page.getByRole("button", { name: "Hide the panel" }).click();
+  await anna.page.getByRole("button", { name: words.model.hide_panel }).click();
   await anna.page.setViewportSize(kPhone);
   await wait_for(() => anna.sent.camera.height > anna.sent.camera.width, "the window of the phone");
   await at_rest(anna);
@@ -355,7 +358,7 @@ test("on a phone all that she sees is seen, from where she stands", async () => 
   await shot(anna, "menu_390");
   await anna.page.keyboard.press("Escape");
   await anna.page.setViewportSize(kDesk);
-  await anna.page.getByRole("button", { name: "Show the panel" }).click();
+  await anna.page.getByRole("button", { name: words.model.show_panel }).click();
   await wait_for(() => anna.sent.camera.width > anna.sent.camera.height, "the window of the desk");
   await wait_for(
     () => same_view(anna.sent.camera, bea.sent.camera),
@@ -384,10 +387,10 @@ test("a move of one's own stops it, and so does Escape", async () => {
 test("somebody asks to look along: the others get a notice, and she sees who follows", async () => {
   await choose(bea, /Look with me/);
   await bar(bea).getByText("You asked the others to look with you").waitFor();
-  await anna.page.getByText("Bea Ost asks you to look with them").waitFor();
+  await anna.page.getByText(words.together.invites("Bea Ost")).waitFor();
   await anna.page
     .locator("strata-notices")
-    .getByRole("button", { name: "Follow", exact: true })
+    .getByRole("button", { name: words.together.accept, exact: true })
     .click();
   await bar(bea).getByText("1 person looks with you").waitFor();
   await shot(bea, "leading_1280");
@@ -402,7 +405,7 @@ test("she takes it back and asks again: who went their own way is asked again", 
   await bar(bea).waitFor({ state: "detached" });
   await wait_for(() => bea_as_heard().leading === false, "Anna to hear that it is over");
   await choose(bea, /Look with me/);
-  await anna.page.getByText("Bea Ost asks you to look with them").waitFor();
+  await anna.page.getByText(words.together.invites("Bea Ost")).waitFor();
   await shot(anna, "asked_1280");
   await anna.page.setViewportSize(kPhone);
   await shot(anna, "asked_390");
@@ -413,7 +416,7 @@ test("she takes it back and asks again: who went their own way is asked again", 
 
 test("she leaves: who followed her is told", async () => {
   await bea.page.locator("a.home").click();
-  await anna.page.getByText("Bea Ost left: the view is yours again.").waitFor();
+  await anna.page.getByText(words.together.left("Bea Ost")).waitFor();
   await bar(anna).waitFor({ state: "detached" });
   await anna.page.getByLabel("Only you are here: owner (you)").waitFor();
   await shot(anna, "left_1280");

@@ -7,6 +7,9 @@ import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { encode_png } from "../support/js/png.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-tools";
 mkdirSync(kOutput, { recursive: true });
@@ -71,8 +74,8 @@ test("a picture becomes a shape: what of it is seen beforehand", async () => {
   await picker
     .locator("input[type=file]")
     .setInputFiles({ name: "five_pointed_star.png", mimeType: "image/png", buffer: star });
-  await dialog.getByRole("radio", { name: "Dark parts", checked: true }).waitFor();
-  assert.equal(await dialog.getByLabel("Name").inputValue(), "five pointed star");
+  await dialog.getByRole("radio", { name: words.shapes.parts.dark, checked: true }).waitFor();
+  assert.equal(await dialog.getByLabel(words.shapes.name).inputValue(), "five pointed star");
   const painted_share = () =>
     dialog.locator("canvas").evaluate((canvas) => {
       const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
@@ -80,12 +83,12 @@ test("a picture becomes a shape: what of it is seen beforehand", async () => {
     });
   const share = await painted_share();
   assert.ok(share > 0.15 && share < 0.4, String(share));
-  await dialog.getByRole("radio", { name: "Light parts" }).click();
+  await dialog.getByRole("radio", { name: words.shapes.parts.light }).click();
   assert.ok(Math.abs((await painted_share()) - (1 - share)) < 0.01);
-  await dialog.getByRole("radio", { name: "Dark parts" }).click();
+  await dialog.getByRole("radio", { name: words.shapes.parts.dark }).click();
   await shot("dialog");
-  await dialog.getByLabel("Name").fill("Star");
-  await dialog.getByRole("button", { name: "Add shape" }).click();
+  await dialog.getByLabel(words.shapes.name).fill("Star");
+  await dialog.getByRole("button", { name: words.shapes.add }).click();
   await dialog.waitFor({ state: "detached" });
   await wait_for(
     async () => (await shape("Star").getAttribute("aria-checked")) === "true",
@@ -118,7 +121,7 @@ test("a file that is dropped becomes a shape, too", async () => {
   );
   await picker.dispatchEvent("dragover", { dataTransfer: transfer });
   await picker.dispatchEvent("drop", { dataTransfer: transfer });
-  await dialog.getByRole("button", { name: "Add shape" }).click();
+  await dialog.getByRole("button", { name: words.shapes.add }).click();
   await shape("leaf").waitFor();
 });
 
@@ -127,7 +130,7 @@ test("what is no picture is refused in plain words", async () => {
     .locator("input[type=file]")
     .setInputFiles({ name: "notes.png", mimeType: "image/png", buffer: Buffer.from("hello") });
   await dialog.getByText("“notes.png” is not a picture that can be read").waitFor();
-  assert.equal(await dialog.getByRole("button", { name: "Add shape" }).isDisabled(), true);
+  assert.equal(await dialog.getByRole("button", { name: words.shapes.add }).isDisabled(), true);
   await page.keyboard.press("Escape");
   await dialog.waitFor({ state: "detached" });
 });
@@ -143,7 +146,7 @@ test("keys choose among the shapes", async () => {
 });
 
 test("a surface at a slant is skipped where that is wanted", async () => {
-  const limit = page.getByLabel("Skip surfaces seen at a slant of more than");
+  const limit = page.getByLabel(words.brush.slant);
   await limit.check();
   await page.getByLabel("Largest angle between").fill("35");
   await page.keyboard.press("Tab");
@@ -153,18 +156,18 @@ test("a surface at a slant is skipped where that is wanted", async () => {
   ]);
   assert.equal(facing.max_angle_deg, 35);
   await shot("slant");
-  await page.getByLabel("Also what is hidden behind").check();
+  await page.getByLabel(words.areas.through).check();
   assert.equal(await limit.isDisabled(), true);
   assert.equal((await paint([[0.5, 0.55]])).max_angle_deg, undefined);
-  await page.getByLabel("Also what is hidden behind").uncheck();
+  await page.getByLabel(words.areas.through).uncheck();
   assert.equal(await limit.isChecked(), true);
   await limit.uncheck();
 });
 
 test("a shape is renamed", async () => {
   await picker.getByRole("button", { name: "Options for Star" }).click();
-  await picker.getByRole("menuitem", { name: "Rename" }).click();
-  await page.getByRole("textbox", { name: "Name" }).fill("Five points");
+  await picker.getByRole("menuitem", { name: words.shapes.rename }).click();
+  await page.getByRole("textbox", { name: words.shapes.name }).fill("Five points");
   await page.keyboard.press("Enter");
   await shape("Five points").waitFor();
 });
@@ -186,8 +189,8 @@ test("somebody else deletes it: the brush is round, and what was painted stays",
 test("one's own deletion asks first", async () => {
   await shape("leaf").click();
   await picker.getByRole("button", { name: "Options for leaf" }).click();
-  await picker.getByRole("menuitem", { name: "Delete" }).click();
-  await page.getByRole("button", { name: "Delete", exact: true }).click();
+  await picker.getByRole("menuitem", { name: words.delete }).click();
+  await page.getByRole("button", { name: words.delete, exact: true }).click();
   await shape("leaf").waitFor({ state: "detached" });
   assert.deepEqual(await server.json("GET", "/tools"), { tools: [], total: 0 });
 });
@@ -195,7 +198,7 @@ test("one's own deletion asks first", async () => {
 test("the help sheet tells of it", async () => {
   await page.mouse.click((await browser.stage_box()).x + 10, (await browser.stage_box()).y + 10);
   await page.keyboard.press("?");
-  await page.getByText("Skip surfaces seen at a slant", { exact: true }).waitFor();
+  await page.getByText(words.help.brush_rows[1][0], { exact: true }).waitFor();
   await shot("help");
   await page.keyboard.press("Escape");
 });
@@ -215,15 +218,17 @@ test("on a phone the shapes are chosen by touch", async () => {
       .getByRole("button", { name: /^Brush/ })
       .first()
       .tap();
-    await phone.page.getByRole("button", { name: "Show the panel" }).tap();
+    await phone.page.getByRole("button", { name: words.model.show_panel }).tap();
     const shapes = phone.page.locator("strata-shape-picker");
     await shapes
       .locator("input[type=file]")
       .setInputFiles({ name: "leaf.png", mimeType: "image/png", buffer: leaf });
-    await phone.page.getByRole("button", { name: "Add shape" }).tap();
-    await shapes.getByRole("radio", { name: "Square", exact: true }).tap();
+    await phone.page.getByRole("button", { name: words.shapes.add }).tap();
+    await shapes.getByRole("radio", { name: words.brush.square, exact: true }).tap();
     assert.equal(
-      await shapes.getByRole("radio", { name: "Square", exact: true }).getAttribute("aria-checked"),
+      await shapes
+        .getByRole("radio", { name: words.brush.square, exact: true })
+        .getAttribute("aria-checked"),
       "true",
     );
     await shapes.getByRole("radio", { name: "leaf", exact: true }).tap();

@@ -7,6 +7,9 @@ import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
@@ -44,12 +47,12 @@ const from_menu = async (who, name, item) => {
     .click();
   await row(who, name).getByRole("menuitem", exact(item)).click();
 };
-const save = (who) => button(editor(who), "Save").click();
+const save = (who) => button(editor(who), words.save).click();
 const refused = (who, text) => editor(who).getByRole("alert").getByText(text).waitFor();
 const question = ({ page }) => page.locator("strata-question");
 const listed = ({ page }) => page.getByRole("link", { name: /Demo pot/ });
 const path_of = ({ page }) => new URL(page.url()).pathname;
-const home = ({ page }) => page.getByRole("link", exact("All models")).click();
+const home = ({ page }) => page.getByRole("link", exact(words.model.back)).click();
 /** Until the page was told. */
 const back = ({ page }) =>
   page.evaluate(() =>
@@ -59,7 +62,7 @@ const back = ({ page }) =>
     }).then(() => {}),
   );
 const from_account = async (who, item) => {
-  await button(who.page, "Account of ada").click();
+  await button(who.page, words.account.menu("ada")).click();
   await who.page.getByRole("menuitem", exact(item)).click();
 };
 
@@ -70,17 +73,17 @@ async function open_model(who) {
 async function open_panel(who) {
   await who.page.goto(server.url);
   await open_model(who);
-  if (who === phone) await who.page.getByRole("button", { name: "Show the panel" }).click();
-  await who.page.locator("strata-view-panel").getByRole("button", exact("View")).click();
+  if (who === phone) await who.page.getByRole("button", { name: words.model.show_panel }).click();
+  await who.page.locator("strata-view-panel").getByRole("button", exact(words.view.title)).click();
   await who.page.locator("strata-view-list").waitFor();
 }
 async function keep_view(who, name, keys) {
   await who.page.locator("strata-stage .surface").focus();
   for (const key of keys) await who.page.keyboard.press(key);
-  await button(who.page.locator("strata-view-list"), "Keep this view…").click();
+  await button(who.page.locator("strata-view-list"), words.kept_views.keep).click();
   const dialog = who.page.locator("strata-view-dialog");
-  await dialog.getByLabel("Name").fill(name);
-  await button(dialog, "Keep").click();
+  await dialog.getByLabel(words.kept_views.name).fill(name);
+  await button(dialog, words.kept_views.keep_yes).click();
   await gone(dialog);
 }
 let id;
@@ -119,12 +122,12 @@ test("a tour needs views, and says how they are had", async () => {
   await list(ada)
     .getByText(/^None is made yet/)
     .waitFor();
-  await button(list(ada), "New tour…").click();
+  await button(list(ada), words.tours.new).click();
   await editor(ada)
     .getByText(/^No view is kept yet/)
     .waitFor();
   await shot(ada, "no_views");
-  await button(editor(ada), "Cancel").click(); // nothing was written: nothing is asked
+  await button(editor(ada), words.cancel).click(); // nothing was written: nothing is asked
   await gone(editor(ada));
   await keep_view(ada, "West wall", ["4"]);
   await keep_view(ada, "From above", ["7"]);
@@ -132,67 +135,69 @@ test("a tour needs views, and says how they are had", async () => {
 });
 
 test("it is made of views, and what it lacks is told at its field", async () => {
-  await button(list(ada), "New tour…").click();
-  await button(stops(ada), "Add a stop").waitFor();
+  await button(list(ada), words.tours.new).click();
+  await button(stops(ada), words.tours.add).waitFor();
   await save(ada);
-  await refused(ada, "Give it a name.");
-  await editor(ada).getByLabel("Name", { exact: true }).fill("Around the pot");
+  await refused(ada, words.projects.name_empty);
+  await editor(ada).getByLabel(words.tours.name, { exact: true }).fill("Around the pot");
   await save(ada);
   await refused(ada, /^Add a stop/);
   for (const [index, name] of ["West wall", "From above", "The handle"].entries()) {
-    await button(stops(ada), "Add a stop").click();
+    await button(stops(ada), words.tours.add).click();
     await stops(ada)
       .locator("li b")
       .nth(index)
       .getByText(`${index + 1}. ${name}`)
       .waitFor();
   }
-  await fields(ada).getByLabel("Title", { exact: true }).fill("");
+  await fields(ada).getByLabel(words.tours.stop_title, { exact: true }).fill("");
   await save(ada);
-  await refused(ada, "Give the stop a title in the first language.");
+  await refused(ada, words.tours.wrong.title_missing);
   await wait_for(
     () =>
       fields(ada)
-        .getByLabel("Title", { exact: true })
+        .getByLabel(words.tours.stop_title, { exact: true })
         .evaluate((input) => input.getRootNode().activeElement === input),
     "the title to have the focus",
   );
-  await fields(ada).getByLabel("Title", { exact: true }).fill("The handle");
+  await fields(ada).getByLabel(words.tours.stop_title, { exact: true }).fill("The handle");
   await fields(ada)
-    .getByLabel("Text", { exact: true })
+    .getByLabel(words.tours.stop_text, { exact: true })
     .fill("Made apart, and set on when the wall was dry.");
-  await fields(ada).getByLabel("Shown while it plays by itself").fill("0");
+  await fields(ada).getByLabel(words.tours.attract).fill("0");
   await save(ada);
-  await refused(ada, "Seconds from 1 to 600.");
+  await refused(ada, words.tours.wrong_seconds(1, 600));
   await shot(ada, "refused");
-  await fields(ada).getByLabel("Shown while it plays by itself").fill("12.5");
-  await editor(ada).getByLabel("Without a touch it begins anew after").fill("90");
+  await fields(ada).getByLabel(words.tours.attract).fill("12.5");
+  await editor(ada).getByLabel(words.tours.idle).fill("90");
 });
 
 test("layers and records are chosen in an order, with columns that are called otherwise", async () => {
   await fields(ada)
-    .getByRole("combobox", exact("Add a layer"))
+    .getByRole("combobox", exact(words.tours.layer_add))
     .selectOption({ label: layers[0].name });
-  await button(fields(ada), "Add a layer").click();
-  await button(fields(ada), "Add a layer").click();
+  await button(fields(ada), words.tours.layer_add).click();
+  await button(fields(ada), words.tours.layer_add).click();
   await fields(ada)
-    .getByRole("list", exact("Layers to swipe between"))
+    .getByRole("list", exact(words.tours.swipe))
     .getByRole("button", { name: /^Move .* up$/ })
     .last()
     .click();
-  await button(fields(ada), "Add a table").click();
+  await button(fields(ada), words.tours.table_add).click();
   await fields(ada).getByRole("combobox", exact("Records of Pieces")).fill("Rim");
   await fields(ada).getByRole("option", { name: "Rim" }).click();
   await ada.page.keyboard.press("Tab");
-  await fields(ada).getByRole("combobox", exact("Add a column")).selectOption({ label: "State" });
-  await button(fields(ada), "Add a column").click();
+  await fields(ada)
+    .getByRole("combobox", exact(words.tours.column_add))
+    .selectOption({ label: words.site_people.state });
+  await button(fields(ada), words.tours.column_add).click();
   await fields(ada)
     .getByLabel(/^What State is called on the card/)
     .fill("Condition");
   await shot(ada, "things");
   await save(ada);
   await gone(editor(ada));
-  await row(ada, "Around the pot").getByText("3 stops · en").waitFor();
+  await row(ada, "Around the pot").getByText(words.tours.about(3, "en")).waitFor();
   const made = await tour("around-the-pot");
   assert.deepEqual(
     [made.languages, made.idle_s, made.stops.map(({ view }) => view)],
@@ -210,45 +215,48 @@ test("layers and records are chosen in an order, with columns that are called ot
 test("stops are put in another order, taken out and brought back", async () => {
   await row(ada, "Around the pot").locator("button.open").click();
   await stops(ada).locator("li").nth(2).waitFor();
-  await of_stop(ada, "The handle", "Move up");
+  await of_stop(ada, "The handle", words.layers.up);
   assert.deepEqual(await titles(ada), ["1. West wall", "2. The handle", "3. From above"]);
   await stops(ada)
     .locator("li .grip")
     .nth(2)
     .dragTo(stops(ada).locator("li").nth(0), { targetPosition: { x: 60, y: 6 } });
   assert.deepEqual(await titles(ada), ["1. From above", "2. West wall", "3. The handle"]);
-  await of_stop(ada, "West wall", "Remove the stop");
+  await of_stop(ada, "West wall", words.tours.remove);
   assert.deepEqual(await titles(ada), ["1. From above", "2. The handle"]);
-  await stops(ada).getByText("“West wall” is removed.").waitFor();
+  await stops(ada).getByText(words.tours.removed("West wall")).waitFor();
   await shot(ada, "removed");
-  await button(stops(ada), "Undo").click();
+  await button(stops(ada), words.model.undo).click();
   assert.deepEqual(await titles(ada), ["1. From above", "2. West wall", "3. The handle"]);
 });
 
 test("it is translated, and what lacks is marked", async () => {
   await editor(ada)
-    .getByRole("combobox", exact("Add a language"))
+    .getByRole("combobox", exact(words.tours.language_add))
     .selectOption({ label: "Spanish" });
-  await button(editor(ada).locator("strata-tour-languages"), "Add a language").click();
+  await button(editor(ada).locator("strata-tour-languages"), words.tours.language_add).click();
   await stops(ada)
     .locator("li", { hasText: "From above" })
-    .getByText("Not complete in: Spanish")
+    .getByText(words.tours.missing("Spanish"))
     .waitFor();
   await choose_stop(ada, "The handle");
-  await fields(ada).getByLabel("Title, Spanish").fill("El asa");
-  await fields(ada).getByText("Not complete in this language").waitFor(); // the text
-  await fields(ada).getByLabel("Text, Spanish").fill("Hecha aparte.");
+  await fields(ada).getByLabel(words.tours.stop_title_in("Spanish")).fill("El asa");
+  await fields(ada).getByText(words.tours.lacks).waitFor(); // the text
+  await fields(ada).getByLabel(words.tours.stop_text_in("Spanish")).fill("Hecha aparte.");
   await gone(
-    stops(ada).locator("li", { hasText: "The handle" }).getByText("Not complete in: Spanish"),
+    stops(ada).locator("li", { hasText: "The handle" }).getByText(words.tours.missing("Spanish")),
   );
-  await fields(ada).getByLabel("What State is called on the card, Spanish").fill("Estado");
+  await fields(ada).getByLabel(words.tours.column_label("State", "Spanish")).fill("Estado");
   await editor(ada)
-    .getByRole("combobox", exact("Add a language"))
+    .getByRole("combobox", exact(words.tours.language_add))
     .selectOption({ label: "German" });
-  await button(editor(ada).locator("strata-tour-languages"), "Add a language").click();
-  await fields(ada).getByLabel("Title, German").fill("Der Henkel");
+  await button(editor(ada).locator("strata-tour-languages"), words.tours.language_add).click();
+  await fields(ada).getByLabel(words.tours.stop_title_in("German")).fill("Der Henkel");
   await fields(ada).getByRole("radio", { name: "Spanish" }).click();
-  assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
+  assert.equal(
+    await fields(ada).getByLabel(words.tours.stop_title_in("Spanish")).inputValue(),
+    "El asa",
+  );
   await shot(ada, "translated");
   for (const [width, height, name] of [
     [820, 1180, "tablet"],
@@ -258,16 +266,16 @@ test("it is translated, and what lacks is marked", async () => {
     await shot(ada, name);
   }
   await ada.page.setViewportSize({ width: 1280, height: 800 });
-  await button(editor(ada), "Remove German").click();
-  await button(question(ada), "Cancel").click();
+  await button(editor(ada), words.tours.language_remove("German")).click();
+  await button(question(ada), words.cancel).click();
   assert.equal((await fields(ada).getByRole("radio").count()) > 0, true);
-  await button(editor(ada), "Remove German").click();
-  await button(question(ada), "Remove").click();
-  await gone(button(editor(ada), "Remove German"));
+  await button(editor(ada), words.tours.language_remove("German")).click();
+  await button(question(ada), words.column_filter.remove).click();
+  await gone(button(editor(ada), words.tours.language_remove("German")));
 });
 
 test("a stop is tried on the model, and the editor comes back as it was left", async () => {
-  await button(fields(ada), "Try the stop").click();
+  await button(fields(ada), words.tours.try_stop).click();
   await trial(ada).getByText("Made apart, and set on when the wall was dry.").waitFor();
   await wait_for(
     async () =>
@@ -281,32 +289,38 @@ test("a stop is tried on the model, and the editor comes back as it was left", a
     400,
   );
   await shot(ada, "trial");
-  await button(trial(ada), "Stop before").click();
+  await button(trial(ada), words.tours.stop_before).click();
   await trial(ada).getByText("2. West wall").waitFor();
   await ada.page.keyboard.press("Escape");
   await choose_stop(ada, "The handle");
-  assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
+  assert.equal(
+    await fields(ada).getByLabel(words.tours.stop_title_in("Spanish")).inputValue(),
+    "El asa",
+  );
 });
 
 test("closing with changes asks, by Escape, too, and again", async () => {
   await ada.page.keyboard.press("Escape");
   await shot(ada, "leave");
-  await button(question(ada), "Cancel").click();
+  await button(question(ada), words.cancel).click();
   await gone(question(ada));
-  await button(editor(ada), "Close").click();
+  await button(editor(ada), words.close).click();
   await ada.page.keyboard.press("Escape"); // answers no
   await gone(question(ada));
-  assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
+  assert.equal(
+    await fields(ada).getByLabel(words.tours.stop_title_in("Spanish")).inputValue(),
+    "El asa",
+  );
 });
 
 test("leaving the page asks as well while a stop is tried: by its links, back, signing out and loading it anew", async () => {
-  await button(fields(ada), "Try the stop").click();
+  await button(fields(ada), words.tours.try_stop).click();
   const ways = { home, back, sign_out: (who) => from_account(who, "Sign out") };
   for (const [name, leave] of Object.entries(ways)) {
     await leave(ada);
-    await question(ada).getByText("What you changed in this tour is lost.").waitFor();
+    await question(ada).getByText(words.tours.leave_lead).waitFor();
     await shot(ada, `leave_by_${name}`);
-    await button(question(ada), "Cancel").click();
+    await button(question(ada), words.cancel).click();
     await gone(question(ada));
     assert.equal(path_of(ada), `/models/${id}`, name);
     await trial(ada).getByText("3. The handle").waitFor();
@@ -317,15 +331,21 @@ test("leaving the page asks as well while a stop is tried: by its links, back, s
   ]);
   assert.equal(asked.type(), "beforeunload");
   await asked.dismiss();
-  await button(trial(ada), "Back to the tour").click();
-  assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
+  await button(trial(ada), words.tours.trial_end).click();
+  assert.equal(
+    await fields(ada).getByLabel(words.tours.stop_title_in("Spanish")).inputValue(),
+    "El asa",
+  );
   await back(ada); // beside the editor itself, too
-  await question(ada).getByText("What you changed in this tour is lost.").waitFor();
+  await question(ada).getByText(words.tours.leave_lead).waitFor();
   await back(ada);
   assert.equal(await question(ada).count(), 1);
-  await button(question(ada), "Cancel").click();
+  await button(question(ada), words.cancel).click();
   await gone(question(ada));
-  assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
+  assert.equal(
+    await fields(ada).getByLabel(words.tours.stop_title_in("Spanish")).inputValue(),
+    "El asa",
+  );
 });
 
 test("what somebody else saved meanwhile is told, and nothing is lost", async () => {
@@ -333,7 +353,10 @@ test("what somebody else saved meanwhile is told, and nothing is lost", async ()
   await save(ada);
   await refused(ada, /^Somebody changed this tour meanwhile/);
   await shot(ada, "conflict");
-  assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
+  assert.equal(
+    await fields(ada).getByLabel(words.tours.stop_title_in("Spanish")).inputValue(),
+    "El asa",
+  );
   await save(ada);
   await gone(editor(ada));
   again = await tour("around-the-pot");
@@ -350,16 +373,16 @@ test("what somebody else saved meanwhile is told, and nothing is lost", async ()
 test("who says yes is where they wanted to be, and without changes nothing is asked", async () => {
   for (const leave of [home, back]) {
     await row(ada, "Around the pot").locator("button.open").click();
-    await editor(ada).getByLabel("Name", { exact: true }).fill("Never saved");
-    await button(fields(ada), "Try the stop").click();
+    await editor(ada).getByLabel(words.tours.name, { exact: true }).fill("Never saved");
+    await button(fields(ada), words.tours.try_stop).click();
     await leave(ada);
-    await button(question(ada), "Close without saving").click();
+    await button(question(ada), words.tours.leave_yes).click();
     await listed(ada).waitFor();
     await gone(question(ada));
     assert.match(path_of(ada), /^\/(projects\/[^/]+)?$/);
     await open_model(ada);
     await row(ada, "Around the pot").locator("button.open").click();
-    await button(fields(ada), "Try the stop").click();
+    await button(fields(ada), words.tours.try_stop).click();
     await leave(ada);
     await listed(ada).waitFor();
     assert.equal(await question(ada).count(), 0);
@@ -371,7 +394,7 @@ test("who says yes is where they wanted to be, and without changes nothing is as
 test("what the server refuses is said at its field of the right stop", async () => {
   await row(ada, "Around the pot").locator("button.open").click();
   await choose_stop(ada, "From above");
-  await fields(ada).getByLabel("Title, English").fill("Above");
+  await fields(ada).getByLabel(words.tours.stop_title_in("English")).fill("Above");
   await ada.page.route(`**/tours/${again.id}`, async (route) => {
     if (route.request().method() !== "PATCH") return route.continue();
     const body = JSON.parse(route.request().postData());
@@ -380,7 +403,9 @@ test("what the server refuses is said at its field of the right stop", async () 
   });
   await save(ada);
   await wait_for(
-    async () => (await fields(ada).getByLabel("Title, English").inputValue()) === "The handle",
+    async () =>
+      (await fields(ada).getByLabel(words.tours.stop_title_in("English")).inputValue()) ===
+      "The handle",
     "the stop that was refused",
   );
   await fields(ada).getByRole("alert").waitFor();
@@ -395,10 +420,15 @@ test("what the server refuses is said at its field of the right stop", async () 
   await save(ada);
   await wait_for(
     async () =>
-      (await fields(ada).getByLabel("Title, Spanish").getAttribute("aria-invalid")) === "true",
+      (await fields(ada)
+        .getByLabel(words.tours.stop_title_in("Spanish"))
+        .getAttribute("aria-invalid")) === "true",
     "the title in Spanish to be refused",
   );
-  assert.equal(await fields(ada).getByLabel("Title, English").inputValue(), "West wall");
+  assert.equal(
+    await fields(ada).getByLabel(words.tours.stop_title_in("English")).inputValue(),
+    "West wall",
+  );
   await ada.page.unroute(`**/tours/${again.id}`);
 });
 
@@ -410,13 +440,15 @@ test("a stop whose view is gone is marked, and says what to do", async () => {
   );
   await stops(ada)
     .locator("li", { hasText: "West wall" })
-    .getByText("Its view was deleted")
+    .getByText(words.tours.view_gone_short)
     .waitFor();
   await fields(ada)
     .getByText(/^The view of this stop was deleted/)
     .waitFor();
   await shot(ada, "view_gone");
-  await fields(ada).getByRole("combobox", exact("View")).selectOption({ label: "From above" });
+  await fields(ada)
+    .getByRole("combobox", exact(words.view.title))
+    .selectOption({ label: "From above" });
   await save(ada);
   await gone(editor(ada));
   assert.deepEqual(
@@ -426,29 +458,29 @@ test("a stop whose view is gone is marked, and says what to do", async () => {
 });
 
 test("a link for a kiosk is made, and shown once", async () => {
-  await from_menu(ada, "Around the pot", "Kiosk links…");
-  await kiosks(ada).getByText("There is no link for this tour yet.").waitFor();
-  await button(kiosks(ada), "New link").click();
-  await button(kiosks(ada), "Make link").click();
-  await kiosks(ada).getByText("Say where the screen stands.").waitFor();
-  await kiosks(ada).getByLabel("Where the screen stands").fill("Entrance hall");
-  await kiosks(ada).getByLabel("Good for").fill("4000");
-  await button(kiosks(ada), "Make link").click();
+  await from_menu(ada, "Around the pot", words.kiosks.of_tour);
+  await kiosks(ada).getByText(words.kiosks.none_of).waitFor();
+  await button(kiosks(ada), words.kiosks.new).click();
+  await button(kiosks(ada), words.kiosks.make).click();
+  await kiosks(ada).getByText(words.kiosks.name_missing).waitFor();
+  await kiosks(ada).getByLabel(words.kiosks.name).fill("Entrance hall");
+  await kiosks(ada).getByLabel(words.kiosks.days).fill("4000");
+  await button(kiosks(ada), words.kiosks.make).click();
   await kiosks(ada)
     .getByText(/^A whole number of days/)
     .waitFor();
-  await kiosks(ada).getByLabel("Good for").fill("30");
-  await button(kiosks(ada), "Make link").click();
-  const link_field = kiosks(ada).getByLabel("Link for “Entrance hall”");
+  await kiosks(ada).getByLabel(words.kiosks.days).fill("30");
+  await button(kiosks(ada), words.kiosks.make).click();
+  const link_field = kiosks(ada).getByLabel(words.kiosks.link("Entrance hall"));
   link = await link_field.inputValue();
   assert.ok(
     await link_field.evaluate((field) => field === field.getRootNode().activeElement),
     "the keyboard is where the form was, and the link chosen",
   );
   assert.match(link, /^http:\/\/[^/]+\/kiosk\/.+$/);
-  await kiosks(ada).getByRole("listitem").getByText("not opened yet").waitFor();
+  await kiosks(ada).getByRole("listitem").getByText(words.kiosks.states.unopened).waitFor();
   await shot(ada, "kiosk_made");
-  await button(kiosks(ada), "Done").click();
+  await button(kiosks(ada), words.kiosks.link_done).click();
   assert.equal(await kiosks(ada).locator("strata-copy-field").count(), 0);
   await ada.page.keyboard.press("Escape");
   await gone(kiosks(ada));
@@ -462,21 +494,21 @@ test("who sees to kiosks finds all of them in their menu: seen, asked to reload,
       headers: { Authorization: `Bearer ${secret}`, ...how.headers },
     });
   assert.equal((await as_kiosk("/kiosk")).status, 200);
-  await button(ada.page, "Account of ada").click();
-  await ada.page.getByRole("menuitem", exact("Kiosks…")).click();
-  const entry = kiosks(ada).getByRole("listitem", exact("Entrance hall"));
-  await entry.getByText("running", { exact: true }).waitFor();
+  await button(ada.page, words.account.menu("ada")).click();
+  await ada.page.getByRole("menuitem", exact(words.kiosks.open)).click();
+  const entry = kiosks(ada).getByRole("listitem", exact(words.kiosks.name_hint));
+  await entry.getByText(words.kiosks.states.running, { exact: true }).waitFor();
   await entry.getByText("Around the pot").waitFor();
-  await button(entry, "Reload Entrance hall").click();
-  await entry.getByText("asked to reload").waitFor();
+  await button(entry, words.kiosks.reload_of("Entrance hall")).click();
+  await entry.getByText(words.kiosks.asked).waitFor();
   assert.equal((await (await as_kiosk("/kiosk")).json()).wants_reload, true);
   await shot(ada, "kiosks");
-  await button(entry, "Revoke the link of Entrance hall").click();
-  await button(question(ada), "Cancel").click();
+  await button(entry, words.kiosks.revoke_of("Entrance hall")).click();
+  await button(question(ada), words.cancel).click();
   assert.equal((await as_kiosk("/kiosk")).status, 200);
-  await button(entry, "Revoke the link of Entrance hall").click();
-  await button(question(ada), "Revoke").click();
-  await entry.getByText("revoked", { exact: true }).waitFor();
+  await button(entry, words.kiosks.revoke_of("Entrance hall")).click();
+  await button(question(ada), words.account.revoke).click();
+  await entry.getByText(words.kiosks.states.revoked, { exact: true }).waitFor();
   assert.equal((await as_kiosk("/kiosk")).status, 401);
   assert.equal(await entry.getByRole("button").count(), 0);
   await shot(ada, "kiosk_revoked");
@@ -491,22 +523,22 @@ test("on a phone a stop has the window to itself", async () => {
   await stops(phone).locator("li").nth(2).waitFor();
   await shot(phone, "phone_editor");
   await stops(phone).locator("button.stop", { hasText: "The handle" }).tap();
-  await fields(phone).getByLabel("Title, Spanish").fill("El asa de la vasija");
+  await fields(phone).getByLabel(words.tours.stop_title_in("Spanish")).fill("El asa de la vasija");
   assert.equal(await stops(phone).isVisible(), false);
   await shot(phone, "phone_stop");
-  await button(fields(phone), "Try the stop").tap();
+  await button(fields(phone), words.tours.try_stop).tap();
   await shot(phone, "phone_trial");
-  await button(trial(phone), "Back to the tour").tap();
-  await button(editor(phone), "All stops").tap();
+  await button(trial(phone), words.tours.trial_end).tap();
+  await button(editor(phone), words.tours.all_stops).tap();
   await stops(phone).locator("button.stop", { hasText: "Above" }).waitFor();
   await save(phone);
   await gone(editor(phone));
   assert.equal((await tour("around-the-pot")).stops[2].title.es, "El asa de la vasija");
   // it made way for the model
-  await phone.page.getByRole("button", { name: "Show the panel" }).tap();
+  await phone.page.getByRole("button", { name: words.model.show_panel }).tap();
   await row(phone, "Around the pot").scrollIntoViewIfNeeded();
-  await from_menu(phone, "Around the pot", "Kiosk links…");
-  await kiosks(phone).getByText("revoked", { exact: true }).waitFor();
+  await from_menu(phone, "Around the pot", words.kiosks.of_tour);
+  await kiosks(phone).getByText(words.kiosks.states.revoked, { exact: true }).waitFor();
   await shot(phone, "phone_kiosks");
   await phone.page.keyboard.press("Escape");
 });
@@ -515,15 +547,15 @@ test("annotators are offered none of it", async () => {
   await open_panel(bea);
   await bea.page.locator("strata-view-list button.go").first().waitFor();
   assert.equal(await list(bea).count(), 0);
-  await button(bea.page, "Account of bea").click();
-  await bea.page.getByRole("menuitem", exact("Account…")).waitFor();
-  assert.equal(await bea.page.getByRole("menuitem", exact("Kiosks…")).count(), 0);
+  await button(bea.page, words.account.menu("bea")).click();
+  await bea.page.getByRole("menuitem", exact(words.account.open)).waitFor();
+  assert.equal(await bea.page.getByRole("menuitem", exact(words.kiosks.open)).count(), 0);
   await bea.page.keyboard.press("Escape");
 });
 
 test("a tour that was deleted meanwhile is made anew", async () => {
   await row(ada, "Around the pot").locator("button.open").click();
-  await editor(ada).getByLabel("Name", { exact: true }).fill("Once more");
+  await editor(ada).getByLabel(words.tours.name, { exact: true }).fill("Once more");
   await server.request("DELETE", `${kBase}/tours/around-the-pot`);
   await save(ada);
   await refused(ada, /^This tour was deleted meanwhile/);
@@ -533,8 +565,8 @@ test("a tour that was deleted meanwhile is made anew", async () => {
     (await tours()).map(({ name }) => name),
     ["Once more"],
   );
-  await from_menu(ada, "Once more", "Delete…");
-  await button(question(ada), "Delete").click();
+  await from_menu(ada, "Once more", words.layers.delete);
+  await button(question(ada), words.delete).click();
   await list(ada)
     .getByText(/^None is made yet/)
     .waitFor();

@@ -7,6 +7,9 @@ import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { encode_png } from "../support/js/png.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-view";
 mkdirSync(kOutput, { recursive: true });
@@ -45,10 +48,10 @@ test.beforeAll(async () => {
 });
 
 test("the panel is closed at first and opens by its heading", async () => {
-  const heading = panel.getByRole("button", { name: "View" });
+  const heading = panel.getByRole("button", { name: words.view.title });
   assert.equal(await heading.getAttribute("aria-expanded"), "false");
   await heading.click();
-  await radio("Museum").waitFor();
+  await radio(words.view.lights.museum).waitFor();
 });
 
 test("a picture that is added is shown, and blends by its slider", async () => {
@@ -60,14 +63,14 @@ test("a picture that is added is shown, and blends by its slider", async () => {
   await panel.getByText("UV light").waitFor();
   await wait_for(async () => (await browser.count(kCyan)) > 20_000, "the look on the pot", 150);
   await shot("look");
-  await panel.getByLabel("Opacity of UV light").fill("0");
+  await panel.getByLabel(words.layers.opacity_of("UV light")).fill("0");
   await wait_for(async () => (await browser.count(kCyan)) === 0, "the look to be clear", 150);
-  await panel.getByRole("button", { name: "Hide UV light" }).click();
+  await panel.getByRole("button", { name: words.layers.hide("UV light") }).click();
 });
 
 test("raking light comes from where the pad is dragged to, and from where the keys move it", async () => {
-  await radio("Raking").click();
-  const pad = panel.getByRole("slider", { name: "Direction of the light" });
+  await radio(words.view.lights.raking).click();
+  const pad = panel.getByRole("slider", { name: words.view.light_direction });
   const box = await pad.boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   await page.mouse.down();
@@ -85,13 +88,13 @@ test("raking light comes from where the pad is dragged to, and from where the ke
   for (let i = 0; i < 22; ++i) await page.keyboard.press("ArrowRight");
   assert.notEqual(await pad.getAttribute("aria-valuetext"), said);
   await wait_for(() => lit_from("right"), "light from the right", 150);
-  await radio("Museum").click();
+  await radio(words.view.lights.museum).click();
 });
 
 test("a section opens the pot, and the brush paints what is seen then", async () => {
-  await radio("Y").click();
-  await panel.getByLabel("Position of the cut").fill("0");
-  await panel.getByRole("button", { name: "Keep the other side" }).click();
+  await radio(words.view.sections.y).click();
+  await panel.getByLabel(words.view.cut_position).fill("0");
+  await panel.getByRole("button", { name: words.view.flip }).click();
   inside = ({ data }) => {
     let count = 0;
     for (let at = 0; at < data.length; at += 4)
@@ -99,7 +102,7 @@ test("a section opens the pot, and the brush paints what is seen then", async ()
     return count;
   };
   uncut = inside(await stage()); // some of the clay has that colour, too
-  await panel.getByLabel("Position of the cut").fill("500");
+  await panel.getByLabel(words.view.cut_position).fill("500");
   await wait_for(
     async () => inside(await stage()) > 3 * uncut + 3000,
     "the wall to be shown cut",
@@ -121,26 +124,26 @@ test("a section opens the pot, and the brush paints what is seen then", async ()
 });
 
 test("a box keeps what is inside, and sides do not pass each other", async () => {
-  await radio("Box").click();
-  await panel.getByLabel("Box to Z").fill("300");
-  await panel.getByLabel("Box from Z").fill("900");
-  assert.ok(Number(await panel.getByLabel("Box from Z").inputValue()) < 300);
-  await panel.getByLabel("Box from Z").fill("0");
+  await radio(words.view.sections.box).click();
+  await panel.getByLabel(words.view.box_to("Z")).fill("300");
+  await panel.getByLabel(words.view.box_from("Z")).fill("900");
+  assert.ok(Number(await panel.getByLabel(words.view.box_from("Z")).inputValue()) < 300);
+  await panel.getByLabel(words.view.box_from("Z")).fill("0");
   await shot("box");
 });
 
 test("keys step through lights and cuts", async () => {
   await page.mouse.click((await browser.stage_box()).x + 10, (await browser.stage_box()).y + 10);
   await page.keyboard.press("k");
-  assert.equal(await radio("Headlight").getAttribute("aria-checked"), "true");
+  assert.equal(await radio(words.view.lights.headlight).getAttribute("aria-checked"), "true");
 });
 
 test("reset shows the model as others see it", async () => {
   await page.keyboard.press("Control+z");
   await browser.saved();
-  await panel.getByRole("button", { name: "Reset" }).click();
-  assert.equal(await radio("Museum").getAttribute("aria-checked"), "true");
-  assert.equal(await radio("Off").getAttribute("aria-checked"), "true");
+  await panel.getByRole("button", { name: words.view.reset }).click();
+  assert.equal(await radio(words.view.lights.museum).getAttribute("aria-checked"), "true");
+  assert.equal(await radio(words.view.sections.off).getAttribute("aria-checked"), "true");
   await wait_for(async () => inside(await stage()) < 2 * uncut + 1000, "the whole pot", 150);
 });
 
@@ -155,11 +158,11 @@ test("on a phone the panel is in the sheet", async () => {
     await phone.sign_in(server, server.token);
     await phone.page.goto(`${server.url}/models/1`);
     await phone.drawn();
-    await phone.page.getByRole("button", { name: "Show the panel" }).click();
+    await phone.page.getByRole("button", { name: words.model.show_panel }).click();
     const view = phone.page.locator("strata-view-panel");
-    await view.getByRole("button", { name: "View" }).click();
-    await view.getByRole("radio", { name: "Raking", exact: true }).click();
-    await view.getByRole("slider", { name: "Direction of the light" }).scrollIntoViewIfNeeded();
+    await view.getByRole("button", { name: words.view.title }).click();
+    await view.getByRole("radio", { name: words.view.lights.raking, exact: true }).click();
+    await view.getByRole("slider", { name: words.view.light_direction }).scrollIntoViewIfNeeded();
     writeFileSync(join(kOutput, "view-phone.png"), await phone.settled());
     phone.assert_no_complaints();
   } finally {

@@ -6,6 +6,9 @@ import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
@@ -62,7 +65,7 @@ async function open_model(who, hash = "") {
   await who.drawn();
 }
 async function open_panel(who) {
-  await panel(who).getByRole("button", { name: "View", exact: true }).click();
+  await panel(who).getByRole("button", { name: words.view.title, exact: true }).click();
   await list(who).waitFor();
 }
 let id;
@@ -100,25 +103,25 @@ test("what is seen is kept under a name, and others have it at once", async () =
   await surface(ada);
   for (const key of ["4", "ArrowUp", "ArrowRight", "+", "+", "o"])
     await ada.page.keyboard.press(key);
-  await radio(ada, "Raking").click();
-  await radio(ada, "X").click();
-  await panel(ada).getByLabel("Position of the cut").fill("620");
+  await radio(ada, words.view.lights.raking).click();
+  await radio(ada, words.view.sections.x).click();
+  await panel(ada).getByLabel(words.view.cut_position).fill("620");
   await ada.page.getByRole("button", { name: `Hide ${layers[0].name}` }).click();
   kept = await picture(ada);
-  await list(ada).getByRole("button", { name: "Keep this view…" }).click();
-  await dialog(ada).getByRole("button", { name: "Keep", exact: true }).click();
+  await list(ada).getByRole("button", { name: words.kept_views.keep }).click();
+  await dialog(ada).getByRole("button", { name: words.kept_views.keep_yes, exact: true }).click();
   assert.equal(
     await dialog(ada)
-      .getByLabel("Name")
+      .getByLabel(words.kept_views.name)
       .evaluate((input) => input.validity.valueMissing),
     true,
   );
-  await dialog(ada).getByLabel("Name").fill("West wall");
+  await dialog(ada).getByLabel(words.kept_views.name).fill("West wall");
   await dialog(ada)
-    .getByLabel("What is to be seen")
+    .getByLabel(words.kept_views.text)
     .fill("The breaks of the rim, cut open.\nIn raking light from the left.");
   await shot(ada, "keep");
-  await dialog(ada).getByRole("button", { name: "Keep", exact: true }).click();
+  await dialog(ada).getByRole("button", { name: words.kept_views.keep_yes, exact: true }).click();
   await gone(dialog(ada));
   await go(bea, "West wall").waitFor();
   await is_current(ada, "West wall");
@@ -136,7 +139,7 @@ test("what is seen is kept under a name, and others have it at once", async () =
 test("going elsewhere and back to it shows the same pixels, and leads back to what was seen before", async () => {
   await surface(ada);
   for (const key of ["p", "Home", "ArrowLeft", "ArrowLeft"]) await ada.page.keyboard.press(key);
-  await panel(ada).getByRole("button", { name: "Reset" }).click();
+  await panel(ada).getByRole("button", { name: words.view.reset }).click();
   await ada.page.getByRole("button", { name: `Show ${layers[0].name}` }).click();
   assert.equal(await go(ada, "West wall").getAttribute("aria-current"), "false");
   const own = await picture(ada);
@@ -147,15 +150,18 @@ test("going elsewhere and back to it shows the same pixels, and leads back to wh
   await becomes(ada, kept, "the pixels that were kept");
   assert.match(ada.page.url(), /#view=west-wall$/);
   await shot(ada, "there");
-  await list(ada).getByRole("button", { name: "Back to what I saw" }).click();
+  await list(ada).getByRole("button", { name: words.kept_views.back }).click();
   await becomes(ada, own, "the pixels that were seen before");
-  assert.deepEqual([await is_chosen(ada, "Museum"), await is_chosen(ada, "Off")], [true, true]);
-  assert.equal(await list(ada).getByRole("button", { name: "Back to what I saw" }).count(), 0);
+  assert.deepEqual(
+    [await is_chosen(ada, words.view.lights.museum), await is_chosen(ada, words.view.sections.off)],
+    [true, true],
+  );
+  assert.equal(await list(ada).getByRole("button", { name: words.kept_views.back }).count(), 0);
 });
 
 test("its link leads there in somebody else's browser", async () => {
-  await from_menu(ada, "West wall", "Copy the link");
-  await notice(ada, "The link is copied.").waitFor();
+  await from_menu(ada, "West wall", words.kept_views.copy_link);
+  await notice(ada, words.kept_views.copied).waitFor();
   link = await ada.page.evaluate(() => navigator.clipboard.readText());
   assert.equal(link, `${server.url}/models/${id}#view=west-wall`);
   await bea.page.goto(`${server.url}/`);
@@ -163,9 +169,14 @@ test("its link leads there in somebody else's browser", async () => {
   await bea.drawn();
   await is_current(bea, "West wall");
   await becomes(bea, kept, "the same pixels there");
-  await notice(bea, "View “West wall”").getByText("The breaks of the rim").waitFor();
+  await notice(bea, words.kept_views.shown("West wall"))
+    .getByText("The breaks of the rim")
+    .waitFor();
   await shot(bea, "link");
-  assert.deepEqual([await is_chosen(bea, "Raking"), await is_chosen(bea, "X")], [true, true]);
+  assert.deepEqual(
+    [await is_chosen(bea, words.view.lights.raking), await is_chosen(bea, words.view.sections.x)],
+    [true, true],
+  );
   await bea.page.getByRole("button", { name: `Show ${layers[0].name}` }).waitFor();
   await surface(bea);
   await bea.page.keyboard.press("ArrowLeft");
@@ -176,23 +187,23 @@ test("its link leads there in somebody else's browser", async () => {
 });
 
 test("it gets another name, and its link goes on", async () => {
-  await from_menu(ada, "West wall", "Rename and describe…");
-  assert.equal(await dialog(ada).getByLabel("Name").inputValue(), "West wall");
-  await dialog(ada).getByLabel("Name").fill("North wall");
+  await from_menu(ada, "West wall", words.projects.describe);
+  assert.equal(await dialog(ada).getByLabel(words.kept_views.name).inputValue(), "West wall");
+  await dialog(ada).getByLabel(words.kept_views.name).fill("North wall");
   await ada.page.route("**/views/*", async (route) => {
     if (route.request().method() === "PATCH")
       await server.json("PATCH", `${kBase}/views/${made.id}`, { name: "East wall" });
     await route.continue();
   });
-  await dialog(ada).getByRole("button", { name: "Save" }).click();
+  await dialog(ada).getByRole("button", { name: words.save }).click();
   await dialog(ada)
     .getByRole("alert")
     .getByText(/changed this view meanwhile; it is called “East wall” now/)
     .waitFor();
   await shot(ada, "stale");
   await ada.page.unroute("**/views/*");
-  assert.equal(await dialog(ada).getByLabel("Name").inputValue(), "North wall");
-  await dialog(ada).getByRole("button", { name: "Save" }).click();
+  assert.equal(await dialog(ada).getByLabel(words.kept_views.name).inputValue(), "North wall");
+  await dialog(ada).getByRole("button", { name: words.save }).click();
   await gone(dialog(ada));
   await go(bea, "North wall").waitFor();
   assert.equal((await views())[0].slug, "west-wall");
@@ -209,12 +220,12 @@ test("who did not make it is offered its link alone", async () => {
 });
 
 test("it shows something else instead, and that is taken back", async () => {
-  await from_menu(ada, "North wall", "Show this instead");
-  await notice(ada, "“North wall” now shows what you see.").waitFor();
+  await from_menu(ada, "North wall", words.kept_views.replace);
+  await notice(ada, words.kept_views.replaced("North wall")).waitFor();
   assert.equal((await views())[0].light.mode, "museum");
   await is_current(ada, "North wall");
-  await notice(ada, "“North wall” now shows what you see.")
-    .getByRole("button", { name: "Undo" })
+  await notice(ada, words.kept_views.replaced("North wall"))
+    .getByRole("button", { name: words.kept_views.undo })
     .click();
   await wait_for(async () => (await views())[0].light.mode === "raking", "what it showed before");
 });
@@ -236,12 +247,12 @@ test("a section that is none of the page's own is kept as it is, and can be turn
     camera: oblique,
   });
   await go(ada, "Oblique").click();
-  await panel(ada).getByText("The view's own section, of 2 planes").waitFor();
+  await panel(ada).getByText(words.view.section_of_view(2)).waitFor();
   const cut = await picture(ada);
   await shot(ada, "oblique");
-  await panel(ada).getByRole("button", { name: "Turn it off" }).click();
+  await panel(ada).getByRole("button", { name: words.view.section_remove }).click();
   await wait_for(async () => (await picture(ada)) !== cut, "the whole pot");
-  assert.equal(await is_chosen(ada, "Off"), true);
+  assert.equal(await is_chosen(ada, words.view.sections.off), true);
 });
 
 test("keys step through them", async () => {
@@ -250,8 +261,10 @@ test("keys step through them", async () => {
   await is_current(ada, "North wall");
   await ada.page.keyboard.press("Shift+N");
   await is_current(ada, "Oblique");
-  await notice(ada, "View “Oblique”").getByRole("button", { name: "Back to what I saw" }).click();
-  await gone(notice(ada, "View “Oblique”"));
+  await notice(ada, words.kept_views.shown("Oblique"))
+    .getByRole("button", { name: words.kept_views.back })
+    .click();
+  await gone(notice(ada, words.kept_views.shown("Oblique")));
   await wait_for(
     async () => (await go(ada, "Oblique").getAttribute("aria-current")) === "false",
     "the way back",
@@ -260,9 +273,9 @@ test("keys step through them", async () => {
 
 test("on a phone, in another window, a finger goes there; who only looks is not offered to keep or change", async () => {
   await open_model(phone);
-  await phone.page.getByRole("button", { name: "Show the panel" }).click();
+  await phone.page.getByRole("button", { name: words.model.show_panel }).click();
   await open_panel(phone);
-  assert.equal(await list(phone).getByRole("button", { name: "Keep this view…" }).count(), 0);
+  assert.equal(await list(phone).getByRole("button", { name: words.kept_views.keep }).count(), 0);
   await go(phone, "North wall").tap();
   await is_current(phone, "North wall");
   await go(phone, "North wall").scrollIntoViewIfNeeded();
@@ -273,15 +286,15 @@ test("on a phone, in another window, a finger goes there; who only looks is not 
 });
 
 test("deleted it is gone for everybody, and its link says so", async () => {
-  await from_menu(ada, "North wall", "Delete…");
+  await from_menu(ada, "North wall", words.layers.delete);
   await shot(ada, "delete");
-  await ada.page.getByRole("button", { name: "Cancel" }).click();
-  await from_menu(ada, "North wall", "Delete…");
-  await ada.page.locator("strata-dialog").getByRole("button", { name: "Delete" }).click();
+  await ada.page.getByRole("button", { name: words.cancel }).click();
+  await from_menu(ada, "North wall", words.layers.delete);
+  await ada.page.locator("strata-dialog").getByRole("button", { name: words.delete }).click();
   for (const who of [ada, bea, phone]) await gone(go(who, "North wall"));
   await bea.page.goto(`${server.url}/`);
   await bea.page.goto(link);
-  await notice(bea, "This view is not here any more.").waitFor();
+  await notice(bea, words.kept_views.missing).waitFor();
 });
 
 test("the pages have nothing to complain of, and the server ends with a clean log", async () => {

@@ -7,6 +7,9 @@ import { active } from "../support/js/accessible.mjs";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const kTablet = { viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true };
@@ -60,8 +63,11 @@ async function open_model(who) {
  * answered.
  */
 async function offers_nothing(who) {
-  await who.page.getByRole("button", { name: "Help", exact: true }).click();
-  await who.page.locator("strata-help-sheet").getByRole("heading", { name: "Help" }).waitFor();
+  await who.page.getByRole("button", { name: words.model.help, exact: true }).click();
+  await who.page
+    .locator("strata-help-sheet")
+    .getByRole("heading", { name: words.help.title })
+    .waitFor();
   await who.page.keyboard.press("Escape");
   await who.page.locator("strata-help-sheet").waitFor({ state: "detached" });
   assert.equal(await card_of(who).count(), 0, "the tour offers itself again");
@@ -130,7 +136,9 @@ test("an annotator opens a model for the first time: the tour offers itself and 
   assert.equal(await progress(nora), "1 of 6");
   assert.equal(await active(nora.page), "", "the tour took the keyboard");
   await nora.page.keyboard.press("b");
-  await nora.page.getByRole("button", { name: "Brush", exact: true, pressed: true }).waitFor();
+  await nora.page
+    .getByRole("button", { name: words.tools.brush, exact: true, pressed: true })
+    .waitFor();
   await nora.page.keyboard.press("v");
   await lies_well(nora, "turn");
   await shoot(nora, "desk_1_turn");
@@ -177,12 +185,12 @@ test("it stays beside its thing in windows of any size; what is put away it lead
   await nora.page.keyboard.press("ArrowLeft");
   await nora.page.keyboard.press("ArrowLeft");
   await at_step(nora, "layers");
-  await nora.page.getByRole("button", { name: "Hide the panel", exact: true }).click();
-  await card_of(nora).getByText("This button brings them.").waitFor();
+  await nora.page.getByRole("button", { name: words.model.hide_panel, exact: true }).click();
+  await card_of(nora).getByText(words.tour.steps.layers.way).waitFor();
   await lies_well(nora, "layers without the panel");
   await shoot(nora, "desk_layers_put_away");
-  await nora.page.getByRole("button", { name: "Show the panel", exact: true }).click();
-  await card_of(nora).getByText("This button brings them.").waitFor({ state: "detached" });
+  await nora.page.getByRole("button", { name: words.model.show_panel, exact: true }).click();
+  await card_of(nora).getByText(words.tour.steps.layers.way).waitFor({ state: "detached" });
 });
 
 test("a tour that was not ended is offered again; Escape ends it from anywhere, for good", async () => {
@@ -196,10 +204,10 @@ test("a tour that was not ended is offered again; Escape ends it from anywhere, 
 });
 
 test("from the help it begins again, with the keyboard, and gives it back", async () => {
-  const help = nora.page.getByRole("button", { name: "Help", exact: true });
+  const help = nora.page.getByRole("button", { name: words.model.help, exact: true });
   await help.focus();
   await nora.page.keyboard.press("Enter");
-  await nora.page.getByRole("button", { name: "Show the tour", exact: true }).focus();
+  await nora.page.getByRole("button", { name: words.tour.again, exact: true }).focus();
   await nora.page.keyboard.press("Enter");
   await at_step(nora, "turn");
   await wait_for(async () => /Next/.test(await active(nora.page)), "the card to have the keyboard");
@@ -207,10 +215,10 @@ test("from the help it begins again, with the keyboard, and gives it back", asyn
     await nora.page.keyboard.press("Enter");
     await at_step(nora, name);
   }
-  await button(nora, "Back").click();
+  await button(nora, words.tour.back).click();
   await at_step(nora, "values");
-  await button(nora, "Next").click();
-  await button(nora, "Done").focus();
+  await button(nora, words.tour.next).click();
+  await button(nora, words.tour.done).focus();
   await nora.page.keyboard.press("Enter");
   await is_gone(nora);
   assert.match(await active(nora.page), /Help/, "the keyboard was not given back");
@@ -235,14 +243,14 @@ test("a tablet: the fingers turn the model meanwhile, and the tour is skipped by
   await open_model(tablet);
   await at_step(tablet, "turn");
   await lies_well(tablet, "tablet");
-  await button(tablet, "Next").tap();
+  await button(tablet, words.tour.next).tap();
   await at_step(tablet, "layers");
-  await button(tablet, "Next").tap();
+  await button(tablet, words.tour.next).tap();
   await at_step(tablet, "brush");
   await lies_well(tablet, "tablet: brush");
   await tablet.page.evaluate(() => (document.documentElement.dataset.theme = "dark"));
   await shoot(tablet, "tablet_brush_dark");
-  await button(tablet, "Skip the tour").tap();
+  await button(tablet, words.tour.skip).tap();
   await is_gone(tablet);
   await tablet.page.reload();
   await tablet.drawn();
@@ -251,8 +259,8 @@ test("a tablet: the fingers turn the model meanwhile, and the tour is skipped by
 
 test("with one project home shows its models, as ever", async () => {
   await nora.page.goto(server.url);
-  await nora.page.getByRole("heading", { name: "Models", exact: true }).waitFor();
-  await nora.page.getByRole("link", { name: "Open Demo pot" }).waitFor();
+  await nora.page.getByRole("heading", { name: words.home.title, exact: true }).waitFor();
+  await nora.page.getByRole("link", { name: words.home.open("Demo pot") }).waitFor();
 });
 
 test("with several a project is chosen first; the empty ones are last, and say so", async () => {
@@ -265,7 +273,7 @@ test("with several a project is chosen first; the empty ones are last, and say s
   await import_square("Lintel", "villa-giulia");
   for (const who of [nora, vic, tablet]) {
     await who.page.goto(server.url);
-    await who.page.getByRole("heading", { name: "Projects", exact: true }).waitFor();
+    await who.page.getByRole("heading", { name: words.home.projects, exact: true }).waitFor();
     // What is beneath the window's end is asked for when it comes into sight.
     for (const each of await who.page.locator("strata-project-card").all()) {
       await each.scrollIntoViewIfNeeded();
@@ -290,14 +298,14 @@ test("with several a project is chosen first; the empty ones are last, and say s
 test("a project is gone to by keyboard; its address leads there, and Back to the others", async () => {
   await nora.page.getByRole("link", { name: /^Villa Giulia/ }).focus();
   await nora.page.keyboard.press("Enter");
-  await nora.page.getByRole("heading", { name: "Villa Giulia", exact: true }).waitFor();
+  await nora.page.getByRole("heading", { name: words.projects.name_hint, exact: true }).waitFor();
   assert.equal(nora.page.url(), `${server.url}/projects/villa-giulia`);
   assert.equal(await nora.page.title(), "Villa Giulia – Strata");
   await wait_for(
     async () => /Villa Giulia/.test(await active(nora.page)),
     "the keyboard to be at the head of the project",
   );
-  await nora.page.getByText("2 models").waitFor();
+  await nora.page.getByText(words.home.count(2)).waitFor();
   const models_of = ({ page }) =>
     page
       .getByRole("link", { name: /^Open / })
@@ -309,32 +317,32 @@ test("a project is gone to by keyboard; its address leads there, and Back to the
   );
   await shoot(nora, "project_desk");
   await nora.page.goBack();
-  await nora.page.getByRole("heading", { name: "Projects", exact: true }).waitFor();
+  await nora.page.getByRole("heading", { name: words.home.projects, exact: true }).waitFor();
   assert.equal(await nora.page.title(), "Strata");
   await nora.page.goForward();
-  await nora.page.getByRole("heading", { name: "Villa Giulia", exact: true }).waitFor();
-  await nora.page.getByRole("link", { name: "Open Lintel" }).click();
+  await nora.page.getByRole("heading", { name: words.projects.name_hint, exact: true }).waitFor();
+  await nora.page.getByRole("link", { name: words.home.open("Lintel") }).click();
   await nora.drawn();
-  await nora.page.getByRole("link", { name: "All models" }).click();
-  await nora.page.getByRole("heading", { name: "Villa Giulia", exact: true }).waitFor();
-  await nora.page.getByRole("link", { name: "All projects" }).click();
-  await nora.page.getByRole("heading", { name: "Projects", exact: true }).waitFor();
+  await nora.page.getByRole("link", { name: words.model.back }).click();
+  await nora.page.getByRole("heading", { name: words.projects.name_hint, exact: true }).waitFor();
+  await nora.page.getByRole("link", { name: words.home.all_projects }).click();
+  await nora.page.getByRole("heading", { name: words.home.projects, exact: true }).waitFor();
   await vic.page.goto(`${server.url}/projects/villa-giulia`);
-  await vic.page.getByRole("link", { name: "Open Lintel" }).waitFor();
+  await vic.page.getByRole("link", { name: words.home.open("Lintel") }).waitFor();
   await shoot(vic, "project_phone");
 });
 
 test("where nothing is, it says what to do: wait for a curator, import, ask for a role", async () => {
   await vic.page.goto(`${server.url}/projects/archive`);
   await vic.page.getByText("Curators of the project do; ask one of them").waitFor();
-  assert.equal(await vic.page.getByRole("button", { name: "Choose a file" }).count(), 0);
+  assert.equal(await vic.page.getByRole("button", { name: words.home.choose_file }).count(), 0);
   await shoot(vic, "empty_phone");
   await vic.page.goto(`${server.url}/projects/nowhere`);
-  await vic.page.getByRole("heading", { name: "This project is not here" }).waitFor();
-  await vic.page.getByRole("link", { name: "All projects" }).tap();
-  await vic.page.getByRole("heading", { name: "Projects", exact: true }).waitFor();
+  await vic.page.getByRole("heading", { name: words.home.missing_title }).waitFor();
+  await vic.page.getByRole("link", { name: words.home.all_projects }).tap();
+  await vic.page.getByRole("heading", { name: words.home.projects, exact: true }).waitFor();
   await tablet.sign_in(server, await server.add_person("gil", "guest"));
-  await tablet.page.getByRole("heading", { name: "No project yet" }).waitFor();
+  await tablet.page.getByRole("heading", { name: words.home.no_projects }).waitFor();
   await tablet.page.getByText("Ask whoever invited you for one.").waitFor();
   await shoot(tablet, "no_project_tablet");
 });
@@ -342,9 +350,9 @@ test("where nothing is, it says what to do: wait for a curator, import, ask for 
 test("what a curator imports on the page of a project lies in it", async () => {
   await nora.sign_in(server, await server.add_person("carl", "curator"));
   await nora.page.goto(`${server.url}/projects/archive`);
-  await nora.page.getByRole("button", { name: "Choose a file" }).waitFor();
+  await nora.page.getByRole("button", { name: words.home.choose_file }).waitFor();
   assert.equal(
-    await nora.page.getByRole("combobox", { name: "Import into" }).count(),
+    await nora.page.getByRole("combobox", { name: words.home.into }).count(),
     0,
     "another project can be chosen on the page of one",
   );

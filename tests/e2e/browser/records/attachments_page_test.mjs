@@ -9,6 +9,9 @@ import { Browser } from "../../support/js/browser.mjs";
 import { attach_log, test } from "../../support/js/cases.mjs";
 import { encode_png } from "../../support/js/png.mjs";
 import { StrataServer, wait_for } from "../../support/js/strata-server.mjs";
+import { texts_of } from "../../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const base = "/models/demo-pot";
 const T = "/tables/finds";
@@ -106,16 +109,16 @@ test.beforeAll(async () => {
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
   await browser.drawn();
-  const later = page.getByRole("button", { name: "Decide later" });
+  const later = page.getByRole("button", { name: words.scale.later });
   if (await later.isVisible()) await later.click();
-  await button("Paint on Finds").click();
+  await button(words.layers.select("Finds")).click();
   await page.keyboard.press("t");
-  await panel.getByText("3 records").waitFor();
+  await panel.getByText(words.tables.records(3)).waitFor();
 });
 
 test("files are added in the record's form, and sent when it is saved", async () => {
   await panel.getByRole("rowheader", { name: "1", exact: true }).click();
-  await button("Edit the record").click();
+  await button(words.tables.edit).click();
   await form
     .getByRole("group", { name: "Photos" })
     .locator("input")
@@ -128,7 +131,7 @@ test("files are added in the record's form, and sent when it is saved", async ()
     .locator("input")
     .setInputFiles(join(folder, "report.pdf"));
   await shot("files-waiting");
-  await button("Save").click();
+  await button(words.save).click();
   await wait_for(async () => (await form.count()) === 0, "the form to close");
   assert.deepEqual((await files(1)).sort(), [
     ["north.png", "photos"],
@@ -149,27 +152,27 @@ test("the table shows pictures small, and how many files there are", async () =>
 
 test("a file that is no picture is refused by its column, and the form stays", async () => {
   await panel.getByRole("rowheader", { name: "2", exact: true }).click();
-  await button("Edit the record").click();
+  await button(words.tables.edit).click();
   await form
     .getByRole("group", { name: "Photos" })
     .locator("input")
     .setInputFiles(join(folder, "report.pdf"));
-  await button("Save").click();
+  await button(words.save).click();
   await form.getByRole("alert").getByText(/./).first().waitFor();
   await form.getByRole("group", { name: "Photos" }).getByText("report.pdf").waitFor();
   await shot("files-refused");
-  await button("Cancel").click();
+  await button(words.cancel).click();
   assert.deepEqual(await files(2), []);
 });
 
 test("a file that is taken away comes back by undo", async () => {
   await panel.getByRole("rowheader", { name: "1", exact: true }).click();
-  await button("Edit the record").click();
+  await button(words.tables.edit).click();
   await shown(form.locator("figure img"));
-  await button("Take south.png away").click();
-  await button("Save").click();
+  await button(words.files.remove("south.png")).click();
+  await button(words.save).click();
   await wait_for(async () => (await files(1)).length === 2, "one file less");
-  await button("Take back my last change of the table").click();
+  await button(words.tables.undo).click();
   await wait_for(async () => (await files(1)).length === 3, "the file to be back");
 });
 
@@ -189,7 +192,7 @@ test("a click on the surface, while turning, shows the record with its picture",
 });
 
 test("a mouse that rests on a record sees it at a glance, beside the pointer", async () => {
-  await button("Close the record").click();
+  await button(words.tables.card_close).click();
   await server.json("POST", `${base}/layers/finds/edits`, {
     op: "fill",
     value: 2,
@@ -231,7 +234,7 @@ test("until the mouse rests on another, something is pressed or the view moves",
   assert.equal(await glance.count(), 0);
   await page.mouse.up();
   await card.getByText("SU 2").first().waitFor(); // the tap shows all of it
-  await button("Close the record").click();
+  await button(words.tables.card_close).click();
   await rest_at(0.37, 0.57);
   await glance.getByText("SU 1", { exact: true }).waitFor();
   await rest_at(0.52, 0.66);
@@ -259,9 +262,9 @@ test("until the mouse rests on another, something is pressed or the view moves",
 });
 
 test("a folder of photos finds its records by their names", async () => {
-  await button("More about the table").click();
+  await button(words.tables.more).click();
   const chooser = page.waitForEvent("filechooser");
-  await page.getByRole("menuitem", { name: "Add photos by their names…" }).click();
+  await page.getByRole("menuitem", { name: words.files.add_menu }).click();
   await (
     await chooser
   ).setFiles([
@@ -270,11 +273,11 @@ test("a folder of photos finds its records by their names", async () => {
     photo("SU 9_north_1.png", 90),
     photo("IMG1.png", 99),
   ]);
-  await photos.getByText("2 files have a record").waitFor();
-  await photos.getByText("No such record").waitFor();
-  await photos.getByText("Not named by the pattern").waitFor();
+  await photos.getByText(words.files.matched(2)).waitFor();
+  await photos.getByText(words.files.reasons.record).waitFor();
+  await photos.getByText(words.files.reasons.pattern).waitFor();
   await shot("photos-matched");
-  await button("Send 2 files").click();
+  await button(words.files.send(2)).click();
   await wait_for(async () => (await photos.count()) === 0, "the dialog to close");
   assert.deepEqual(
     [await files(2), await files(3)],

@@ -6,6 +6,9 @@ import { join } from "node:path";
 import { Browser } from "../../support/js/browser.mjs";
 import { attach_log, test } from "../../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../../support/js/strata-server.mjs";
+import { texts_of } from "../../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kMany = 10_000;
 
@@ -121,14 +124,14 @@ test.beforeAll(async () => {
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
   await browser.drawn();
-  const later = page.getByRole("button", { name: "Decide later" });
+  const later = page.getByRole("button", { name: words.scale.later });
   if (await later.isVisible()) await later.click();
-  await button("Paint on Units").click();
+  await button(words.layers.select("Units")).click();
 });
 
 test("T opens the table; only the rows in sight are drawn, of ten thousand", async () => {
   await page.keyboard.press("t");
-  await panel.getByText("10,000 records").waitFor();
+  await panel.getByText(words.tables.records(10_000)).waitFor();
   await cell(1, "Code").getByText("SU 1", { exact: true }).waitFor();
   assert.ok((await panel.locator(".line").count()) < 60);
   await cell(1, "Code").click();
@@ -222,13 +225,13 @@ test("what is emptied while it is still being saved is empty in the end", async 
 
 test("what is no value is said at the cell, by the page or by the server", async () => {
   await write(2, "Depth", "deep");
-  await bubble.getByText("Give a number, with a point before its decimals.").waitFor();
+  await bubble.getByText(words.tables.bad_number).waitFor();
   await page.keyboard.press("Escape");
   await write(2, "Period", "circa 1560");
   await bubble.getByText(/EDTF/).waitFor();
   await shot("table-refused");
   assert.equal((await record(2)).period, "1501");
-  await button("Correct it").click();
+  await button(words.tables.correct).click();
   await page.keyboard.press("Control+a");
   await page.keyboard.type("1560~");
   await page.keyboard.press("Enter");
@@ -265,7 +268,7 @@ test("what others do is seen at once; of two who write into one cell the second 
   await page.keyboard.press("Enter");
   await bubble.getByText(/anna changed this at .* meanwhile: anna's/).waitFor();
   await shot("table-conflict");
-  await button("Take mine").click();
+  await button(words.tables.take_mine).click();
   await stored(3, "note", "mine");
   await cell(3, "Note").click();
   await page.keyboard.press("Enter");
@@ -273,31 +276,31 @@ test("what others do is seen at once; of two who write into one cell the second 
   await as_anna("PATCH", `${T}/records/3`, { values: { note: "anna's again" } });
   await cell(3, "Note").getByText("anna's again").waitFor();
   await page.keyboard.press("Enter");
-  await button("Keep theirs").click();
+  await button(words.tables.keep_theirs).click();
   await wait_for(async () => (await bubble.count()) === 0, "the question to go");
   await stored(3, "note", "anna's again");
 });
 
 test("a new record by its form, with what is wrong at the field", async () => {
-  await button("New record").click();
+  await button(words.tables.new_record).click();
   await dialog.getByLabel("Depth").fill("-1");
   await dialog.getByLabel("Code").fill("SU 1");
-  await button("Save").click();
+  await button(words.save).click();
   await dialog.getByRole("alert").first().waitFor();
   await shot("record-form");
   await dialog.getByLabel("Depth").fill("3");
-  await button("Save").click();
+  await button(words.save).click();
   await dialog.getByText(/Record 1 has this value/).waitFor();
   await dialog.getByLabel("Code").fill("Pit");
-  await button("Save").click();
-  await panel.getByText("10,001 records").waitFor();
+  await button(words.save).click();
+  await panel.getByText(words.tables.records(10_001)).waitFor();
   await cell(kMany + 1, "Code")
     .getByText("Pit")
     .waitFor(); // brought into sight, and chosen
 });
 
 test("the chosen record is painted with, and its area is seen in the table", async () => {
-  await button("Paint with it").click();
+  await button(words.tables.paint_with).click();
   await browser.drag([
     [0.45, 0.6],
     [0.5, 0.62],
@@ -310,7 +313,7 @@ test("the chosen record is painted with, and its area is seen in the table", asy
 });
 
 test("a click with the pick tool shows the record's card, with its form and its row; the brush finds records by name", async () => {
-  await page.getByRole("combobox", { name: "Record to paint, by its name" }).fill("SU 55");
+  await page.getByRole("combobox", { name: words.brush.find_record }).fill("SU 55");
   await page.getByRole("option", { name: /^SU 55 55$/ }).click();
   await browser.drag([
     [0.6, 0.6],
@@ -324,16 +327,16 @@ test("a click with the pick tool shows the record's card, with its form and its 
   await card.getByText("Pit", { exact: true }).waitFor();
   await card.getByText("3 m", { exact: true }).waitFor();
   await shot("record-card");
-  await button("Edit the record").last().click();
+  await button(words.tables.edit).last().click();
   await dialog.getByLabel("Note").fill("seen from above");
-  await button("Save").click();
+  await button(words.save).click();
   await card.getByText("seen from above").waitFor();
   await page.mouse.click(stage.x + 0.61 * stage.width, stage.y + 0.61 * stage.height);
   await card.getByText("SU 55", { exact: true }).waitFor();
   await page.locator("strata-value-readout").getByText("SU 55").waitFor();
-  await button("Show in table").click();
+  await button(words.tables.show_row).click();
   await cell(55, "Code").getByText("SU 55").waitFor();
-  await button("Close the record").click();
+  await button(words.tables.card_close).click();
   assert.equal(await card.count(), 0);
   await server.json("POST", `${base}/layers/units/edits`, {
     op: "fill",
@@ -347,15 +350,15 @@ test("a click with the pick tool shows the record's card, with its form and its 
 });
 
 test("a painted record that is to be deleted asks what becomes of that", async () => {
-  await button("Delete the record").click();
-  await button("Delete").click();
+  await button(words.tables.delete).click();
+  await button(words.delete).click();
   await dialog.getByText(/on Units of Demo pot/).waitFor();
   await shot("delete-painted");
-  await page.getByRole("radio", { name: "Give it to another record" }).click();
+  await page.getByRole("radio", { name: words.tables.texels_reassign }).click();
   await dialog.getByRole("combobox").fill("SU 7777");
   await dialog.getByRole("option", { name: /SU 7777/ }).click();
-  await button("Delete").click();
-  await panel.getByText("10,000 records").waitFor();
+  await button(words.delete).click();
+  await panel.getByText(words.tables.records(10_000)).waitFor();
   assert.ok((await server.json("GET", `${base}/layers/units/records/7777`)).area_m2 > 0);
   await panel.getByRole("columnheader", { name: /Area/ }).getByRole("button").first().click();
   await panel.getByRole("columnheader", { name: /Area/ }).getByRole("button").first().click();
@@ -370,62 +373,62 @@ test("a CSV is looked at first: nothing is written while a row is wrong", async 
   await drop_csv("finds.csv", "code,depth,note\nSU 1,9,changed\nNew 1,deep,\nNew 1,2,\n");
   await dialog.getByText('"Depth" holds finite numbers.').waitFor();
   await shot("csv-report");
-  assert.ok(await button("Import").isDisabled());
-  await button("Cancel").click();
+  assert.ok(await button(words.tables.csv_import).isDisabled());
+  await button(words.cancel).click();
   await dialog.getByText('"Depth" holds finite numbers.').waitFor({ state: "hidden" });
   await drop_csv("finds.csv", "key,code,depth,note\n1,SU 1,9,changed\n,New 1,2,\n");
-  await dialog.getByText("All of it fits. Nothing has been written yet.").waitFor();
+  await dialog.getByText(words.reports.good).waitFor();
   assert.equal((await record(1)).note, "Charcoal");
-  await button("Import").click();
-  await panel.getByText("10,001 records").waitFor();
+  await button(words.tables.csv_import).click();
+  await panel.getByText(words.tables.records(10_001)).waitFor();
   await stored(1, "note", "changed");
   const [download] = await Promise.all([
     page.waitForEvent("download"),
-    menu("More about the table", /^Save as CSV$/),
+    menu(words.tables.more, /^Save as CSV$/),
   ]);
   assert.equal(download.suggestedFilename(), "units.csv");
 });
 
 test("columns come, get names in other languages, change their kind and tell what that loses, and go", async () => {
-  await menu("More about the table", "New column…");
-  await dialog.getByLabel("Name").fill("Bags");
-  await dialog.getByLabel("Holds").selectOption("integer");
-  await dialog.getByLabel("At least").fill("0");
-  await button("Create column").click();
+  await menu(words.tables.more, words.tables.new_column);
+  await dialog.getByLabel(words.column_dialog.name).fill("Bags");
+  await dialog.getByLabel(words.column_dialog.kind).selectOption("integer");
+  await dialog.getByLabel(words.column_dialog.minimum).fill("0");
+  await button(words.column_dialog.create).click();
   await panel.getByRole("columnheader", { name: /^Bags/ }).waitFor();
-  await menu("Options for the column Bags", "Change…");
-  await button("Add a language").click();
-  await dialog.getByLabel("Language 1", { exact: true }).fill("es_MX");
-  await dialog.getByRole("textbox", { name: "Name in es_MX" }).fill("Bolsas");
-  await button("Save").click();
+  await menu(words.tables.column_menu("Bags"), words.tables.change_column);
+  await button(words.labels.add).click();
+  await dialog.getByLabel(words.labels.language(1), { exact: true }).fill("es_MX");
+  await dialog.getByRole("textbox", { name: words.labels.label("es_MX") }).fill("Bolsas");
+  await button(words.save).click();
   await dialog.getByText('"es_MX" is no language tag such as `es` or `pt-BR`.').waitFor();
   assert.equal(
-    await dialog.getByLabel("Language 1", { exact: true }).getAttribute("aria-invalid"),
+    await dialog.getByLabel(words.labels.language(1), { exact: true }).getAttribute("aria-invalid"),
     "true",
   );
   await shot("column-language-refused");
-  await dialog.getByLabel("Language 1", { exact: true }).fill("es");
-  await button("Add a language").click();
-  await dialog.getByLabel("Language 2", { exact: true }).fill("EN");
-  await dialog.getByRole("textbox", { name: "Name in English" }).fill("Finds bags");
+  await dialog.getByLabel(words.labels.language(1), { exact: true }).fill("es");
+  await button(words.labels.add).click();
+  await dialog.getByLabel(words.labels.language(2), { exact: true }).fill("EN");
+  await dialog.getByRole("textbox", { name: words.labels.label("English") }).fill("Finds bags");
   await shot("column-languages");
-  await dialog.getByRole("textbox", { name: "Name in English" }).press("Enter");
+  await dialog.getByRole("textbox", { name: words.labels.label("English") }).press("Enter");
   // the browser's language is English
   await panel.getByRole("columnheader", { name: /^Finds bags/ }).waitFor();
   const bags = (await server.json("GET", T)).columns.find(({ slug }) => slug === "bags");
   assert.deepEqual([bags.name, bags.labels], ["Bags", { en: "Finds bags", es: "Bolsas" }]);
-  await button("New record").click();
+  await button(words.tables.new_record).click();
   await dialog.getByLabel("Finds bags").waitFor();
-  await button("Cancel").click();
-  await menu("Options for the column Note", "Change…");
-  await dialog.getByLabel("Holds").selectOption("numeric");
-  await button("Save").click();
+  await button(words.cancel).click();
+  await menu(words.tables.column_menu("Note"), words.tables.change_column);
+  await dialog.getByLabel(words.column_dialog.kind).selectOption("numeric");
+  await button(words.save).click();
   await dialog.getByText(/could not be of the new kind/).waitFor();
   await shot("column-lost");
-  await button("Take it back").click();
-  await cell(1, "Note").getByText("changed").waitFor();
-  await menu("Options for the column Finds bags", "Drop…");
-  await button("Drop").click();
+  await button(words.column_dialog.take_back).click();
+  await cell(1, "Note").getByText(words.activity.done.other).waitFor();
+  await menu(words.tables.column_menu("Finds bags"), words.tables.drop_column);
+  await button(words.tables.drop).click();
   await wait_for(
     async () => (await panel.getByRole("columnheader", { name: /^Finds bags/ }).count()) === 0,
     "the column to go",

@@ -6,6 +6,9 @@ import { join } from "node:path";
 import { Browser, rgb } from "../../support/js/browser.mjs";
 import { attach_log, test } from "../../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../../support/js/strata-server.mjs";
+import { texts_of } from "../../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kCrack = "#ff00ff";
 const kSample = "#00e0ff";
@@ -43,11 +46,11 @@ function metres_of(text) {
 }
 async function make_column(name, kind) {
   const dialog = page.locator("strata-column-dialog");
-  await button("More about the table").click();
-  await page.getByRole("menuitem", { name: "New column…" }).click();
-  await dialog.getByLabel("Name").fill(name);
-  await dialog.getByLabel("Holds").selectOption(kind);
-  await dialog.getByRole("button", { name: "Create column" }).click();
+  await button(words.tables.more).click();
+  await page.getByRole("menuitem", { name: words.tables.new_column }).click();
+  await dialog.getByLabel(words.column_dialog.name).fill(name);
+  await dialog.getByLabel(words.column_dialog.kind).selectOption(kind);
+  await dialog.getByRole("button", { name: words.column_dialog.create }).click();
   await panel.getByRole("columnheader", { name }).waitFor();
 }
 
@@ -96,20 +99,23 @@ test.beforeAll(async () => {
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
   await browser.drawn();
-  const later = page.getByRole("button", { name: "Decide later" });
+  const later = page.getByRole("button", { name: words.scale.later });
   if (await later.isVisible()) await later.click();
-  await button("Paint on Damages").click();
+  await button(words.layers.select("Damages")).click();
   await page.keyboard.press("t");
-  await panel.getByText("2 records").waitFor();
+  await panel.getByText(words.tables.records(2)).waitFor();
 });
 
 test("the tools are there once the table has columns for them", async () => {
-  assert.deepEqual([await button("Line").count(), await button("Point").count()], [0, 0]);
+  assert.deepEqual(
+    [await button(words.tools.line).count(), await button(words.tools.point).count()],
+    [0, 0],
+  );
   await make_column("Cracks", "line");
   await make_column("Samples", "point");
-  await panel.getByRole("columnheader", { name: "Length" }).waitFor();
-  await panel.getByRole("columnheader", { name: "Points" }).waitFor();
-  await button("Line").click();
+  await panel.getByRole("columnheader", { name: words.tables.length }).waitFor();
+  await panel.getByRole("columnheader", { name: words.tables.points }).waitFor();
+  await button(words.tools.line).click();
 });
 
 test("a drag across the pot is a line, as long as it looks, in the record's colour", async () => {
@@ -142,7 +148,7 @@ test("a drag across the pot is a line, as long as it looks, in the record's colo
 });
 
 test("what was drawn is taken back by the notice, and by keys", async () => {
-  await page.locator("strata-notices").getByRole("button", { name: "Undo" }).click();
+  await page.locator("strata-notices").getByRole("button", { name: words.model.undo }).click();
   await hides(kCrack, "the line to be gone");
   assert.deepEqual(await marks(1, "cracks"), []);
   await page.keyboard.press("Control+Shift+Z");
@@ -192,16 +198,16 @@ test("where there is no surface there is no line, and a notice says so", async (
     [0.02, 0.1],
     [0.1, 0.12],
   ]);
-  await notice("There is no surface there.");
+  await notice(words.comments.missed);
 });
 
 test("a click sets a point, for the record that is chosen", async () => {
   await row("Sample A").getByRole("rowheader").click();
-  await button("Paint with it").click();
+  await button(words.tables.paint_with).click();
   await page.keyboard.press("s");
   await click_at(0.54, 0.66);
-  await notice("A point was set for “Sample A”.");
-  await button("Choose none").click();
+  await notice(words.marks.point_set("Sample A"));
+  await button(words.tables.choose_none).click();
   await shows(kSample, "the point on the pot");
   await row("Sample A").getByText("1 point", { exact: true }).waitFor();
   await wait_for(
@@ -220,7 +226,7 @@ test("a record that has a line or a point alone is gone to, also after the page 
     await page.locator("strata-stage .surface").focus();
     await page.keyboard.press("Home");
     await row(name).getByRole("rowheader").click();
-    const go = panel.getByRole("button", { name: "Go to where they are" });
+    const go = panel.getByRole("button", { name: words.tables.fly });
     await wait_for(
       async () =>
         (await go.isEnabled()) && (await go.getAttribute("title")) === "Go to where they are",
@@ -230,12 +236,12 @@ test("a record that has a line or a point alone is gone to, also after the page 
     await go.click();
     await wait_for(async () => (await view_of()) !== before, "the camera to be there");
     await shot(`mark-gone-to-${name.split(" ")[0].toLowerCase()}`);
-    await button("Choose none").click();
+    await button(words.tables.choose_none).click();
   };
   await goes_to("Sample A");
   await page.reload();
   await browser.drawn();
-  await button("Paint on Damages").click();
+  await button(words.layers.select("Damages")).click();
   if (!(await panel.count())) await page.keyboard.press("t");
   await goes_to("Sample A");
   await goes_to("North crack");
@@ -244,7 +250,7 @@ test("a record that has a line or a point alone is gone to, also after the page 
   });
   await row("Nothing").getByRole("rowheader").click();
   await panel
-    .getByRole("button", { name: "Go to where they are" })
+    .getByRole("button", { name: words.tables.fly })
     .and(page.locator("[title='None of them has an area, a line or a point on this model']"))
     .waitFor();
   await server.request("DELETE", `/tables/damages/records/${bare.key}`);
@@ -255,9 +261,9 @@ test("a record that has a line or a point alone is gone to, also after the page 
 
 test("a drag along the silhouette is one line on the surface that was begun", async () => {
   await row("North crack").getByRole("rowheader").click();
-  await button("Paint with it").click();
-  await button("Choose none").click();
-  await button("Line").click();
+  await button(words.tables.paint_with).click();
+  await button(words.tables.choose_none).click();
+  await button(words.tools.line).click();
   kept = (await marks(1, "cracks")).length;
   let camera = null;
   page.on("request", (request) => {
@@ -325,7 +331,11 @@ test("a drag along the silhouette is one line on the surface that was begun", as
     ),
   );
   assert.ok(deepest < 0.0015, `a step that leads ${deepest} m below the surface`);
-  await page.locator("strata-notices").getByRole("button", { name: "Undo" }).last().click();
+  await page
+    .locator("strata-notices")
+    .getByRole("button", { name: words.model.undo })
+    .last()
+    .click();
   await wait_for(async () => (await marks(1, "cracks")).length === kept, "the line to be gone");
 });
 
@@ -347,7 +357,7 @@ test("a line that crosses an edge for good is cut, says so, and is taken back as
     new RegExp(`cut into ${pieces} pieces[^]*drawn for “North crack”`),
   );
   await shot("mark-cut");
-  await cut.getByRole("button", { name: "Undo" }).click();
+  await cut.getByRole("button", { name: words.model.undo }).click();
   await wait_for(
     async () => (await marks(1, "cracks")).length === kept,
     "all of its pieces to be gone",
@@ -357,12 +367,12 @@ test("a line that crosses an edge for good is cut, says so, and is taken back as
 
 test("the form lists what the record has, and takes one out", async () => {
   await row("North crack").getByRole("rowheader").click();
-  await button("Edit the record").click();
-  cracks = form.getByRole("group", { name: "Cracks" });
+  await button(words.tables.edit).click();
+  cracks = form.getByRole("group", { name: words.layer_dialog.name_hint.presence });
   await cracks.getByRole("button", { name: /^Take out / }).waitFor();
   await shot("mark-form");
   await cracks.getByRole("button", { name: /^Take out / }).click();
-  await button("Save").click();
+  await button(words.save).click();
   await hides(kCrack, "the line to be gone");
   await wait_for(
     async () => !/ m/.test(await row("North crack").innerText()),
@@ -371,18 +381,18 @@ test("the form lists what the record has, and takes one out", async () => {
 });
 
 test("and leads to drawing more, after it has kept what was written", async () => {
-  await button("Edit the record").click();
+  await button(words.tables.edit).click();
   await form.locator("textarea").fill("Long crack");
-  await cracks.getByRole("button", { name: "Draw…" }).click();
+  await cracks.getByRole("button", { name: words.marks.draw }).click();
   await wait_for(async () => (await form.count()) === 0, "the form to close");
-  assert.equal(await button("Line").getAttribute("aria-pressed"), "true");
+  assert.equal(await button(words.tools.line).getAttribute("aria-pressed"), "true");
   await browser.drag([
     [0.54, 0.56],
     [0.62, 0.57],
   ]);
   await notice(/drawn for “Long crack”\./);
   await shows(kCrack, "the next line");
-  await button("Choose none").click();
+  await button(words.tables.choose_none).click();
   await page.keyboard.press("v");
   await shot("marks");
 });

@@ -6,6 +6,9 @@ import { join } from "node:path";
 import { Browser, rgb } from "../../support/js/browser.mjs";
 import { attach_log, test } from "../../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../../support/js/strata-server.mjs";
+import { texts_of } from "../../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kSherds = 14;
 const kEnough = 1500; // pixels of a sherd or more
@@ -24,12 +27,12 @@ const shows = (color, least, what) =>
 const hides = (color, what) =>
   wait_for(async () => (await browser.count(rgb(color))) < 30, what, 150);
 async function open_colors() {
-  await button("Options for Sherds").click();
-  await page.getByRole("menuitem", { name: "Colours and patterns…" }).click();
-  await dialog.getByRole("heading", { name: "Colours of Sherds" }).waitFor();
+  await button(words.layers.options("Sherds")).click();
+  await page.getByRole("menuitem", { name: words.colors.open }).click();
+  await dialog.getByRole("heading", { name: words.colors.title("Sherds") }).waitFor();
 }
 const fill_filter = async (text) => {
-  await panel.getByLabel("Filter", { exact: true }).fill(text);
+  await panel.getByLabel(words.tables.filter, { exact: true }).fill(text);
   await page.keyboard.press("Enter");
 };
 
@@ -75,18 +78,18 @@ test.beforeAll(async () => {
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
   await browser.drawn();
-  const later = page.getByRole("button", { name: "Decide later" });
+  const later = page.getByRole("button", { name: words.scale.later });
   if (await later.isVisible()) await later.click();
-  await button("Paint on Sherds").click();
+  await button(words.layers.select("Sherds")).click();
 });
 
 test("the layer is coloured by a column, as it is chosen", async () => {
   await open_colors();
-  await dialog.getByLabel("Colour by").selectOption({ label: "State" });
+  await dialog.getByLabel(words.colors.column).selectOption({ label: words.site_people.state });
   await dialog.locator("li", { hasText: "firm" }).getByText("9", { exact: true }).waitFor();
   await dialog.getByText("1 record has no value.").waitFor();
-  await dialog.getByLabel("Colour of loose").fill(kLoose);
-  await dialog.getByLabel("Colour of firm").fill(kFirm);
+  await dialog.getByLabel(words.colors.color_of("loose")).fill(kLoose);
+  await dialog.getByLabel(words.colors.color_of("firm")).fill(kFirm);
   await shows(kLoose, kEnough, "loose sherds in their colour");
   await shows(kFirm, kEnough, "firm sherds in theirs");
   assert.equal((await palette()).column, undefined, "nobody else sees it yet");
@@ -95,15 +98,15 @@ test("the layer is coloured by a column, as it is chosen", async () => {
 
 test("with patterns, half of the colour makes room for what lies below", async () => {
   const plain = await browser.count(rgb(kFirm));
-  await dialog.getByLabel("Patterns for all").check();
+  await dialog.getByLabel(words.colors.patterned).check();
   await wait_for(
     async () => (await browser.count(rgb(kFirm))) < 0.75 * plain,
     "hatches to be drawn",
     150,
   );
-  await dialog.getByLabel("Pattern of loose").selectOption("outline");
+  await dialog.getByLabel(words.colors.pattern_of("loose")).selectOption("outline");
   await shot("colors-patterns");
-  await dialog.getByLabel("Patterns for all").uncheck();
+  await dialog.getByLabel(words.colors.patterned).uncheck();
   await wait_for(
     async () => (await browser.count(rgb(kFirm))) > 0.95 * plain,
     "plain colours",
@@ -112,7 +115,7 @@ test("with patterns, half of the colour makes room for what lies below", async (
 });
 
 test("for everyone: the layer keeps it, and the legend says what is what", async () => {
-  await dialog.getByRole("button", { name: "For everyone" }).click();
+  await dialog.getByRole("button", { name: words.colors.everyone }).click();
   await wait_for(async () => (await palette()).column === "state", "the layer to keep its colours");
   assert.deepEqual(
     (await palette()).points.map((point) => [point.value, point.color]),
@@ -122,34 +125,34 @@ test("for everyone: the layer keeps it, and the legend says what is what", async
     ],
   );
   await legend.getByText("By State").waitFor();
-  await legend.getByText("Others, or no value").waitFor();
+  await legend.getByText(words.colors.others).waitFor();
 });
 
 test("numbers make classes, and what is for me alone is nobody else's", async () => {
   await open_colors();
-  await dialog.getByLabel("Colour by").selectOption({ label: "Thickness" });
-  await dialog.getByLabel("How many").fill("4");
-  await dialog.getByLabel("How many").blur();
+  await dialog.getByLabel(words.colors.column).selectOption({ label: "Thickness" });
+  await dialog.getByLabel(words.colors.count).fill("4");
+  await dialog.getByLabel(words.colors.count).blur();
   await wait_for(async () => (await dialog.locator("li").count()) === 4, "four classes");
-  await dialog.getByRole("button", { name: "Light to dark red" }).click();
+  await dialog.getByRole("button", { name: words.colors.ramps.reds }).click();
   await dialog.getByText("2.5 – 4 mm").waitFor();
   await shot("colors-classes");
-  await dialog.getByLabel("Classes").selectOption({ label: "Smooth gradient" });
+  await dialog.getByLabel(words.colors.method).selectOption({ label: words.colors.methods.smooth });
   await wait_for(
     async () => (await dialog.locator("li").count()) === 0,
     "a gradient has no classes",
   );
-  await dialog.getByRole("button", { name: "Only for me" }).click();
+  await dialog.getByRole("button", { name: words.colors.only_me }).click();
   await legend.getByText("By Thickness").waitFor();
   assert.equal((await palette()).column, "state");
   await hides(kLoose, "the gradient in place of the states");
-  await button("Back to the default").click();
+  await button(words.layers.reset_default).click();
   await shows(kLoose, kEnough, "the colours that everyone sees");
 });
 
 test("a dialog that is closed without a choice changes nothing", async () => {
   await open_colors();
-  await dialog.getByLabel("Colour by").selectOption({ label: "Each record its own colour" });
+  await dialog.getByLabel(words.colors.column).selectOption({ label: words.colors.each_record });
   await hides(kLoose, "a colour for each");
   await page.keyboard.press("Escape");
   await shows(kLoose, kEnough, "the colours of before");
@@ -157,23 +160,23 @@ test("a dialog that is closed without a choice changes nothing", async () => {
 
 test("rows that are chosen stand out", async () => {
   await page.keyboard.press("t");
-  await panel.getByText("14 records").waitFor();
+  await panel.getByText(words.tables.records(14)).waitFor();
   await shows(kFirm, kEnough, "the model beside the table");
   await panel.getByRole("rowheader", { name: "3", exact: true }).click();
   await hides(kFirm, "the others to turn grey");
   await shot("rows-lit");
-  await button("Hide all other records").click();
-  await button("Go to where they are").click();
+  await button(words.tables.isolate).click();
+  await button(words.tables.fly).click();
   await shows(kLoose, 4 * kEnough, "the camera before the sherd");
   await shot("row-alone");
-  await button("Hide all other records").click();
-  await button("Choose none").click();
+  await button(words.tables.isolate).click();
+  await button(words.tables.choose_none).click();
   await shows(kFirm, kEnough, "all of them again");
 });
 
 test("and rows that a filter finds, as long as it finds them", async () => {
   await fill_filter("state = 'loose'");
-  await panel.getByText("4 of 14 records").waitFor();
+  await panel.getByText(words.tables.records_of(4, 14)).waitFor();
   await hides(kFirm, "only what the filter finds");
   const told = await panel.locator(".on-model .hint").textContent();
   assert.match(told, loose_area < 0.1 ? /cm²/ : /m²/, told);
@@ -184,17 +187,17 @@ test("and rows that a filter finds, as long as it finds them", async () => {
     "the area with two more",
   );
   await shot("filter-lit");
-  await button("Find again").click();
-  await panel.getByText("6 of 14 records").waitFor();
+  await button(words.tables.outdated).click();
+  await panel.getByText(words.tables.records_of(6, 14)).waitFor();
   await wait_for(
-    async () => !(await button("Find again").isVisible()),
+    async () => !(await button(words.tables.outdated).isVisible()),
     "the rows to be those that stand out",
   );
-  await button("Show the chosen records on the model").click();
+  await button(words.tables.light_up).click();
   await shows(kFirm, kEnough, "the filter to stay in the table");
-  await button("Show the chosen records on the model").click();
+  await button(words.tables.light_up).click();
   await hides(kFirm, "and back");
-  await button("Close the table").click();
+  await button(words.tables.close).click();
   await shows(kFirm, kEnough, "what stood out to go with the table");
 });
 

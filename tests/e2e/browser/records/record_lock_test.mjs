@@ -5,6 +5,9 @@ import { join } from "node:path";
 import { Browser } from "../../support/js/browser.mjs";
 import { attach_log, test } from "../../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../../support/js/strata-server.mjs";
+import { texts_of } from "../../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const kExpected = ["status of 412"]; // what the browser says of a change that came too late
 
@@ -33,13 +36,13 @@ const mark = (who, key, user) =>
   row(who, key).getByRole("img", { name: `${user} is editing this.` });
 const form = ({ page }) => page.locator("strata-record-dialog");
 const note = (who) => form(who).getByRole("textbox", { name: "Note" });
-const save = (who) => form(who).getByRole("button", { name: "Save", exact: true });
+const save = (who) => form(who).getByRole("button", { name: words.save, exact: true });
 const button = ({ page }, name) => page.getByRole("button", { name, exact: true });
 const bubble = ({ page }) => page.locator("strata-table-panel .bubble");
 const editor = ({ page }) => page.locator("strata-table-panel .editor");
 async function open_form(who, key) {
   await row(who, key).getByRole("rowheader").click();
-  await button(who, "Edit the record").click();
+  await button(who, words.tables.edit).click();
   await note(who).waitFor();
 }
 /** The question's own button, not the one that asked it. */
@@ -89,8 +92,8 @@ test.beforeAll(async () => {
   for (const who of Object.values(everybody)) {
     await who.page.goto(`${server.url}/models/${id}`);
     await who.drawn();
-    if (who === phone) await button(who, "Show the panel").click();
-    await button(who, "Paint on Units").click();
+    if (who === phone) await button(who, words.model.show_panel).click();
+    await button(who, words.layers.select("Units")).click();
     await who.page.keyboard.press("t");
     await cell(who, 1, "Code").getByText("SU 1", { exact: true }).waitFor();
   }
@@ -106,7 +109,7 @@ test("who has a record's form open is seen in its row, by viewers, too", async (
 
 test("a second form of it can be read, but not changed", async () => {
   await open_form(bea, 1);
-  await form(bea).getByText("ada is editing this.").waitFor();
+  await form(bea).getByText(words.tables.edited_by("ada")).waitFor();
   assert.equal(await note(bea).getAttribute("readonly"), "");
   assert.ok(await form(bea).getByRole("combobox", { name: "Soil" }).isDisabled());
   assert.ok(await save(bea).isDisabled());
@@ -115,22 +118,22 @@ test("a second form of it can be read, but not changed", async () => {
 
 test("taken over after a question, the other form keeps what was written, to be copied", async () => {
   await note(ada).fill("Mine, and not saved");
-  await button(bea, "Take over").click();
+  await button(bea, words.tables.take_over).click();
   await bea.page.getByText("ada is editing it.").waitFor();
   await shoot(bea, "question");
-  await agree(bea, "Cancel");
+  await agree(bea, words.cancel);
   assert.equal(
     await note(ada).getAttribute("readonly"),
     null,
     "a question that was not answered took something",
   );
-  await button(bea, "Take over").click();
-  await agree(bea, "Take over");
+  await button(bea, words.tables.take_over).click();
+  await agree(bea, words.tables.take_over);
   await form(ada).getByText("bea took this over.").waitFor();
   assert.equal(await note(ada).getAttribute("readonly"), "");
   assert.equal(await note(ada).inputValue(), "Mine, and not saved");
   assert.equal(
-    await form(ada).getByRole("textbox", { name: "What you wrote" }).inputValue(),
+    await form(ada).getByRole("textbox", { name: words.tables.written }).inputValue(),
     "Note: Mine, and not saved",
   );
   assert.ok(await save(ada).isDisabled());
@@ -156,7 +159,7 @@ test("left by the other it is one's own again: the text is still there, and what
 test("whoever waits without taking over begins with what was saved", async () => {
   await open_form(ada, 2);
   await open_form(bea, 2);
-  await form(bea).getByText("ada is editing this.").waitFor();
+  await form(bea).getByText(words.tables.edited_by("ada")).waitFor();
   await note(ada).fill("Saved by ada");
   await save(ada).click();
   await wait_for(async () => (await note(bea).inputValue()) === "Saved by ada", "what ada saved");
@@ -172,12 +175,12 @@ test("a cell that is written into is seen, asked for and taken over; its text st
   await mark(bea, 3, "ada").waitFor();
   await cell(bea, 3, "Note").click();
   await bea.page.keyboard.press("F2");
-  await bea.page.getByText("Take over “SU 3”?").waitFor();
+  await bea.page.getByText(words.tables.take_over_title("SU 3")).waitFor();
   assert.equal(await editor(bea).count(), 0);
-  await agree(bea, "Cancel");
+  await agree(bea, words.cancel);
   await cell(bea, 3, "Note").click();
-  await bea.page.getByText("Take over “SU 3”?").waitFor();
-  await agree(bea, "Take over");
+  await bea.page.getByText(words.tables.take_over_title("SU 3")).waitFor();
+  await agree(bea, words.tables.take_over);
   await editor(bea).waitFor();
   await bubble(ada).getByText("bea took this over.").waitFor();
   assert.equal(await editor(ada).getByRole("textbox").inputValue(), "Half a sen");

@@ -7,6 +7,9 @@ import { findings } from "../../support/js/accessible.mjs";
 import { Browser } from "../../support/js/browser.mjs";
 import { attach_log, test } from "../../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../../support/js/strata-server.mjs";
+import { texts_of } from "../../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const base = "/models/demo-pot";
 const button = (name) => page.getByRole("button", { name, exact: true });
@@ -36,10 +39,10 @@ const open_filter = async (column) => {
   await sheet.getByRole("dialog").waitFor();
 };
 const apply = async () => {
-  await sheet.getByRole("button", { name: "Filter", exact: true }).click();
+  await sheet.getByRole("button", { name: words.column_filter.apply, exact: true }).click();
   await sheet.waitFor({ state: "detached" });
 };
-const show_with = (what) => sheet.getByLabel("Show records").selectOption(what);
+const show_with = (what) => sheet.getByLabel(words.column_filter.show).selectOption(what);
 const saved = async (click) => {
   const [download] = await Promise.all([page.waitForEvent("download"), click()]);
   return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
@@ -59,7 +62,7 @@ test.beforeAll(async () => {
   server = new StrataServer({ demo: true });
   panel = page.locator("strata-table-panel");
   sheet = page.locator("strata-column-filter");
-  filter = panel.getByRole("textbox", { name: "Filter" });
+  filter = panel.getByRole("textbox", { name: words.tables.filter });
   await server.start();
   const { project, id: model } = await server.json("GET", base);
   const terms = await fetch(`${server.url}/api/v1/projects/${project}/terms?name=Kinds`, {
@@ -119,7 +122,7 @@ test.beforeAll(async () => {
   await browser.sign_in(server, server.token);
   await page.goto(`${server.url}/models/${model}`);
   await browser.drawn();
-  await button("Paint on Units").click();
+  await button(words.layers.select("Units")).click();
   await page.locator("strata-stage .surface").focus();
   await page.keyboard.press("t");
   await shown([1, 2, 3, 4]);
@@ -186,7 +189,7 @@ test("values of a column are chosen with how many records have them", async () =
   await apply();
   await shown([2, 3]);
   assert.equal(await filter.inputValue(), "soil = 'clay'");
-  await panel.getByRole("button", { name: "Filter by Soil (is on)" }).waitFor();
+  await panel.getByRole("button", { name: words.column_filter.open_on("Soil") }).waitFor();
 });
 
 test("columns are filtered together; what was typed stays", async () => {
@@ -200,18 +203,18 @@ test("columns are filtered together; what was typed stays", async () => {
   assert.equal(await filter.inputValue(), "soil = 'clay' and code like 'SU%' and depth >= 2");
   await open_filter("Soil");
   assert.ok(await sheet.getByRole("checkbox", { name: /^clay/ }).isChecked());
-  await sheet.getByRole("button", { name: "Remove" }).click();
+  await sheet.getByRole("button", { name: words.column_filter.remove }).click();
   await shown([3]);
   assert.equal(await filter.inputValue(), "code like 'SU%' and depth >= 2");
   await shot("column-filter-two");
-  await button("Show all records").click();
+  await button(words.tables.filter_clear).click();
   await shown([1, 2, 3, 4]);
 });
 
 test("each kind of column has its questions", async () => {
   await open_filter("Note");
   await show_with("contains");
-  await sheet.getByLabel("Text", { exact: true }).fill("50 %");
+  await sheet.getByLabel(words.column_filter.contains, { exact: true }).fill("50 %");
   await apply();
   await shown([1]);
   await open_filter("Note");
@@ -223,7 +226,7 @@ test("each kind of column has its questions", async () => {
   await apply();
   await shown([1, 2]);
   await open_filter("Note");
-  await sheet.getByRole("button", { name: "Remove" }).click();
+  await sheet.getByRole("button", { name: words.column_filter.remove }).click();
   await open_filter("Kind");
   await line("Wall").waitFor();
   await sheet.getByRole("checkbox", { name: /^Wall/ }).check();
@@ -233,28 +236,28 @@ test("each kind of column has its questions", async () => {
   await sheet.getByRole("checkbox", { name: /^without/ }).check();
   await apply();
   await shown([2, 3, 4]);
-  await button("Show all records").click();
+  await button(words.tables.filter_clear).click();
   await open_filter("Above");
   await sheet.getByRole("checkbox", { name: /^SU 2/ }).check();
   await shot("column-filter-relation");
   await apply();
   await shown([3]);
   await open_filter("Above");
-  await sheet.getByRole("button", { name: "Remove" }).click();
+  await sheet.getByRole("button", { name: words.column_filter.remove }).click();
   await open_filter("Sealed");
   await sheet.getByRole("checkbox", { name: /^no/ }).check();
   await apply();
   await shown([2]);
-  await button("Show all records").click();
+  await button(words.tables.filter_clear).click();
   await open_filter("Dug");
-  await sheet.getByLabel("From").fill("2024-12-31");
+  await sheet.getByLabel(words.column_filter.from).fill("2024-12-31");
   await apply();
   await shown([3]);
-  await button("Show all records").click();
+  await button(words.tables.filter_clear).click();
 });
 
 test("by keys alone", async () => {
-  const funnel = panel.getByRole("button", { name: "Filter by Code" });
+  const funnel = panel.getByRole("button", { name: words.column_filter.open("Code") });
   await funnel.focus();
   await page.keyboard.press("Enter");
   await sheet.getByRole("dialog").waitFor();
@@ -265,13 +268,13 @@ test("by keys alone", async () => {
   await page.keyboard.press("Enter");
   await shown([1]);
   assert.equal(await filter.inputValue(), "code = 'SU 1'");
-  await panel.getByRole("button", { name: "Filter by Code (is on)" }).press("Enter");
+  await panel.getByRole("button", { name: words.column_filter.open_on("Code") }).press("Enter");
   await page.keyboard.press("Escape");
   await sheet.waitFor({ state: "detached" });
   await wait_for(
     () =>
       panel
-        .getByRole("button", { name: "Filter by Code (is on)" })
+        .getByRole("button", { name: words.column_filter.open_on("Code") })
         .evaluate((each) => each.matches(":focus")),
     "the keyboard back at the funnel",
   );
@@ -279,22 +282,22 @@ test("by keys alone", async () => {
 
 test("the rows are saved as they are shown", async () => {
   const csv = await saved(() =>
-    panel.locator(".bar").getByRole("button", { name: "Save as CSV" }).click(),
+    panel.locator(".bar").getByRole("button", { name: words.tables.save_csv }).click(),
   );
   assert.equal(csv.name, "units.csv");
   assert.match(csv.bytes.toString(), /SU 1/);
   assert.doesNotMatch(csv.bytes.toString(), /SU 2/);
   const xlsx = await saved(() =>
-    panel.locator(".bar").getByRole("button", { name: "Save as XLSX (Excel)" }).click(),
+    panel.locator(".bar").getByRole("button", { name: words.tables.save_xlsx }).click(),
   );
   assert.equal(xlsx.name, "units.xlsx");
   assert.equal(xlsx.bytes.subarray(0, 2).toString(), "PK");
-  await button("Close the table").click();
+  await button(words.tables.close).click();
 });
 
 test("areas are copied and saved", async () => {
   await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
-  await button("Options for pieces").click();
+  await button(words.layers.options("pieces")).click();
   await page.getByRole("menuitem", { name: /^Areas/ }).click();
   areas = page.locator("strata-statistics-dialog");
   await areas.getByRole("button", { name: "Copy: Areas of “pieces”" }).click();
@@ -314,7 +317,7 @@ test("areas are copied and saved", async () => {
 });
 
 test("two layers are set against each other, with names and sums", async () => {
-  await areas.getByLabel("Other layer").selectOption({ label: "Units" });
+  await areas.getByLabel(words.cross_table.other).selectOption({ label: "Units" });
   const table = areas.getByRole("table");
   await table.waitFor();
   assert.deepEqual(await table.getByRole("columnheader").allInnerTexts(), [

@@ -8,6 +8,9 @@ import { join } from "node:path";
 import { Browser, rgb } from "../../support/js/browser.mjs";
 import { attach_log, test } from "../../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../../support/js/strata-server.mjs";
+import { texts_of } from "../../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const base = "/models/demo-pot";
 const button = (name) => page.getByRole("button", { name, exact: true });
@@ -72,16 +75,16 @@ test.beforeAll(async () => {
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
   await browser.drawn();
-  const later = page.getByRole("button", { name: "Decide later" });
+  const later = page.getByRole("button", { name: words.scale.later });
   if (await later.isVisible()) await later.click();
 });
 
 test("a template makes its tables and layers, and the first layer is painted on next", async () => {
-  await menu("More about layers", "From a template…");
+  await menu(words.layers.more, words.templates.open);
   await templates.getByRole("listitem", { name: "Stone condition" }).waitFor();
   assert.equal(await templates.getByRole("button", { name: /^Make / }).count(), 4);
   await shot("templates");
-  await button("Make Stone condition").click();
+  await button(words.templates.make_of("Stone condition")).click();
   await wait_for(async () => (await templates.count()) === 0, "the dialog to close");
   await layers.locator("li.selected").getByText("Stone condition", { exact: true }).waitFor();
   const made = (await server.json("GET", `${base}/layers`)).layers.find(
@@ -170,8 +173,8 @@ test("the arrow keys go through the tree, fold and unfold it", async () => {
 
 test("what nothing is called is told, and a click on a fold hides what is below", async () => {
   await search.fill("qwertz");
-  await brush.getByText("No term is called that.").waitFor();
-  await button("Show all terms").click();
+  await brush.getByText(words.terms.none_found).waitFor();
+  await button(words.terms.show_all).click();
   await term("Cracks").locator(".fold").click();
   await wait_for(
     async () => (await term("Hairline crack").count()) === 0,
@@ -180,14 +183,14 @@ test("what nothing is called is told, and a click on a fold hides what is below"
 });
 
 test("the same template again is refused in plain words, and nothing is made", async () => {
-  await menu("More about layers", "From a template…");
-  await button("Make Stone condition").click();
+  await menu(words.layers.more, words.templates.open);
+  await button(words.templates.make_of("Stone condition")).click();
   await templates
     .getByRole("alert")
     .getByText(/already/)
     .waitFor();
   await shot("template-refused");
-  await templates.getByRole("button", { name: "Close" }).click();
+  await templates.getByRole("button", { name: words.close }).click();
   assert.equal(
     (await server.json("GET", `${base}/layers`)).layers.filter(({ name }) =>
       name.startsWith("Stone"),
@@ -197,7 +200,7 @@ test("the same template again is refused in plain words, and nothing is made", a
 });
 
 test("a SKOS file is looked at first, and is not written while one of its terms is wrong", async () => {
-  await menu("More about layers", "A list of terms from a file…");
+  await menu(words.layers.more, words.terms_dialog.open);
   await choose_file("glaze.pdf", "no terms");
   await importer
     .getByRole("alert")
@@ -209,8 +212,8 @@ test("a SKOS file is looked at first, and is not written while one of its terms 
     "glaze_terms.ttl",
     `${prefixes}g:a a skos:Concept ; skos:broader g:b .\ng:b a skos:Concept ; skos:broader g:a .\n`,
   );
-  await importer.getByRole("columnheader", { name: "What is wrong" }).waitFor();
-  assert.ok(await button("Import").isDisabled());
+  await importer.getByRole("columnheader", { name: words.reports.what }).waitFor();
+  assert.ok(await button(words.terms_dialog.import).isDisabled());
   await shot("terms-wrong");
   await choose_file(
     "glaze_terms.ttl",
@@ -219,8 +222,8 @@ test("a SKOS file is looked at first, and is not written while one of its terms 
     g:crazing a skos:Concept ; skos:notation "crazing" ; skos:broader g:glaze ; skos:prefLabel "Crazing"@en, "Craquelado"@es .
     g:pinhole a skos:Concept ; skos:notation "pinhole" ; skos:broader g:glaze ; skos:prefLabel "Pinhole"@en .\n`,
   );
-  await importer.getByText("All of it fits. Nothing has been written yet.").waitFor();
-  assert.equal(await importer.getByLabel("Name of the list").inputValue(), "glaze terms");
+  await importer.getByText(words.reports.good).waitFor();
+  assert.equal(await importer.getByLabel(words.terms_dialog.name).inputValue(), "glaze terms");
   await shot("terms-report");
   const { project } = await server.json("GET", base);
   const lists = async () =>
@@ -228,7 +231,7 @@ test("a SKOS file is looked at first, and is not written while one of its terms 
       .filter(({ kind }) => kind === "terms")
       .map(({ name }) => name);
   assert.deepEqual(await lists(), ["Stone condition terms"]);
-  await button("Import").click();
+  await button(words.terms_dialog.import).click();
   await wait_for(async () => (await importer.count()) === 0, "the list to be made");
   await layers.locator("li.selected").getByText("glaze terms").first().waitFor();
   await term("Crazing").waitFor();
@@ -237,16 +240,16 @@ test("a SKOS file is looked at first, and is not written while one of its terms 
 });
 
 test("more terms go into the list from its table, and the tree follows", async () => {
-  await page.getByRole("button", { name: "Table of records" }).click();
-  await table.getByText("3 records").waitFor();
-  await menu("More about the table", "Import terms…");
+  await page.getByRole("button", { name: words.tables.open }).click();
+  await table.getByText(words.tables.records(3)).waitFor();
+  await menu(words.tables.more, words.terms_dialog.open_more);
   await choose_file(
     "more.csv",
     "code,label-en,parent,color\ncrazing,Net of cracks,glaze,#aa3377\nrunning,Running,glaze,#4477aa\n",
   );
-  await importer.getByText("All of it fits. Nothing has been written yet.").waitFor();
+  await importer.getByText(words.reports.good).waitFor();
   await shot("terms-more");
-  await button("Import").click();
+  await button(words.terms_dialog.import).click();
   await term("Net of cracks").waitFor();
   await term("Running").waitFor();
   await shot("terms-imported");
@@ -256,20 +259,20 @@ test("a file that is dropped on the list's table is terms for it, and one in the
   await drop(table, "none.csv", "code,parent\nlone,nowhere\n");
   await importer.getByText("nowhere").waitFor();
   await drop(
-    importer.getByRole("group", { name: "File with terms" }),
+    importer.getByRole("group", { name: words.terms_dialog.file }),
     "same.ttl",
     `${prefixes}g:pinhole a skos:Concept ; skos:notation "pinhole" ; skos:broader g:glaze ; skos:prefLabel "Pinhole"@en .\n`,
   );
   await importer.getByText("same.ttl").waitFor();
-  await importer.getByText("The table holds all of that already.").waitFor();
-  assert.ok(await button("Import").isDisabled());
-  await button("Cancel").click();
+  await importer.getByText(words.reports.same).waitFor();
+  assert.ok(await button(words.terms_dialog.import).isDisabled());
+  await button(words.cancel).click();
 });
 
 test("the list is saved as SKOS, as it may be imported elsewhere", async () => {
   const [download] = await Promise.all([
     page.waitForEvent("download"),
-    menu("More about the table", "Save the terms as SKOS (Turtle)"),
+    menu(words.tables.more, words.terms_dialog.save_turtle),
   ]);
   assert.equal(download.suggestedFilename(), "glaze-terms.ttl");
   await download.saveAs(join(folder, "saved.ttl"));
@@ -277,12 +280,14 @@ test("the list is saved as SKOS, as it may be imported elsewhere", async () => {
 });
 
 test("a new layer may hold the terms of a list that is there", async () => {
-  await button("New layer").click();
+  await button(words.layers.new).click();
   await page.getByRole("radio", { name: /Things with records/ }).click();
-  await maker.getByLabel("Records of").selectOption({ label: "glaze terms (4 terms)" });
-  await maker.getByLabel("Name", { exact: true }).fill("Glaze, second look");
+  await maker
+    .getByLabel(words.layer_dialog.table)
+    .selectOption({ label: words.layer_dialog.table_of_terms("glaze terms", 4) });
+  await maker.getByLabel(words.layer_dialog.name, { exact: true }).fill("Glaze, second look");
   await shot("layer-of-terms");
-  await button("Create layer").click();
+  await button(words.layer_dialog.create).click();
   await layers.locator("li.selected").getByText("Glaze, second look").waitFor();
   await term("Running").waitFor();
 });

@@ -5,6 +5,9 @@ import { join } from "node:path";
 import { Browser } from "../../support/js/browser.mjs";
 import { attach_log, test } from "../../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../../support/js/strata-server.mjs";
+import { texts_of } from "../../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 const shot = async (name) => {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -67,7 +70,7 @@ test("records are called by the column that their table chooses, and terms open 
   await page.goto(server.link);
   await page.goto(`${server.url}/models/${model.id}`);
   await browser.drawn();
-  await page.getByRole("button", { name: "Paint on Places" }).click();
+  await page.getByRole("button", { name: words.layers.select("Places") }).click();
   await page.keyboard.press("t");
   const grid = page.locator("strata-table-panel");
   await grid.getByText("Zinc").first().waitFor();
@@ -91,7 +94,7 @@ test("records are called by the column that their table chooses, and terms open 
     .getByRole("columnheader", { name: /^Damage/ })
     .getByRole("button", { name: /column/i })
     .click();
-  await page.getByRole("menuitemcheckbox", { name: "Use as the title" }).click();
+  await page.getByRole("menuitemcheckbox", { name: words.tables.title_column }).click();
   await wait_for(
     async () => (await server.json("GET", `/tables/${table}`)).title_column !== undefined,
     "the title",
@@ -106,7 +109,7 @@ test("records are called by the column that their table chooses, and terms open 
 
   // The form: nothing opens by itself, and the list is the tree.
   await grid
-    .getByRole("button", { name: "Edit the record" })
+    .getByRole("button", { name: words.tables.edit })
     .or(grid.locator(".chosen").getByRole("button").nth(1))
     .first()
     .click();
