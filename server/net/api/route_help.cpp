@@ -12,8 +12,6 @@
 #include "room/edits.h"
 #include "room/layers.h"
 #include "room/room.h"
-#include "store/content/layers.h"
-#include "store/content/models.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -123,11 +121,6 @@ void apply_edit(const RouteContext& context, const Request& request,
         respond(json_response(body_of(room::to_json(*answer)))
                     .with("Strata-Sequence", std::to_string(answer->sequence)));
       });
-}
-
-Result<Layer> stored_layer(const RouteContext& context, const Request& request) {
-  auto model = STRATA_TRY(context.store.models().find(request.param("model")));
-  return context.store.layers().find(model.id, request.param("layer"), request.role());
 }
 
 Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector<std::string>& refs,

@@ -17,6 +17,7 @@
 
 namespace strata {
 struct Layer;
+struct Model;
 }  // namespace strata
 namespace strata::room {
 class Room;
@@ -61,8 +62,6 @@ void apply_edit(
       return of_edit;
     });
 
-// The layer that the address names, for its role, as the store has it: reading needs no open room.
-Result<Layer> stored_layer(const RouteContext& context, const Request& request);
 // Layers by id or slug; the Error of one that is not there names `field`.
 Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector<std::string>& refs,
                                        const std::string& field);

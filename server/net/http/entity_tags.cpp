@@ -8,6 +8,7 @@
 #include "domain/layers/layer.h"
 #include "domain/scene/model.h"
 #include "domain/scene/surface_image.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "room/edits.h"
 #include "room/layers.h"
@@ -15,11 +16,9 @@
 #include "room/rooms.h"
 #include "room/surface_images.h"
 #include "store/content/layers.h"
-#include "store/content/models.h"
 #include "store/content/projects.h"
 #include "store/content/surface_images.h"
 #include "store/store.h"
-#include "store/tables/tables.h"
 
 namespace strata::net {
 namespace {
@@ -90,7 +89,7 @@ bool add_project(std::string& text, const RouteContext& context, ProjectId proje
 
 std::optional<std::string> model_state(const RouteContext& context, const Request& request,
                                        std::optional<std::int64_t> past = {}) {
-  const auto room = context.rooms.open(request.param("model"), request.role());
+  const auto room = open_room(context, request);
   std::string text;
   if (!room || !add_room(text, **room, past) ||
       !add_project(text, context, (*room)->model().project_id))
@@ -158,7 +157,7 @@ StateOf state_of_model(const RouteContext& context) {
 StateOf state_of_records(const RouteContext& context) {
   return [&context](const Request& request) -> std::optional<std::string> {
     if (request.params.contains("layer")) return model_state(context, request);
-    const auto table = context.store.tables().find(request.param("table"), request.role());
+    const auto table = stored_table(context, request);
     std::string text;
     if (!table || !add_project(text, context, table->project_id)) return std::nullopt;
     return text;
@@ -167,7 +166,7 @@ StateOf state_of_records(const RouteContext& context) {
 
 StateOf state_of_painted_table(const RouteContext& context) {
   return [&context](const Request& request) -> std::optional<std::string> {
-    const auto table = context.store.tables().find(request.param("table"), request.role());
+    const auto table = stored_table(context, request);
     if (!table) return std::nullopt;
     const auto layers = context.store.layers().of_table(table->id, request.role());
     if (!layers) return std::nullopt;
@@ -188,7 +187,7 @@ StateOf state_of_painted_table(const RouteContext& context) {
 
 StateOf state_of_surface_image(const RouteContext& context) {
   return [&context](const Request& request) -> std::optional<std::string> {
-    const auto model = context.store.models().find(request.param("model"));
+    const auto model = stored_model(context, request);
     if (!model) return std::nullopt;
     const auto image = context.store.surface_images().find(model->id, request.param("look"));
     if (!image) return std::nullopt;

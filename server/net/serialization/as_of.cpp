@@ -3,10 +3,10 @@
 #include <charconv>
 
 #include "core/text/timestamp.h"
+#include "net/api/addressed.h"
 #include "room/edits.h"
 #include "room/layers.h"
 #include "room/room.h"
-#include "room/rooms.h"
 #include "store/journal/journal_reads.h"
 #include "store/store.h"
 
@@ -45,7 +45,7 @@ Result<std::optional<std::int64_t>> find_sequence(const RouteContext& context,
 }
 
 Result<LayerQuery> LayerQuery::from(const RouteContext& context, const Request& request) {
-  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto room = STRATA_TRY(open_room(context, request));
   auto layer = STRATA_TRY(room->layers().find(request.param("layer")));
   const auto at = STRATA_TRY(find_sequence(context, *room, as_of(request)));
   const auto sequence = at.value_or(room->edits().sequence());

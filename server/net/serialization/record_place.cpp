@@ -3,8 +3,8 @@
 #include "core/no_such.h"
 #include "domain/people/role.h"
 #include "domain/tables/table.h"
+#include "net/api/addressed.h"
 #include "store/content/layers.h"
-#include "store/content/models.h"
 #include "store/store.h"
 #include "store/tables/records.h"
 #include "store/tables/tables.h"
@@ -13,10 +13,10 @@ namespace strata::net {
 
 Result<app::RecordPlace> record_place(const RouteContext& context, const Request& request) {
   if (!request.params.contains("layer")) {
-    auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
+    auto table = STRATA_TRY(stored_table(context, request));
     return app::RecordPlace{std::move(table), {}, {}};
   }
-  auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  auto model = STRATA_TRY(stored_model(context, request));
   auto layer =
       STRATA_TRY(context.store.layers().find(model.id, request.param("layer"), request.role()));
   if (!layer.table)

@@ -3,10 +3,10 @@
 #include "app/edits.h"
 #include "domain/layers/layer.h"
 #include "jobs/job_queue.h"
+#include "net/api/addressed.h"
 #include "net/http/idempotency_store.h"
 #include "room/room.h"
 #include "store/content/idempotent_response.h"
-#include "store/content/models.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -62,7 +62,7 @@ Result<Response> repeat_layer_job(const RouteContext& context, JobIdempotency& b
   jobs::JobResult result(kept.at("model").get<ModelId>());
   result.layers = kept.at("layers").get<std::vector<LayerId>>();
   result.report = kept.at("report");
-  const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  const auto model = STRATA_TRY(stored_model(context, request));
   auto job = STRATA_TRY(book.finished(request, model.project_id, std::move(result)));
   return job_response(context, job);
 }

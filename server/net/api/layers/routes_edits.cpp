@@ -2,6 +2,7 @@
 #include "app/strokes/brush_shape_cache.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/page.h"
@@ -13,7 +14,6 @@
 #include "room/edits.h"
 #include "room/layers.h"
 #include "room/room.h"
-#include "room/rooms.h"
 #include "store/journal/journal_reads.h"
 #include "store/store.h"
 
@@ -70,7 +70,7 @@ struct Target {
 };
 
 Result<Target> target_of(const RouteContext& context, const Request& request) {
-  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto room = STRATA_TRY(open_room(context, request));
   auto layer = STRATA_TRY(room->layers().find(request.param("layer")));
   return Target{std::move(room), std::move(layer)};
 }

@@ -1,6 +1,7 @@
 #include <set>
 
 #include "core/compensated_sum.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/statistics_serialization.h"
@@ -10,7 +11,6 @@
 #include "room/layers.h"
 #include "room/queries.h"
 #include "room/room.h"
-#include "room/rooms.h"
 #include "store/store.h"
 #include "store/tables/records.h"
 
@@ -21,7 +21,7 @@ namespace {
 // points: to fly there, and to tell how much surface they have.
 Result<Response> extent(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::Highlight>(request));
-  auto room = context.rooms.open(request.param("model"), request.role());
+  auto room = open_room(context, request);
   if (!room) return tl::unexpected(room.error());
   auto layer = STRATA_TRY((*room)->layers().find(request.param("layer")));
   auto highlight = STRATA_TRY(highlight_of(body, layer, ""));

@@ -10,6 +10,7 @@
 #include "domain/tables/table.h"
 #include "domain/tables/term_list.h"
 #include "jobs/job_queue.h"
+#include "net/api/addressed.h"
 #include "net/api/layers/create_computed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
@@ -20,9 +21,7 @@
 #include "net/transport/server_options.h"
 #include "room/layers.h"
 #include "room/room.h"
-#include "room/rooms.h"
 #include "store/content/layers.h"
-#include "store/content/models.h"
 #include "store/journal/journal_reads.h"
 #include "store/store.h"
 
@@ -31,7 +30,7 @@ namespace {
 
 Result<Response> list_layers(const RouteContext& context, const Request& request) {
   auto page = STRATA_TRY(page_of(request));
-  auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  auto model = STRATA_TRY(stored_model(context, request));
   auto layers = STRATA_TRY(context.store.layers().of_model(model.id, request.role()));
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(layers.size());
@@ -141,7 +140,7 @@ Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
 Result<Response> create_layer(const RouteContext& context, JobIdempotency& book,
                               const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::LayerCreate>(request));
-  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto room = STRATA_TRY(open_room(context, request));
   const Model model = room->model();
   auto layer = STRATA_TRY(new_layer(body, model, room->layers().all()));
   if (body.table) {
@@ -215,7 +214,7 @@ Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& bod
 }
 
 Result<Response> compute(const RouteContext& context, const Request& request) {
-  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto room = STRATA_TRY(open_room(context, request));
   auto layer =
       context.store.layers().find(room->model().id, request.param("layer"), request.role());
   if (!layer) return tl::unexpected(layer.error());
@@ -234,7 +233,7 @@ Result<Response> compute(const RouteContext& context, const Request& request) {
 
 Result<Response> change_layer(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::LayerPatch>(request));
-  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto room = STRATA_TRY(open_room(context, request));
   // As it is stored: what is open may be a moment behind.
   auto layer =
       context.store.layers().find(room->model().id, request.param("layer"), request.role());
@@ -289,7 +288,7 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
 }
 
 Result<Response> delete_layer(const RouteContext& context, const Request& request) {
-  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto room = STRATA_TRY(open_room(context, request));
   auto layer = STRATA_TRY(room->layers().find(request.param("layer")));
   STRATA_TRY(check_if_match(request, layer.version));
   auto gone = room->layers().put_in_trash(

@@ -13,6 +13,7 @@
 #include "domain/scene/model.h"
 #include "domain/scene/units.h"
 #include "domain/tables/table.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/map_json.h"
@@ -22,9 +23,7 @@
 #include "room/edit.h"
 #include "room/layers.h"
 #include "room/room.h"
-#include "room/rooms.h"
 #include "room/surface.h"
-#include "store/content/models.h"
 #include "store/store.h"
 #include "store/tables/records.h"
 
@@ -47,7 +46,7 @@ struct Target {
 template <class Paint>
 Handler painting(const RouteContext& context, const std::string& op, Paint paint) {
   return [&context, op, paint](const Request& request, const Respond& respond) {
-    auto room = context.rooms.open(request.param("model"), request.role());
+    auto room = open_room(context, request);
     if (!room) return respond(room.error());
     auto layer = (*room)->layers().find(request.param("layer"));
     if (!layer) return respond(layer.error());
@@ -124,7 +123,7 @@ Result<Painted> paint_map(const RouteContext& context, ByteBudget& budget, MakeV
 
 Result<Response> map_contents(const RouteContext& context, ByteBudget& budget,
                               const Request& request) {
-  const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  const auto model = STRATA_TRY(stored_model(context, request));
   const auto options = STRATA_TRY(map_options(request));
   const auto files = STRATA_TRY(take_map(request, context.options.upload_dir));
   return json_response(

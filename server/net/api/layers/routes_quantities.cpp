@@ -10,6 +10,7 @@
 #include "domain/scene/model.h"
 #include "domain/tables/table.h"
 #include "domain/tables/term_list.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
@@ -259,8 +260,7 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
   const auto format = STRATA_TRY(sheet_format(request));
   const auto separator = STRATA_TRY(csv_separator(request));
   const auto language = STRATA_TRY(asked_language(request));
-  const auto table =
-      STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
+  const auto table = STRATA_TRY(stored_table(context, request));
   const auto layers = STRATA_TRY(of_layers(context, table.id, request.role()));
   std::map<std::int64_t, QuantitySum> of_key;
   QuantitySum of_all;

@@ -1,5 +1,6 @@
 #include "domain/scene/model.h"
 #include "domain/scene/units.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
@@ -11,7 +12,6 @@
 #include "room/layers.h"
 #include "room/queries.h"
 #include "room/room.h"
-#include "room/rooms.h"
 
 namespace strata::net {
 namespace {
@@ -36,7 +36,7 @@ Result<Response> position(const RouteContext& context, const Request& request) {
   const std::string format = request.query_or("f", "json");
   if (format != "json" && format != "covjson" && format != "csv")
     return fail(ErrorCode::not_acceptable, "Unknown format", "`f` is json, covjson or csv.", "f");
-  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto room = STRATA_TRY(open_room(context, request));
   std::vector<Layer> layers = room->layers().all();
   if (auto named = request.query.find("parameter-name"); named != request.query.end()) {
     auto found = find_layers(*room, split_list(named->second), "parameter-name");
@@ -67,7 +67,7 @@ Result<Response> position(const RouteContext& context, const Request& request) {
 Result<Response> positions(const RouteContext& context, const Request& request) {
   auto body =
       STRATA_TRY(body_of<protocol::PositionsRequest>(request, context.options.max_positions_bytes));
-  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto room = STRATA_TRY(open_room(context, request));
   const auto layers = STRATA_TRY(asked_layers(*room, body.layers));
   const std::vector<glm::dvec3> points(body.points.begin(), body.points.end());
   const auto at = STRATA_TRY(find_sequence(context, *room, body.at));
@@ -90,7 +90,7 @@ Result<Response> positions(const RouteContext& context, const Request& request) 
 
 Result<Response> profile(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::ProfileRequest>(request));
-  const auto room = context.rooms.open(request.param("model"), request.role());
+  const auto room = open_room(context, request);
   if (!room) return tl::unexpected(room.error());
   const auto layers = STRATA_TRY(asked_layers(**room, body.layers));
   const Unit unit = (*room)->model().unit;
@@ -113,7 +113,7 @@ Result<Response> profile(const RouteContext& context, const Request& request) {
 
 Result<Response> pick(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::PickRequest>(request));
-  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto room = STRATA_TRY(open_room(context, request));
   const auto at = STRATA_TRY(find_sequence(context, *room, body.at));
   const auto sequence = at.value_or(room->edits().sequence());
   auto point =

@@ -11,6 +11,7 @@
 #include "jobs/transfer.h"
 #include "mesh/io/input_files.h"
 #include "mesh/io/vertex_properties.h"
+#include "net/api/addressed.h"
 #include "net/api/layers/layer_jobs.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
@@ -18,7 +19,6 @@
 #include "room/edit.h"
 #include "room/layers.h"
 #include "room/room.h"
-#include "room/rooms.h"
 #include "room/surface.h"
 #include "store/content/layers.h"
 #include "store/content/models.h"
@@ -134,7 +134,7 @@ Result<nlohmann::json> transfer(const RouteContext& context, room::Room& room,
 Result<Response> start_transfer(const RouteContext& context, JobIdempotency& book,
                                 const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::Transfer>(request));
-  auto room = context.rooms.open(request.param("model"), request.role());
+  auto room = open_room(context, request);
   if (!room) return tl::unexpected(room.error());
   auto wish = transfer_request(context.store, body, (*room)->model(), *request.principal);
   if (!wish) return tl::unexpected(wish.error());
@@ -146,7 +146,7 @@ Result<Response> start_transfer(const RouteContext& context, JobIdempotency& boo
 }
 
 Result<Response> list_properties(const RouteContext& context, const Request& request) {
-  auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  auto model = STRATA_TRY(stored_model(context, request));
   nlohmann::json list = nlohmann::json::array();
   for (const SourceFile& source : model.source_files) {
     std::vector<std::uint8_t> beginning;
@@ -181,7 +181,7 @@ Result<std::string> scan_of(const Model& model, const std::string& wanted) {
 }
 
 void write_vertices(const RouteContext& context, const Request& request, const Respond& respond) {
-  auto room = context.rooms.open(request.param("model"), request.role());
+  auto room = open_room(context, request);
   if (!room) return respond(room.error());
   auto layer = (*room)->layers().find(request.param("layer"));
   if (!layer) return respond(layer.error());

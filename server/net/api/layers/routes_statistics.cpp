@@ -6,6 +6,7 @@
 #include "domain/scene/model.h"
 #include "domain/scene/units.h"
 #include "expression/expression_parser.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
@@ -19,7 +20,6 @@
 #include "room/place.h"
 #include "room/queries.h"
 #include "room/room.h"
-#include "room/rooms.h"
 #include "room/selection.h"
 #include "store/store.h"
 #include "store/tables/tables.h"
@@ -64,7 +64,7 @@ Result<Response> statistics(const RouteContext& context, const Request& request)
                   "`include` takes pieces, perimeter and quantiles, with commas between.",
                   "include");
   }
-  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto room = STRATA_TRY(open_room(context, request));
   auto layer = STRATA_TRY(room->layers().find(request.param("layer")));
   std::optional<std::string> where;
   if (const auto given = request.query.find("where"); given != request.query.end())
@@ -108,7 +108,7 @@ Result<room::EditRequest> painting(const Request& request, const protocol::Selec
 void select(const RouteContext& context, const Request& request, const Respond& respond) {
   const auto asked = body_of<protocol::SelectRequest>(request);
   if (!asked) return respond(asked.error());
-  const auto room = context.rooms.open(request.param("model"), request.role());
+  const auto room = open_room(context, request);
   if (!room) return respond(room.error());
   std::vector<std::string> refs, slugs;
   for (const auto& ref : asked->layers.value_or(std::vector<protocol::LayerRef>{}))
@@ -212,7 +212,7 @@ Result<Response> cross_table(const RouteContext& context, const Request& request
       STRATA_TRY(as_csv ? Result<SheetFormat>(SheetFormat::csv) : sheet_format(request));
   const auto separator = STRATA_TRY(csv_separator(request));
   const auto language = STRATA_TRY(asked_language(request));
-  const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const auto room = STRATA_TRY(open_room(context, request));
   const auto rows = STRATA_TRY(find_layers(*room, {protocol::to_ref(body.rows)}, "rows"));
   const auto columns = STRATA_TRY(find_layers(*room, {protocol::to_ref(body.columns)}, "columns"));
   const auto selection = STRATA_TRY(selection_of(context, *room, body.where, body.within, body.at));

@@ -9,6 +9,7 @@
 #include "domain/people/role.h"
 #include "domain/tables/table.h"
 #include "expression/expression_parser.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
@@ -21,7 +22,6 @@
 #include "room/layers.h"
 #include "room/queries.h"
 #include "room/room.h"
-#include "room/rooms.h"
 #include "room/selection.h"
 #include "store/store.h"
 #include "store/tables/records.h"
@@ -98,7 +98,7 @@ void write_texels(const RouteContext& context, ByteBudget& budget, const Request
                   const Respond& respond) {
   auto format = format_of(request);
   if (!format) return respond(format.error());
-  auto room = context.rooms.open(request.param("model"), request.role());
+  auto room = open_room(context, request);
   if (!room) return respond(room.error());
   auto layer = (*room)->layers().find(request.param("layer"));
   if (!layer) return respond(layer.error());

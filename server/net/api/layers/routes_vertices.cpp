@@ -1,4 +1,5 @@
 #include "app/layers/vertex_colors.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
@@ -9,7 +10,6 @@
 #include "room/layers.h"
 #include "room/queries.h"
 #include "room/room.h"
-#include "room/rooms.h"
 #include "room/surface.h"
 #include "room/view_settings.h"
 
@@ -65,7 +65,7 @@ std::vector<query::LayerView> shown_layers(const Request& request,
 }
 
 Result<Response> read_vertices(const RouteContext& context, const Request& request) {
-  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto room = STRATA_TRY(open_room(context, request));
   STRATA_TRY(check_source_download(request, room->model()));
   const auto by_layers = STRATA_TRY(wants_layer_colors(request));
   const auto at = STRATA_TRY(find_sequence(context, *room, as_of(request)));

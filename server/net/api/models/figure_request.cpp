@@ -3,13 +3,13 @@
 #include "domain/layers/layer.h"
 #include "domain/scene/model.h"
 #include "domain/tables/table.h"
+#include "net/api/addressed.h"
 #include "net/serialization/as_of.h"
 #include "net/serialization/at_field.h"
 #include "net/serialization/view_serialization.h"
 #include "room/edits.h"
 #include "room/layers.h"
 #include "room/room.h"
-#include "room/rooms.h"
 #include "room/view_settings.h"
 #include "store/content/named_parts.h"
 #include "store/store.h"
@@ -114,7 +114,7 @@ Result<void> read_labels(const RouteContext& context, const protocol::FigureLabe
 
 Result<FigureRequest> read_figure_request(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::FigureRequest>(request));
-  auto room = context.rooms.open(request.param("model"), request.role());
+  auto room = open_room(context, request);
   if (!room) return tl::unexpected(room.error());
   FigureRequest figure;
   figure.room = std::move(*room);

@@ -10,6 +10,7 @@
 #include "domain/people/visibility.h"
 #include "domain/scene/model.h"
 #include "domain/tables/table.h"
+#include "net/api/addressed.h"
 #include "net/api/annotated_routes.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
@@ -21,9 +22,7 @@
 #include "net/serialization/people_serialization.h"
 #include "room/queries.h"
 #include "room/room.h"
-#include "room/rooms.h"
 #include "store/content/comments.h"
-#include "store/content/models.h"
 #include "store/store.h"
 #include "store/tables/records.h"
 
@@ -121,7 +120,7 @@ Result<Response> list_comments(const RouteContext& context, const Request& reque
                   "`since` is a time such as 2026-05-04T12:00:00Z (a + of a zone is %2B).",
                   "since");
   }
-  const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  const auto model = STRATA_TRY(stored_model(context, request));
   const auto found = STRATA_TRY(context.store.comments().of_model(model.id, request.role(), query));
   return page_response(context, request, "comments", found, page);
 }
@@ -192,7 +191,7 @@ Result<Response> write(const RouteContext& context, const Request& request,
 
 Result<Response> create_comment(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::CommentCreate>(request));
-  const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const auto room = STRATA_TRY(open_room(context, request));
   const auto place = STRATA_TRY(place_on(*room, body.position));
   Comment comment;
   comment.model_id = room->model().id;

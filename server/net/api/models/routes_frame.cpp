@@ -1,3 +1,4 @@
+#include "net/api/addressed.h"
 #include "net/api/models/picture_response.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
@@ -8,14 +9,13 @@
 #include "room/layers.h"
 #include "room/pictures.h"
 #include "room/room.h"
-#include "room/rooms.h"
 
 namespace strata::net {
 namespace {
 
 Result<Response> frame(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::FrameRequest>(request));
-  auto room = context.rooms.open(request.param("model"), request.role());
+  auto room = open_room(context, request);
   if (!room) return tl::unexpected(room.error());
   room::PictureRequest wanted;
   if (body.layers) {

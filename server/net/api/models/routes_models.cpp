@@ -3,6 +3,7 @@
 #include "app/trash_purger.h"
 #include "domain/people/role.h"
 #include "domain/scene/model.h"
+#include "net/api/addressed.h"
 #include "net/auth/project_authorization.h"
 #include "net/http/idempotency_store.h"
 #include "net/http/page.h"
@@ -91,7 +92,7 @@ Result<void> apply_patch(const protocol::ModelPatch& patch, Model& model) {
 Result<Response> change_model(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::ModelPatch>(request));
   // Through the room: those who look at the model are told.
-  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto room = STRATA_TRY(open_room(context, request));
   Model model = room->model();
   STRATA_TRY(check_if_match(request, model.version));
   STRATA_TRY(apply_patch(body, model));
@@ -106,7 +107,7 @@ Result<Response> change_model(const RouteContext& context, const Request& reques
 }
 
 Result<Response> source(const RouteContext& context, const Request& request) {
-  auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  auto model = STRATA_TRY(stored_model(context, request));
   STRATA_TRY(check_source_download(request, model));
   const std::string& wanted = request.param("name");
   for (const auto& file : model.source_files) {
@@ -139,7 +140,7 @@ void add_model_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
-                auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+                auto model = STRATA_TRY(stored_model(context, request));
                 return model_answer(context, request, model);
               })});
   router.add({.method = Method::patch,
@@ -154,7 +155,7 @@ void add_model_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::remove,
               .pattern = "/api/v1/models/{model}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
-                auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+                auto model = STRATA_TRY(stored_model(context, request));
                 STRATA_TRY(check_if_match(request, model.version));
                 STRATA_TRY(context.store.trash().put_model(
                     model.id, idempotent_response<>(request, [] { return empty_response(204); })));

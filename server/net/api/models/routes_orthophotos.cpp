@@ -8,6 +8,7 @@
 #include "domain/scene/surface_image.h"
 #include "jobs/job_queue.h"
 #include "jobs/orthophoto.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/idempotency_store.h"
@@ -15,11 +16,9 @@
 #include "net/serialization/map_query.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
-#include "room/rooms.h"
 #include "room/surface.h"
 #include "room/surface_images.h"
 #include "store/content/idempotent_response.h"
-#include "store/content/models.h"
 #include "store/store.h"
 
 namespace strata::net {
@@ -99,7 +98,7 @@ Result<Response> start_orthophoto(const RouteContext& context, JobIdempotency& b
   if (known) return std::move(job_response(context, *known).with("Idempotency-Replayed", "true"));
   auto wish = wish_of(request);
   if (!wish) return tl::unexpected(wish.error());
-  auto room = context.rooms.open(request.param("model"), request.role());
+  auto room = open_room(context, request);
   if (!room) return tl::unexpected(room.error());
   const Model model = (*room)->model();
   if (wish->resolution != 0 && wish->resolution < model.atlas.lowest_resolution)
@@ -143,7 +142,7 @@ Result<Response> repeat_orthophoto(const RouteContext& context, JobIdempotency& 
   if (known) return job_response(context, *known);
   jobs::JobResult result(kept.at("model").get<ModelId>());
   result.image = kept.at("look").get<SurfaceImageId>();
-  const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  const auto model = STRATA_TRY(stored_model(context, request));
   auto job = STRATA_TRY(book.finished(request, model.project_id, std::move(result)));
   return job_response(context, job);
 }

@@ -1,11 +1,10 @@
 // How a person shows the layers of a model, kept for them alone.
 #include "domain/people/role.h"
+#include "net/api/addressed.h"
 #include "net/api/models/personal_view.h"
 #include "net/serialization/view_serialization.h"
 #include "net/transport/server_options.h"
 #include "room/room.h"
-#include "room/rooms.h"
-#include "store/content/models.h"
 #include "store/people/personal_views.h"
 #include "store/store.h"
 
@@ -21,7 +20,7 @@ Result<nlohmann::json> personal_view(store::Store& store, const std::string& use
 namespace {
 
 Result<Response> get_view(const RouteContext& context, const Request& request) {
-  const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const auto room = STRATA_TRY(open_room(context, request));
   auto view = STRATA_TRY(personal_view(context.store, request.user(), request.role(), *room));
   return json_response(std::move(view)).with("Cache-Control", "no-store");
 }
@@ -33,7 +32,7 @@ Result<Response> put_view(const RouteContext& context, const Request& request) {
       return fail(ErrorCode::invalid, "Not kept",
                   "Records that stand out belong to a named view; here they are not kept.",
                   "layers[" + std::to_string(i) + "].highlight");
-  const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const auto room = STRATA_TRY(open_room(context, request));
   const auto settings = STRATA_TRY(view_settings(*room, body.layers, {}, {}));
   if (auto kept = context.store.personal_views().keep(request.user(), room->model().id,
                                                       kept_layers(body.layers, settings));
@@ -43,7 +42,7 @@ Result<Response> put_view(const RouteContext& context, const Request& request) {
 }
 
 Result<Response> delete_view(const RouteContext& context, const Request& request) {
-  const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  const auto model = STRATA_TRY(stored_model(context, request));
   if (auto gone =
           context.store.personal_views().keep(request.user(), model.id, nlohmann::json::array());
       !gone)

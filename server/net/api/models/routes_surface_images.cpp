@@ -8,6 +8,7 @@
 #include "domain/scene/surface_image.h"
 #include "media/picture.h"
 #include "media/thumbnail.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/idempotency_store.h"
@@ -16,7 +17,6 @@
 #include "room/room.h"
 #include "room/rooms.h"
 #include "room/surface_images.h"
-#include "store/content/models.h"
 #include "store/content/surface_images.h"
 #include "store/store.h"
 
@@ -26,13 +26,13 @@ namespace {
 constexpr std::uint64_t kMaxLook_bytes = std::uint64_t{256} << 20;
 
 Result<SurfaceImage> stored_surface_image(const RouteContext& context, const Request& request) {
-  auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  auto model = STRATA_TRY(stored_model(context, request));
   return context.store.surface_images().find(model.id, request.param("look"));
 }
 
 Result<Response> list_surface_images(const RouteContext& context, const Request& request) {
   const auto page = STRATA_TRY(page_of(request, kMaxPage));
-  auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  auto model = STRATA_TRY(stored_model(context, request));
   auto images = STRATA_TRY(context.store.surface_images().of_model(model.id));
   const auto part = STRATA_TRY(slice_by(page, images, [](const SurfaceImage& image) {
     return NumberKey{image.order, image.id.number()};
@@ -83,7 +83,7 @@ Result<Response> create_surface_image(const RouteContext& context, const Request
     picture = as_png;
   }
   decoded.rgba = {};
-  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto room = STRATA_TRY(open_room(context, request));
   const auto images = room->surface_images().all();
   image.order = images.empty() ? 0 : images.back().order + 1;
   const auto answer = [model = room->model().slug](const SurfaceImage& made) {
@@ -100,7 +100,7 @@ Result<Response> create_surface_image(const RouteContext& context, const Request
 Result<Response> change_surface_image(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::LookPatch>(request));
   auto image = STRATA_TRY(stored_surface_image(context, request));
-  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto room = STRATA_TRY(open_room(context, request));
   STRATA_TRY(check_if_match(request, image.version));
   if (body.name) image.name = *body.name;
   if (body.description) image.description = *body.description;
@@ -118,7 +118,7 @@ Result<Response> change_surface_image(const RouteContext& context, const Request
 
 Result<Response> delete_surface_image(const RouteContext& context, const Request& request) {
   auto image = STRATA_TRY(stored_surface_image(context, request));
-  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto room = STRATA_TRY(open_room(context, request));
   STRATA_TRY(check_if_match(request, image.version));
   auto gone = room->surface_images().erase(
       image.id, idempotent_response<>(request, [] { return empty_response(204); }));
@@ -127,7 +127,7 @@ Result<Response> delete_surface_image(const RouteContext& context, const Request
 }
 
 Result<Response> surface_image_picture(const RouteContext& context, const Request& request) {
-  auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  auto model = STRATA_TRY(stored_model(context, request));
   auto image = STRATA_TRY(context.store.surface_images().find(model.id, request.param("look")));
   std::optional<int> side;
   if (const std::string text = request.query_or("thumbnail", {}); !text.empty()) {

@@ -2,13 +2,13 @@
 #include "core/text/timestamp.h"
 #include "domain/people/role.h"
 #include "domain/scene/model.h"
+#include "net/api/addressed.h"
 #include "net/api/annotated_routes.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/idempotency_store.h"
 #include "net/http/page.h"
 #include "net/serialization/tour_serialization.h"
-#include "store/content/models.h"
 #include "store/content/named_parts.h"
 #include "store/people/kiosks.h"
 #include "store/store.h"
@@ -23,7 +23,7 @@ struct Found {
   NamedPart tour;
 };
 Result<Found> find_tour(const RouteContext& context, const Request& request) {
-  auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  auto model = STRATA_TRY(stored_model(context, request));
   auto tour = STRATA_TRY(context.store.tours().find(model.id, request.param("tour")));
   return Found{std::move(model), std::move(tour)};
 }
@@ -43,7 +43,7 @@ Response answer_of(nlohmann::json told, const NamedPart& now, int status) {
 
 Result<Response> list_tours(const RouteContext& context, const Request& request) {
   const auto page = STRATA_TRY(page_of(request));
-  const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  const auto model = STRATA_TRY(stored_model(context, request));
   const auto after = STRATA_TRY(number_after(page));
   auto found =
       STRATA_TRY(context.store.tours().of_model(model.id, page.limit + 1, page.offset, after));
@@ -66,7 +66,7 @@ Result<Response> get_tour(const RouteContext& context, const Request& request) {
 
 Result<Response> create_tour(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::TourCreate>(request));
-  const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  const auto model = STRATA_TRY(stored_model(context, request));
   auto stops = STRATA_TRY(kept_stops(context, model, request.role(), body.stops));
   NamedPart tour;
   tour.model_id = model.id;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "domain/people/role.h"
+#include "net/api/addressed.h"
 #include "net/api/annotated_routes.h"
 #include "net/api/models/picture_response.h"
 #include "net/api/route_help.h"
@@ -16,7 +17,6 @@
 #include "room/edits.h"
 #include "room/pictures.h"
 #include "room/room.h"
-#include "room/rooms.h"
 #include "room/view_settings.h"
 #include "store/content/named_parts.h"
 #include "store/store.h"
@@ -51,7 +51,7 @@ struct Found {
   NamedPart view;
 };
 Result<Found> find_view(const RouteContext& context, const Request& request) {
-  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto room = STRATA_TRY(open_room(context, request));
   auto view = context.store.views().find(room->model().id, request.param("view"));
   if (!view) return tl::unexpected(view.error());
   return Found{std::move(room), std::move(*view)};
@@ -78,7 +78,7 @@ void tell(const RouteContext& context, ViewEventEvent event, const NamedPart& vi
 
 Result<Response> list_views(const RouteContext& context, const Request& request) {
   const auto page = STRATA_TRY(page_of(request));
-  const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const auto room = STRATA_TRY(open_room(context, request));
   const auto after = STRATA_TRY(number_after(page));
   auto found = context.store.views().of_model(room->model().id, page.limit + 1, page.offset, after);
   if (!found) return tl::unexpected(found.error());
@@ -130,7 +130,7 @@ Result<Response> view_picture(const RouteContext& context, const Request& reques
 
 Result<Response> create_view(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::ViewCreate>(request));
-  const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const auto room = STRATA_TRY(open_room(context, request));
   auto content = STRATA_TRY(content_of(*room, body, body.camera));
   NamedPart view;
   view.model_id = room->model().id;

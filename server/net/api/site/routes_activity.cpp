@@ -1,5 +1,6 @@
 // What was done in a project.
 #include "domain/people/role.h"
+#include "net/api/addressed.h"
 #include "net/http/page.h"
 #include "net/live/model_events.h"
 #include "net/serialization/activity_serialization.h"
@@ -25,7 +26,7 @@ Result<Response> list_activity(const RouteContext& context, const Request& reque
       return fail(ErrorCode::invalid, "No such page",
                   "`before` is `next` of an answer: 1777896570120000-7, for example.", "before");
   }
-  const auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
+  const auto project = STRATA_TRY(stored_project(context, request));
   if (const auto ref = request.query.find("model"); ref != request.query.end()) {
     const auto model = context.store.models().find(ref->second);
     if (!model && model.error().code != ErrorCode::not_found) return tl::unexpected(model.error());
@@ -46,7 +47,7 @@ Result<Response> list_activity(const RouteContext& context, const Request& reque
 
 // From where a reader comes back, or from now.
 Result<Response> listen(const RouteContext& context, const Request& request) {
-  const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  const auto model = STRATA_TRY(stored_model(context, request));
   std::optional<store::ActivityPlace> after;
   if (const auto text = request.header("last-event-id"); !text.empty()) {
     after = place_of(text);

@@ -1,12 +1,12 @@
 // Groups of people, and the roles that projects give them.
 #include "domain/people/role.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/auth/project_authorization.h"
 #include "net/http/page.h"
 #include "net/serialization/group_serialization.h"
 #include "net/transport/server_options.h"
-#include "store/content/projects.h"
 #include "store/people/groups.h"
 #include "store/store.h"
 
@@ -79,7 +79,7 @@ Result<Response> delete_group(const RouteContext& context, const Request& reques
 
 Result<Response> put_role(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::MemberPut>(request));
-  const auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
+  const auto project = STRATA_TRY(stored_project(context, request));
   const auto id = STRATA_TRY(id_of<GroupId>(request, "group"));
   const Role role = parse_role(protocol::name(body.role)).value_or(Role::viewer);
   const auto put = STRATA_TRY(context.store.groups().put(project.id, id, role, request.user()));
@@ -88,7 +88,7 @@ Result<Response> put_role(const RouteContext& context, const Request& request) {
 }
 
 Result<Response> take_role(const RouteContext& context, const Request& request) {
-  const auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
+  const auto project = STRATA_TRY(stored_project(context, request));
   const auto id = STRATA_TRY(id_of<GroupId>(request, "group"));
   const auto people = STRATA_TRY(context.store.groups().take(project.id, id, request.user()));
   roles_changed(context, people);

@@ -3,6 +3,7 @@
 
 #include "core/text/timestamp.h"
 #include "domain/people/role.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/auth/auth.h"
@@ -14,7 +15,6 @@
 #include "net/live/live_sockets.h"
 #include "net/serialization/tour_serialization.h"
 #include "net/transport/server_options.h"
-#include "store/content/models.h"
 #include "store/people/kiosks.h"
 #include "store/store.h"
 
@@ -70,7 +70,7 @@ Result<Response> list_kiosks(const RouteContext& context, const Request& request
 
 Result<Response> create_kiosk(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::KioskCreate>(request));
-  const auto model = STRATA_TRY(context.store.models().find(request.param("model")));
+  const auto model = STRATA_TRY(stored_model(context, request));
   const auto tour = STRATA_TRY(context.store.tours().find(model.id, request.param("tour")));
   std::optional<std::chrono::seconds> lifetime;
   if (body.days) lifetime = std::chrono::hours(24 * *body.days);

@@ -2,6 +2,7 @@
 #include <set>
 
 #include "domain/people/role.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/auth/auth.h"
@@ -30,7 +31,7 @@ nlohmann::json to_json(const store::Membership& member) {
 }
 
 Result<Project> project_of(const RouteContext& context, const Request& request) {
-  return context.store.projects().find(request.param("project"));
+  return stored_project(context, request);
 }
 
 Result<Response> list_members(const RouteContext& context, const Request& request) {

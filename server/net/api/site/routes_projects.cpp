@@ -1,4 +1,5 @@
 #include "domain/people/role.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/idempotency_store.h"
@@ -66,7 +67,7 @@ Result<Response> create_project(const RouteContext& context, const Request& requ
 }
 
 Result<Response> change_project(const RouteContext& context, const Request& request) {
-  auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
+  auto project = STRATA_TRY(stored_project(context, request));
   STRATA_TRY(check_if_match(request, project.version));
   auto body = STRATA_TRY(body_of<protocol::ProjectPatch>(request));
   // Curators say how work goes on in their project, not what it is called.
@@ -105,7 +106,7 @@ void add_project_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/projects/{project}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
-                auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
+                auto project = STRATA_TRY(stored_project(context, request));
                 return with_etag(json_response(to_json(project)), request, project.version);
               })});
   router.add({.method = Method::patch,
@@ -121,7 +122,7 @@ void add_project_routes(Router& router, const RouteContext& context) {
       {.method = Method::remove,
        .pattern = "/api/v1/projects/{project}",
        .handler = answering([&context](const Request& request) -> Result<Response> {
-         auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
+         auto project = STRATA_TRY(stored_project(context, request));
          STRATA_TRY(check_if_match(request, project.version));
          STRATA_TRY(context.store.projects().remove(
              project.id, idempotent_response<>(request, [] { return empty_response(204); })));

@@ -10,6 +10,7 @@
 #include "domain/scene/model.h"
 #include "domain/tables/table.h"
 #include "domain/tables/term_list.h"
+#include "net/api/addressed.h"
 #include "net/api/layers/layer_jobs.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
@@ -22,7 +23,6 @@
 #include "room/room.h"
 #include "room/rooms.h"
 #include "store/content/idempotent_response.h"
-#include "store/content/projects.h"
 #include "store/store.h"
 #include "store/tables/table_changes.h"
 #include "store/tables/tables.h"
@@ -137,7 +137,7 @@ Result<std::vector<Layer>> make_layers(const RouteContext& context, const Reques
 
 Result<Response> use_template(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::TemplateUse>(request));
-  auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
+  auto project = STRATA_TRY(stored_project(context, request));
   const protocol::Template* of = context.templates.find(request.param("template"));
   if (!of)
     return fail(ErrorCode::not_found, "Not found",

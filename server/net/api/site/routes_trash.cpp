@@ -5,6 +5,7 @@
 #include "app/trash_purger.h"
 #include "core/text/timestamp.h"
 #include "domain/people/role.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/idempotency_store.h"
@@ -14,7 +15,6 @@
 #include "room/layers.h"
 #include "room/room.h"
 #include "room/rooms.h"
-#include "store/content/projects.h"
 #include "store/store.h"
 #include "store/tables/table_changes.h"
 
@@ -80,7 +80,7 @@ Result<std::optional<store::Trash::Place>> trash_place(const Page& page) {
 
 Result<Response> list_trash(const RouteContext& context, const Request& request) {
   const auto page = STRATA_TRY(page_of(request));
-  const auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
+  const auto project = STRATA_TRY(stored_project(context, request));
   const auto after = STRATA_TRY(trash_place(page));
   auto found = STRATA_TRY(context.store.trash().of_project(project.id, sight_of(context, request),
                                                            page.limit + 1, page.offset, after));
@@ -118,7 +118,7 @@ std::optional<std::vector<std::int64_t>> numbers_of(std::string_view text) {
 
 // `layer-3`, `model-7`, `record-5-17`.
 Result<TrashEntry> find_entry(const RouteContext& context, const Request& request) {
-  const auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
+  const auto project = STRATA_TRY(stored_project(context, request));
   const std::string_view ref = request.param("entry");
   for (const auto kind :
        {TrashEntry::Kind::layer, TrashEntry::Kind::model, TrashEntry::Kind::record}) {

@@ -8,13 +8,13 @@
 #include "domain/tables/attachment.h"
 #include "domain/tables/column_value.h"
 #include "domain/tables/table.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/transport/server_options.h"
 #include "store/store.h"
 #include "store/tables/attachments.h"
 #include "store/tables/records.h"
-#include "store/tables/tables.h"
 
 namespace strata::net {
 namespace {
@@ -67,7 +67,7 @@ Result<Response> match(const RouteContext& context, const Request& request) {
   auto body =
       STRATA_TRY(body_of<protocol::AttachmentMatch>(request, context.options.max_json_bytes));
   auto pattern = STRATA_TRY(NamePattern::parse(body.pattern, "pattern"));
-  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
+  auto table = STRATA_TRY(stored_table(context, request));
   const Column* column = find_column(table.columns, body.column);
   if (!column && body.column != kKey)
     return fail(ErrorCode::invalid, "No such column",

@@ -13,6 +13,7 @@
 #include "domain/tables/relation_cycles.h"
 #include "domain/tables/table.h"
 #include "expression/expression.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/idempotency_store.h"
@@ -22,7 +23,6 @@
 #include "net/serialization/table_serialization.h"
 #include "net/transport/server_options.h"
 #include "room/rooms.h"
-#include "store/content/projects.h"
 #include "store/store.h"
 #include "store/tables/records.h"
 #include "store/tables/table_changes.h"
@@ -35,7 +35,7 @@ using TableChange = store::TableChange;
 
 Result<Response> list_tables(const RouteContext& context, const Request& request) {
   auto page = STRATA_TRY(page_of(request));
-  auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
+  auto project = STRATA_TRY(stored_project(context, request));
   auto tables = STRATA_TRY(context.store.tables().of_project(project.id, request.role()));
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(tables.size());
@@ -50,7 +50,7 @@ Result<Response> list_tables(const RouteContext& context, const Request& request
 
 Result<Response> create_table(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::TableCreate>(request));
-  auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
+  auto project = STRATA_TRY(stored_project(context, request));
   auto slug = STRATA_TRY(slug_of(body.slug, body.name));
   Table table;
   table.project_id = project.id;
@@ -74,7 +74,7 @@ Result<Response> create_table(const RouteContext& context, const Request& reques
 }
 
 Result<Response> change_table(const RouteContext& context, const Request& request) {
-  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
+  auto table = STRATA_TRY(stored_table(context, request));
   STRATA_TRY(check_if_match(request, table.version));
   auto body = STRATA_TRY(body_of<protocol::TablePatch>(request));
   if (body.name) table.name = *body.name;
@@ -98,7 +98,7 @@ Result<Response> change_table(const RouteContext& context, const Request& reques
 }
 
 Result<Response> delete_table(const RouteContext& context, const Request& request) {
-  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
+  auto table = STRATA_TRY(stored_table(context, request));
   STRATA_TRY(check_if_match(request, table.version));
   STRATA_TRY(context.store.tables().remove(
       table.id, idempotent_response<>(request, [] { return empty_response(204); })));
@@ -131,7 +131,7 @@ nlohmann::json column_json(const TableChange& change, ColumnId id) {
 
 Result<Response> list_columns(const RouteContext& context, const Request& request) {
   const auto page = STRATA_TRY(page_of(request, kMaxPage));
-  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
+  auto table = STRATA_TRY(stored_table(context, request));
   const auto part = STRATA_TRY(slice_by(page, table.columns, [](const Column& column) {
     return NumberKey{column.order, column.id.number()};
   }));
@@ -145,7 +145,7 @@ Result<Response> list_columns(const RouteContext& context, const Request& reques
 
 Result<Response> create_column(const RouteContext& context, const Request& request) {
   auto body = STRATA_TRY(body_of<protocol::ColumnCreate>(request));
-  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
+  auto table = STRATA_TRY(stored_table(context, request));
   STRATA_TRY(check_if_match(request, table.version));
   auto column = STRATA_TRY(new_column(context.store, table.project_id, body));
   for (const Column& other : table.columns) column.order = std::max(column.order, other.order + 1);
@@ -216,7 +216,7 @@ Result<Response> show_column(const RouteContext& context, const Request& request
 }
 
 Result<Response> change_column(const RouteContext& context, const Request& request) {
-  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
+  auto table = STRATA_TRY(stored_table(context, request));
   auto found = STRATA_TRY(column_of(table, request));
   STRATA_TRY(check_if_match(request, table.version));
   auto body = STRATA_TRY(body_of<protocol::ColumnPatch>(request));
@@ -243,7 +243,7 @@ Result<Response> change_column(const RouteContext& context, const Request& reque
 }
 
 Result<Response> drop_column(const RouteContext& context, const Request& request) {
-  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
+  auto table = STRATA_TRY(stored_table(context, request));
   auto column = STRATA_TRY(column_of(table, request));
   STRATA_TRY(check_if_match(request, table.version));
   const auto answer = [](const TableChange&) { return empty_response(204); };
@@ -258,7 +258,7 @@ Result<Response> drop_column(const RouteContext& context, const Request& request
 // A record that lies above itself cannot be: told, not refused, since excavation drawings have such
 // things to be found.
 Result<Response> cycles(const RouteContext& context, const Request& request) {
-  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
+  auto table = STRATA_TRY(stored_table(context, request));
   auto column = STRATA_TRY(column_of(table, request));
   if (column->target != table.id)
     return fail(ErrorCode::invalid, "No relation of its own",
@@ -280,7 +280,7 @@ Result<Response> cycles(const RouteContext& context, const Request& request) {
 // --- history
 
 Result<Response> classes(const RouteContext& context, const Request& request) {
-  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
+  auto table = STRATA_TRY(stored_table(context, request));
   auto column = STRATA_TRY(column_of(table, request));
   const auto asked = request.query.find("method");
   const std::string method = asked == request.query.end() ? "unique" : asked->second;
@@ -335,7 +335,7 @@ Result<Response> classes(const RouteContext& context, const Request& request) {
 
 Result<Response> history(const RouteContext& context, const Request& request) {
   auto page = STRATA_TRY(page_of(request));
-  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
+  auto table = STRATA_TRY(stored_table(context, request));
   std::optional<std::int64_t> key;
   if (const std::string text = request.query_or("key", {}); !text.empty()) {
     auto number = STRATA_TRY(parse_integer(text, 0, kMaxRecordKey, "key"));
@@ -355,7 +355,7 @@ Result<Response> history(const RouteContext& context, const Request& request) {
 
 Result<Response> undo(const RouteContext& context, const Request& request, bool redo) {
   if (!request.body.empty()) STRATA_TRY(body_of<protocol::Empty>(request));
-  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
+  auto table = STRATA_TRY(stored_table(context, request));
   auto plan = STRATA_TRY(context.store.tables().plan_undo(table.id, request.user(), redo));
   if (!plan.vanishing.empty()) {
     auto painted = STRATA_TRY(app::painted_layers(context, table.id, request.role()));
@@ -381,7 +381,7 @@ Result<Response> undo(const RouteContext& context, const Request& request, bool 
 // --- surface of its keys
 
 Result<Response> areas(const RouteContext& context, const Request& request) {
-  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
+  auto table = STRATA_TRY(stored_table(context, request));
   auto painted = STRATA_TRY(app::painted_layers(context, table.id, request.role()));
   struct Sum {
     CompensatedSum area_m2;
@@ -447,7 +447,7 @@ void add_table_routes(Router& router, const RouteContext& context) {
   read(tables, list_tables, {"limit", "offset", "after"});
   write(Method::post, tables, create_table);
   read(table, [](const RouteContext& c, const Request& request) -> Result<Response> {
-    auto found = STRATA_TRY(c.store.tables().find(request.param("table"), request.role()));
+    auto found = STRATA_TRY(stored_table(c, request));
     return with_etag(json_response(to_json(found)), request, found.version);
   });
   write(Method::patch, table, change_table);

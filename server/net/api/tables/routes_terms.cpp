@@ -4,6 +4,7 @@
 #include "domain/people/role.h"
 #include "domain/tables/term.h"
 #include "domain/tables/term_list.h"
+#include "net/api/addressed.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/idempotency_store.h"
@@ -11,7 +12,6 @@
 #include "net/live/live_sockets.h"
 #include "net/live/table_events.h"
 #include "net/serialization/sheet_response.h"
-#include "store/content/projects.h"
 #include "store/store.h"
 #include "store/tables/records.h"
 #include "store/tables/table_changes.h"
@@ -103,7 +103,7 @@ Result<Response> create_terms(const RouteContext& context, const Request& reques
                 "`name` tells what the list is called, in 1 to 200 bytes.", "name");
   auto slug = STRATA_TRY(slug_of({}, wished.table.name));
   wished.table.slug = slug;
-  auto project = STRATA_TRY(context.store.projects().find(request.param("project")));
+  auto project = STRATA_TRY(stored_project(context, request));
   wished.table.project_id = project.id;
   auto list = STRATA_TRY(read_terms(request));
   std::vector<std::string> languages;
@@ -132,7 +132,7 @@ Result<Response> create_terms(const RouteContext& context, const Request& reques
 
 Result<Response> import_terms(const RouteContext& context, const Request& request) {
   auto dry_run = STRATA_TRY(is_dry_run(request));
-  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
+  auto table = STRATA_TRY(stored_table(context, request));
   auto list = STRATA_TRY(read_terms(request));
   if (!list.mistakes.empty()) {
     if (dry_run) return json_response(report_of(list, {}, true));
@@ -206,7 +206,7 @@ Result<Response> list_terms_of(const RouteContext& context, const Request& reque
   auto separator = STRATA_TRY(csv_separator(request));
   auto shown = STRATA_TRY(page_of(request));
   const auto language = STRATA_TRY(asked_language(request));
-  auto table = STRATA_TRY(context.store.tables().find(request.param("table"), request.role()));
+  auto table = STRATA_TRY(stored_table(context, request));
   if (!term_columns(table))
     return fail(ErrorCode::conflict, "No list of terms",
                 table.name + " is a table of records. Read `/records` of it.");
