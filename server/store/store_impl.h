@@ -24,6 +24,7 @@
 #include "store/people/personal_views.h"
 #include "store/people/tokens.h"
 #include "store/pg/pool.h"
+#include "store/pg/sql.h"
 #include "store/store.h"
 #include "store/tables/attachments.h"
 #include "store/tables/records.h"
@@ -50,11 +51,15 @@ Result<void> rename_in_journal(PgConnection& connection, const std::string& name
                                const std::string& former);
 // Texts that may call them with @: in any case, as names are, and where no longer name and no
 // address of a mail begins or ends there.
-#define STRATA_CALLS_THEM(text) "position('@' || lower($1) IN lower(" text ")) > 0"
-#define STRATA_CALL_RENAMED(text, longest)                   \
-  "left(regexp_replace(" text                                \
-  ", '(^|[^A-Za-z0-9._@-])@' || replace($1, '.', '\\.') || " \
-  "'(?![A-Za-z0-9_@-]|\\.[A-Za-z0-9])', '\\1@' || $2, 'gi'), " longest ")"
+consteval auto mentions_them(const auto& text) {
+  return sql("position('@' || lower($1) IN lower(", text, ")) > 0");
+}
+consteval auto mention_renamed(const auto& text, const auto& longest) {
+  return sql("left(regexp_replace(", text,
+             ", '(^|[^A-Za-z0-9._@-])@' || replace($1, '.', '\\.') || "
+             "'(?![A-Za-z0-9_@-]|\\.[A-Za-z0-9])', '\\1@' || $2, 'gi'), ",
+             longest, ")");
+}
 
 // In the transaction at hand: what is said of them holds until it is written.
 Result<Person> lock_person(PgConnection& connection, const std::string& name);

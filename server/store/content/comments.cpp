@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "store/pg/pg_row.h"
+#include "store/pg/sql.h"
 #include "store/store_impl.h"
 
 // A thread's first comment is locked by whoever adds or takes away a reply, so that it is not
@@ -14,45 +16,46 @@ constexpr std::size_t kMaxTextLength = 10'000;  // characters
 
 // Who sees the layer that the thread is about, in the Trash or not, sees the thread. Also of a
 // comment that a statement has just made.
-#define STRATA_COMMENT_VISIBILITY                                                                                         \
-  "CASE WHEN c.thread_id IS NULL THEN coalesce((SELECT visibility FROM all_layers WHERE id = c.layer_id), c.visibility) " \
-  "ELSE (SELECT coalesce(l.visibility, f.visibility) FROM comments f LEFT JOIN all_layers l ON l.id = f.layer_id "        \
-  "WHERE f.id = c.thread_id) END"
+constexpr auto kCommentVisibility = sql(
+    "CASE WHEN c.thread_id IS NULL THEN coalesce((SELECT visibility FROM all_layers WHERE id = c.layer_id), c.visibility) "
+    "ELSE (SELECT coalesce(l.visibility, f.visibility) FROM comments f LEFT JOIN all_layers l ON l.id = f.layer_id "
+    "WHERE f.id = c.thread_id) END");
 // One in the Trash is not told, and is there again when it comes back.
-#define STRATA_COMMENT_LAYER "(SELECT id FROM layers WHERE id = c.layer_id) AS layer_id"
-#define STRATA_COMMENT_COLUMNS                                                 \
-  "c.id, c.model_id, c.thread_id, c.position, c.normal, " STRATA_COMMENT_LAYER \
-  ", c.table_id, c.record_key, c.text, "                                       \
-  "c.user_name, c.time, c.edited, c.deleted IS NOT NULL, c.resolved, c.resolved_by, c.version, " STRATA_COMMENT_VISIBILITY
+constexpr auto kCommentLayer = sql("(SELECT id FROM layers WHERE id = c.layer_id) AS layer_id");
+constexpr auto kCommentColumns = sql(
+    "c.id, c.model_id, c.thread_id, c.position, c.normal, ", kCommentLayer,
+    ", c.table_id, c.record_key, c.text, "
+    "c.user_name, c.time, c.edited, c.deleted IS NOT NULL, c.resolved, c.resolved_by, c.version, ",
+    kCommentVisibility);
 
-std::optional<std::int64_t> id_at(const PgResult& rows, int row, int column) {
-  return rows.null(row, column) ? std::nullopt : std::optional(rows.integer(row, column));
-}
-
-glm::dvec3 point_at(const PgResult& rows, int row, int column) {
-  const auto numbers = rows.reals(row, column);
+glm::dvec3 point_of(const std::vector<double>& numbers) {
   return {numbers.at(0), numbers.at(1), numbers.at(2)};
 }
 
 Comment read_comment(const PgResult& rows, int i) {
+  PgRow row(rows, i);
   Comment comment;
-  comment.id = rows.id<CommentId>(i, 0);
-  comment.model_id = rows.id<ModelId>(i, 1);
-  comment.thread = rows.id<std::optional<CommentId>>(i, 2);
-  if (!rows.null(i, 3)) comment.place = {point_at(rows, i, 3), point_at(rows, i, 4)};
-  comment.layer_id = rows.id<std::optional<LayerId>>(i, 5);
-  comment.table_id = rows.id<std::optional<TableId>>(i, 6);
+  comment.id = row.id<CommentId>();
+  comment.model_id = row.id<ModelId>();
+  comment.thread = row.id<std::optional<CommentId>>();
+  const auto position = row.optional_reals(), normal = row.optional_reals();
+  if (position && normal) comment.place = {point_of(*position), point_of(*normal)};
+  comment.layer_id = row.id<std::optional<LayerId>>();
+  comment.table_id = row.id<std::optional<TableId>>();
+  const auto record = row.optional_integer();
   // A key says nothing without its table, which may have been deleted.
-  if (comment.table_id) comment.record = id_at(rows, i, 7);
-  comment.text = rows.text(i, 8);
-  comment.user = rows.text(i, 9);
-  comment.time = rows.time(i, 10);
-  if (!rows.null(i, 11)) comment.edited = rows.time(i, 11);
-  comment.deleted = rows.boolean(i, 12);
-  if (!rows.null(i, 13)) comment.resolved = {rows.text(i, 14), rows.time(i, 13)};
-  comment.version = rows.integer(i, 15);
+  if (comment.table_id) comment.record = record;
+  comment.text = row.text();
+  comment.user = row.text();
+  comment.time = row.time();
+  comment.edited = row.optional_time();
+  comment.deleted = row.boolean();
+  const auto resolved = row.optional_time();
+  const auto resolved_by = row.optional_text();
+  if (resolved && resolved_by) comment.resolved = {*resolved_by, *resolved};
+  comment.version = row.integer();
   // What cannot be told is not shown.
-  comment.visibility = parse_visibility(rows.text(i, 16)).value_or(Visibility::curators);
+  comment.visibility = parse_visibility(row.text()).value_or(Visibility::curators);
   return comment;
 }
 
@@ -76,17 +79,19 @@ Result<void> check_words(const std::string& text) {
 }
 
 // One of a model that is there.
-#define STRATA_COMMENT \
-  "FROM comments c WHERE id = $1 AND EXISTS (SELECT 1 FROM models WHERE id = c.model_id)"
+constexpr auto kComment =
+    sql("FROM comments c WHERE id = $1 AND EXISTS (SELECT 1 FROM models WHERE id = c.model_id)");
 
 enum class Lock { none, keep, change };  // `keep`: it stays while this transaction lasts
 
 Result<Comment> load(PgConnection& connection, CommentId id, Lock lock) {
-  const char* sql = lock == Lock::none ? "SELECT " STRATA_COMMENT_COLUMNS " " STRATA_COMMENT
-                    : lock == Lock::keep
-                        ? "SELECT " STRATA_COMMENT_COLUMNS " " STRATA_COMMENT " FOR SHARE"
-                        : "SELECT " STRATA_COMMENT_COLUMNS " " STRATA_COMMENT " FOR UPDATE";
-  auto rows = STRATA_TRY(connection.query(sql, Params().id(id)));
+  constexpr auto kRead = sql("SELECT ", kCommentColumns, " ", kComment);
+  constexpr auto kKeep = sql(kRead, " FOR SHARE");
+  constexpr auto kChange = sql(kRead, " FOR UPDATE");
+  const char* statement = lock == Lock::none   ? kRead.c_str()
+                          : lock == Lock::keep ? kKeep.c_str()
+                                               : kChange.c_str();
+  auto rows = STRATA_TRY(connection.query(statement, Params().id(id)));
   if (rows.rows() == 0) return no_such("comment", to_string(id));
   return read_comment(rows, 0);
 }
@@ -112,23 +117,24 @@ Result<Comments::Page> page_of(Result<PgResult> total, Result<PgResult> rows) {
 }  // namespace
 
 Result<Comments::Page> Comments::of_model(ModelId model_id, Role seen_by, const Query& query) {
-// Times are told in milliseconds: one that was read counts what was changed then.
-#define STRATA_ASKED_COMMENTS                                                                            \
-  " FROM comments c JOIN comments first ON first.id = coalesce(c.thread_id, c.id) WHERE c.model_id = $1" \
-  " AND ($2::text IS NULL OR ($2 = 'resolved') = (first.resolved IS NOT NULL))"                          \
-  " AND ($3::text IS NULL OR date_trunc('milliseconds', c.changed) >= $3::timestamptz)"                  \
-  " AND " STRATA_COMMENT_VISIBILITY " = any($4)"
+  // Times are told in milliseconds: one that was read counts what was changed then.
+  constexpr auto kAskedComments = sql(
+      " FROM comments c JOIN comments first ON first.id = coalesce(c.thread_id, c.id) WHERE c.model_id = $1"
+      " AND ($2::text IS NULL OR ($2 = 'resolved') = (first.resolved IS NOT NULL))"
+      " AND ($3::text IS NULL OR date_trunc('milliseconds', c.changed) >= $3::timestamptz)"
+      " AND ",
+      kCommentVisibility, " = any($4)");
   std::optional<std::string> state;
   if (query.resolved) state = *query.resolved ? "resolved" : "open";
   return pool_.read([&](PgConnection& connection) {
-    auto total = connection.query("SELECT count(*)" STRATA_ASKED_COMMENTS,
+    auto total = connection.query(sql("SELECT count(*)", kAskedComments),
                                   Params()
                                       .id(model_id)
                                       .optional_text(state)
                                       .optional_text(query.since)
                                       .array(visibilities_seen_by(seen_by)));
-    auto rows = connection.query("SELECT " STRATA_COMMENT_COLUMNS STRATA_ASKED_COMMENTS
-                                 " AND c.id > $7 ORDER BY c.id LIMIT $5 OFFSET $6",
+    auto rows = connection.query(sql("SELECT ", kCommentColumns, kAskedComments,
+                                     " AND c.id > $7 ORDER BY c.id LIMIT $5 OFFSET $6"),
                                  Params()
                                      .id(model_id)
                                      .optional_text(state)
@@ -150,8 +156,8 @@ Result<Comments::Page> Comments::replies(CommentId thread, Role seen_by, int lim
     auto total =
         connection.query("SELECT count(*) FROM comments WHERE thread_id = $1", Params().id(thread));
     auto rows = connection.query(
-        "SELECT " STRATA_COMMENT_COLUMNS
-        " FROM comments c WHERE thread_id = $1 AND c.id > $4 ORDER BY c.id LIMIT $2 OFFSET $3",
+        sql("SELECT ", kCommentColumns,
+            " FROM comments c WHERE thread_id = $1 AND c.id > $4 ORDER BY c.id LIMIT $2 OFFSET $3"),
         Params().id(thread).integer(limit).integer(offset).integer(after));
     return page_of(std::move(total), std::move(rows));
   });
@@ -190,8 +196,9 @@ Result<Comment> Comments::create(const Comment& comment,
       normal = array_of(comment.place->normal);
     }
     auto row = STRATA_TRY(connection.query(
-        "INSERT INTO comments AS c (model_id, thread_id, position, normal, layer_id, table_id, record_key, text, user_name) "
-        "VALUES ($1, $2, nullif($3, '{}'), nullif($4, '{}'), $5, $6, $7, $8, $9) RETURNING " STRATA_COMMENT_COLUMNS,
+        sql("INSERT INTO comments AS c (model_id, thread_id, position, normal, layer_id, table_id, record_key, text, user_name) "
+            "VALUES ($1, $2, nullif($3, '{}'), nullif($4, '{}'), $5, $6, $7, $8, $9) RETURNING ",
+            kCommentColumns),
         Params()
             .id(model_id)
             .optional_id(comment.thread)
@@ -213,11 +220,12 @@ Result<Comment> Comments::update(const Comment& comment,
   if (resolver) STRATA_TRY(check_text(*resolver, "user"));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Comment> {
     auto row = STRATA_TRY(connection.query(
-        "UPDATE comments AS c SET text = $3, edited = CASE WHEN text = $3 THEN edited ELSE clock_timestamp() END, "
-        "resolved = CASE WHEN $4::text IS NOT NULL THEN coalesce(resolved, clock_timestamp()) END, "
-        "resolved_by = CASE WHEN $4 IS NOT NULL THEN coalesce(resolved_by, $4) END, "
-        "changed = clock_timestamp(), version = version + 1 WHERE id = $1 AND version = $2 "
-        "RETURNING " STRATA_COMMENT_COLUMNS,
+        sql("UPDATE comments AS c SET text = $3, edited = CASE WHEN text = $3 THEN edited ELSE clock_timestamp() END, "
+            "resolved = CASE WHEN $4::text IS NOT NULL THEN coalesce(resolved, clock_timestamp()) END, "
+            "resolved_by = CASE WHEN $4 IS NOT NULL THEN coalesce(resolved_by, $4) END, "
+            "changed = clock_timestamp(), version = version + 1 WHERE id = $1 AND version = $2 "
+            "RETURNING ",
+            kCommentColumns),
         Params()
             .id(comment.id)
             .integer(comment.version)
@@ -248,8 +256,9 @@ Result<Comments::Removal> Comments::remove(const Comment& comment,
     Removal removal{first->model_id, {}, {}};
     if (!comment.thread && has_others) {
       auto emptied = STRATA_TRY(connection.query(
-          "UPDATE comments AS c SET text = '', edited = NULL, deleted = clock_timestamp(), "
-          "changed = clock_timestamp(), version = version + 1 WHERE id = $1 RETURNING " STRATA_COMMENT_COLUMNS,
+          sql("UPDATE comments AS c SET text = '', edited = NULL, deleted = clock_timestamp(), "
+              "changed = clock_timestamp(), version = version + 1 WHERE id = $1 RETURNING ",
+              kCommentColumns),
           Params().id(comment.id)));
       removal.left = read_comment(emptied, 0);
       return removal;
@@ -266,11 +275,12 @@ Result<Comments::Removal> Comments::remove(const Comment& comment,
 
 Result<void> rename_in_comments(PgConnection& connection, const std::string& name,
                                 const std::string& former) {
-  for (const char* sql : {"UPDATE comments SET user_name = $2 WHERE user_name = $1",
-                          "UPDATE comments SET resolved_by = $2 WHERE resolved_by = $1",
-                          "UPDATE comments SET text = " STRATA_CALL_RENAMED(
-                              "text", "10000") " WHERE " STRATA_CALLS_THEM("text")})
-    STRATA_TRY(connection.query(sql, Params().text(name).text(former)));
+  constexpr auto kTexts = sql("UPDATE comments SET text = ", mention_renamed("text", "10000"),
+                              " WHERE ", mentions_them("text"));
+  for (const char* statement :
+       {"UPDATE comments SET user_name = $2 WHERE user_name = $1",
+        "UPDATE comments SET resolved_by = $2 WHERE resolved_by = $1", kTexts.c_str()})
+    STRATA_TRY(connection.query(statement, Params().text(name).text(former)));
   return {};
 }
 

@@ -1,6 +1,8 @@
 #include "store/content/layers.h"
 #include "domain/layers/revision.h"
 #include "domain/tables/term_list.h"
+#include "store/pg/pg_row.h"
+#include "store/pg/sql.h"
 #include "store/store_impl.h"
 #include "store/tables/table_writer.h"
 
@@ -8,20 +10,22 @@ namespace strata::store {
 namespace {
 
 // Something that a computed layer reads is newer than it, or gone.
-#define STRATA_LAYER_STALE                                                                                              \
-  "(expression IS NOT NULL AND (computed_sequence = 0 OR EXISTS (SELECT 1 FROM layer_inputs i LEFT JOIN layers l ON "   \
-  "l.id = i.input_id LEFT JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = layers.id AND (l.id IS NULL OR " \
-  "l.sequence > layers.computed_sequence OR t.sequence > i.table_sequence))))"
-#define STRATA_LAYER_COLUMNS                                                                                                                              \
-  "id, model_id, name, slug::text, kind, type, resolution, unit, description, palette, opacity, visible, draw_order, "                                    \
-  "table_id, sequence, version, expression, automatic, computed_sequence, "                                                                               \
-  "(SELECT coalesce(jsonb_agg(jsonb_build_object('slug', i.slug, 'layer', "                                                                               \
-  "(SELECT l.id FROM layers l WHERE l.id = i.input_id), 'table', i.table_id) ORDER BY i.slug), '[]') FROM layer_inputs i WHERE i.layer_id = layers.id), " \
-  "EXISTS (SELECT 1 FROM layer_inputs i JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = layers.id AND "                                      \
-  "t.sequence > i.table_sequence), " STRATA_LAYER_STALE                                                                                                   \
-  ", locked, visibility, review, labels, descriptions, "                                                                                                  \
-  "(SELECT o.origin FROM layer_origins o WHERE o.layer_id = layers.id), "                                                                                 \
-  "coalesce((SELECT o.edited_by_hand FROM layer_origins o WHERE o.layer_id = layers.id), false)"
+constexpr auto kLayerStale = sql(
+    "(expression IS NOT NULL AND (computed_sequence = 0 OR EXISTS (SELECT 1 FROM layer_inputs i LEFT JOIN layers l ON "
+    "l.id = i.input_id LEFT JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = layers.id AND (l.id IS NULL OR "
+    "l.sequence > layers.computed_sequence OR t.sequence > i.table_sequence))))");
+constexpr auto kLayerColumns = sql(
+    "id, model_id, name, slug::text, kind, type, resolution, unit, description, palette, opacity, visible, draw_order, "
+    "table_id, sequence, version, locked, visibility, review, labels, descriptions, "
+    "(SELECT o.origin FROM layer_origins o WHERE o.layer_id = layers.id), "
+    "coalesce((SELECT o.edited_by_hand FROM layer_origins o WHERE o.layer_id = layers.id), false), "
+    "expression, automatic, computed_sequence, "
+    "EXISTS (SELECT 1 FROM layer_inputs i JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = layers.id AND "
+    "t.sequence > i.table_sequence), ",
+    kLayerStale,
+    ", (SELECT coalesce(jsonb_agg(jsonb_build_object('slug', i.slug, 'layer', "
+    "(SELECT l.id FROM layers l WHERE l.id = i.input_id), 'table', i.table_id) ORDER BY i.slug), '[]') "
+    "FROM layer_inputs i WHERE i.layer_id = layers.id)");
 
 // A palette without points is that of the terms, where the layer's table is a list of such.
 Result<void> take_term_colors(PgConnection& connection, Layer& layer) {
@@ -44,44 +48,49 @@ std::optional<Id> optional_id(const nlohmann::json& value) {
 }
 
 Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) {
+  PgRow row(rows, i);
   Layer layer;
-  layer.id = rows.id<LayerId>(i, 0);
-  layer.model_id = rows.id<ModelId>(i, 1);
-  layer.name = rows.text(i, 2);
-  layer.slug = rows.text(i, 3);
-  layer.kind = rows.text(i, 4) == "database" ? LayerKind::database : LayerKind::numeric;
-  const auto type = parse_value_type(rows.text(i, 5));
+  layer.id = row.id<LayerId>();
+  layer.model_id = row.id<ModelId>();
+  layer.name = row.text();
+  layer.slug = row.text();
+  layer.kind = row.text() == "database" ? LayerKind::database : LayerKind::numeric;
+  const auto type = parse_value_type(row.text());
   if (!type)
     return fail(ErrorCode::internal, "Damaged layer",
                 "Layer " + to_string(layer.id) + " has an unknown value type.");
   layer.type = *type;
-  layer.resolution = static_cast<int>(rows.integer(i, 6));
-  layer.unit = rows.text(i, 7);
-  layer.description = rows.text(i, 8);
+  layer.resolution = static_cast<int>(row.integer());
+  layer.unit = row.text();
+  layer.description = row.text();
   // One damaged palette must not hide a layer's paint.
-  layer.palette = palette_from_json(rows.json(i, 9))
+  layer.palette = palette_from_json(row.json())
                       .value_or(default_palette(layer.type, layer.kind == LayerKind::database));
-  layer.opacity = rows.real(i, 10);
-  layer.visible = rows.boolean(i, 11);
-  layer.order = static_cast<int>(rows.integer(i, 12));
-  layer.table = rows.id<std::optional<TableId>>(i, 13);
+  layer.opacity = row.real();
+  layer.visible = row.boolean();
+  layer.order = static_cast<int>(row.integer());
+  layer.table = row.id<std::optional<TableId>>();
   STRATA_TRY(take_term_colors(connection, layer));
-  layer.sequence = rows.integer(i, 14);
-  layer.version = rows.integer(i, 15);
-  layer.locked = rows.boolean(i, 22);
-  layer.review = rows.boolean(i, 24);
-  layer.labels = rows.json(i, 25).get<Labels>();
-  layer.descriptions = rows.json(i, 26).get<Labels>();
-  if (!rows.null(i, 27))
-    layer.origin = rows.text(i, 27) == "shape" ? LayerOrigin::shape : LayerOrigin::expression;
-  layer.edited_by_hand = rows.boolean(i, 28);
+  layer.sequence = row.integer();
+  layer.version = row.integer();
+  layer.locked = row.boolean();
   // What cannot be told is not shown.
-  layer.visibility = parse_visibility(rows.text(i, 23)).value_or(Visibility::curators);
-  if (rows.null(i, 16)) return layer;
-  LayerFormula formula{
-      rows.text(i, 16),   rows.boolean(i, 17), rows.integer(i, 18), rows.boolean(i, 20), {},
-      rows.boolean(i, 21)};
-  for (const nlohmann::json& input : rows.json(i, 19)) {
+  layer.visibility = parse_visibility(row.text()).value_or(Visibility::curators);
+  layer.review = row.boolean();
+  layer.labels = row.json().get<Labels>();
+  layer.descriptions = row.json().get<Labels>();
+  if (const auto origin = row.optional_text())
+    layer.origin = *origin == "shape" ? LayerOrigin::shape : LayerOrigin::expression;
+  layer.edited_by_hand = row.boolean();
+  const auto expression = row.optional_text();
+  if (!expression) return layer;
+  LayerFormula formula;
+  formula.expression = *expression;
+  formula.automatic = row.boolean();
+  formula.computed_sequence = row.integer();
+  formula.records_changed = row.boolean();
+  formula.stale = row.boolean();
+  for (const nlohmann::json& input : row.json()) {
     formula.inputs.push_back({input.at("slug").get<std::string>(),
                               optional_id<LayerId>(input.at("layer")),
                               optional_id<TableId>(input.at("table"))});
@@ -92,7 +101,7 @@ Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) 
 
 Result<Layer> load_layer(PgConnection& connection, LayerId id) {
   auto row = STRATA_TRY(connection.query(
-      "SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE id = $1", Params().id(id)));
+      sql("SELECT ", kLayerColumns, " FROM layers WHERE id = $1"), Params().id(id)));
   if (row.rows() == 0) return no_such("layer", to_string(id));
   return read_layer(connection, row, 0);
 }
@@ -194,7 +203,7 @@ Result<std::vector<Layer>> Layers::of_model(ModelId model_id, Role seen_by) {
         STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1", Params().id(model_id)));
     if (known.rows() == 0) return no_such("model", to_string(model_id));
     auto rows = STRATA_TRY(connection.query(
-        "SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE model_id = $1 ORDER BY draw_order, id",
+        sql("SELECT ", kLayerColumns, " FROM layers WHERE model_id = $1 ORDER BY draw_order, id"),
         Params().id(model_id)));
     std::vector<Layer> layers;
     for (int i = 0; i < rows.rows(); ++i) {
@@ -209,12 +218,13 @@ Result<Layer> Layers::find(ModelId model_id, const std::string& ref, Role seen_b
   if (!check_text(ref, "layer")) return no_such("layer", ref);
   return pool_.read([&](PgConnection& connection) -> Result<Layer> {
     const auto id = id_of<LayerId>(ref);
-    auto rows = STRATA_TRY(id ? connection.query("SELECT " STRATA_LAYER_COLUMNS
-                                                 " FROM layers WHERE model_id = $1 AND id = $2",
-                                                 Params().id(model_id).id(*id))
-                              : connection.query("SELECT " STRATA_LAYER_COLUMNS
-                                                 " FROM layers WHERE model_id = $1 AND slug = $2",
-                                                 Params().id(model_id).text(ref)));
+    auto rows = STRATA_TRY(
+        id ? connection.query(
+                 sql("SELECT ", kLayerColumns, " FROM layers WHERE model_id = $1 AND id = $2"),
+                 Params().id(model_id).id(*id))
+           : connection.query(
+                 sql("SELECT ", kLayerColumns, " FROM layers WHERE model_id = $1 AND slug = $2"),
+                 Params().id(model_id).text(ref)));
     if (rows.rows() == 0) return no_such("layer", ref);
     auto layer = read_layer(connection, rows, 0);
     if (layer && !sees(seen_by, layer->visibility)) return no_such("layer", ref);
@@ -236,10 +246,11 @@ Result<Layer> Layers::create(Layer layer, const IdempotentResponse<Layer>& answe
         layer.model_id.number(), layer.slug.empty() ? layer.name : layer.slug,
         [&](const std::string& slug) {
           return connection.query(
-              "INSERT INTO layers (model_id, name, slug, kind, type, resolution, unit, description, palette, opacity, visible, "
-              "draw_order, table_id, locked, visibility, review, labels, descriptions) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, "
-              "$15, $16, $17, $18) "
-              "ON CONFLICT DO NOTHING RETURNING " STRATA_LAYER_COLUMNS,
+              sql("INSERT INTO layers (model_id, name, slug, kind, type, resolution, unit, description, palette, opacity, visible, "
+                  "draw_order, table_id, locked, visibility, review, labels, descriptions) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, "
+                  "$15, $16, $17, $18) "
+                  "ON CONFLICT DO NOTHING RETURNING ",
+                  kLayerColumns),
               Params()
                   .id(layer.model_id)
                   .text(layer.name)
@@ -274,9 +285,10 @@ Result<Layer> Layers::update(Layer layer, const IdempotentResponse<Layer>& answe
   STRATA_TRY(check(layer));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Layer> {
     auto row = STRATA_TRY(connection.query(
-        "UPDATE layers SET name = $3, slug = $4, unit = $5, description = $6, palette = $7, opacity = $8, visible = $9, "
-        "draw_order = $10, locked = $11, visibility = $12, review = $13, labels = $14, descriptions = $15, version = version + 1 WHERE id = $1 AND version = $2 "
-        "RETURNING " STRATA_LAYER_COLUMNS,
+        sql("UPDATE layers SET name = $3, slug = $4, unit = $5, description = $6, palette = $7, opacity = $8, visible = $9, "
+            "draw_order = $10, locked = $11, visibility = $12, review = $13, labels = $14, descriptions = $15, version = version + 1 WHERE id = $1 AND version = $2 "
+            "RETURNING ",
+            kLayerColumns),
         Params()
             .id(layer.id)
             .integer(layer.version)
@@ -349,13 +361,14 @@ Result<Layer> Layers::set_computed(LayerId layer_id, const std::string& expressi
 
 Result<std::vector<Layer>> Layers::to_recompute() {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<Layer>> {
-    auto rows = STRATA_TRY(connection.query(
-        "SELECT " STRATA_LAYER_COLUMNS
+    auto rows = STRATA_TRY(connection.query(sql(
+        "SELECT ", kLayerColumns,
         " FROM layers WHERE automatic AND NOT EXISTS (SELECT 1 FROM layer_origins o WHERE "
-        "o.layer_id = layers.id AND o.edited_by_hand) AND " STRATA_LAYER_STALE
+        "o.layer_id = layers.id AND o.edited_by_hand) AND ",
+        kLayerStale,
         " AND NOT EXISTS (SELECT 1 FROM layer_inputs i WHERE i.layer_id = layers.id AND NOT EXISTS "
         "(SELECT 1 FROM layers l WHERE l.id = i.input_id)) "
-        "ORDER BY computed_sequence, id LIMIT 100"));
+        "ORDER BY computed_sequence, id LIMIT 100")));
     std::vector<Layer> layers;
     for (int i = 0; i < rows.rows(); ++i) {
       auto layer = STRATA_TRY(read_layer(connection, rows, i));

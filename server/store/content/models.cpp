@@ -7,6 +7,7 @@
 #include "store/content/surface_image_rows.h"
 #include "store/content/surface_images.h"
 #include "store/pg/blobs.h"
+#include "store/pg/pg_row.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
@@ -21,44 +22,43 @@ constexpr const char* kSelectModels =
     "ORDER BY s.position), '[]') FROM model_sources s JOIN blobs b USING (sha256) WHERE s.model_id = m.id) "
     "FROM models m ";
 
-glm::dvec3 read_vec3(const PgResult& rows, int i, int column) {
-  const auto v = rows.reals(i, column);
+glm::dvec3 vec3_of(const std::vector<double>& v) {
   return v.size() == 3 ? glm::dvec3(v[0], v[1], v[2]) : glm::dvec3(0);
 }
 
 Model read_model(const PgResult& rows, int i) {
+  PgRow row(rows, i);
   Model m;
-  int c = 0;
-  m.id = rows.id<ModelId>(i, c++);
-  m.project_id = rows.id<ProjectId>(i, c++);
-  m.name = rows.text(i, c++);
-  m.slug = rows.text(i, c++);
-  m.unit = parse_unit(rows.text(i, c++)).value_or(Unit::m);
-  m.unit_assumed = rows.boolean(i, c++);
-  m.scale_verified = rows.boolean(i, c++);
-  m.up = rows.text(i, c++);
-  m.north = rows.text(i, c++);
-  m.crs = rows.text(i, c++);
-  m.origin = read_vec3(rows, i, c++);
-  m.bounds_min = read_vec3(rows, i, c++);
-  m.bounds_max = read_vec3(rows, i, c++);
-  m.triangles = static_cast<std::uint64_t>(rows.integer(i, c++));
-  m.vertices = static_cast<std::uint64_t>(rows.integer(i, c++));
-  m.area = rows.real(i, c++);
-  m.atlas = atlas_from_json(rows.json(i, c++));
-  for (const auto& repair : rows.json(i, c++))
+  m.id = row.id<ModelId>();
+  m.project_id = row.id<ProjectId>();
+  m.name = row.text();
+  m.slug = row.text();
+  m.unit = parse_unit(row.text()).value_or(Unit::m);
+  m.unit_assumed = row.boolean();
+  m.scale_verified = row.boolean();
+  m.up = row.text();
+  m.north = row.text();
+  m.crs = row.text();
+  m.origin = vec3_of(row.reals());
+  m.bounds_min = vec3_of(row.reals());
+  m.bounds_max = vec3_of(row.reals());
+  m.triangles = static_cast<std::uint64_t>(row.integer());
+  m.vertices = static_cast<std::uint64_t>(row.integer());
+  m.area = row.real();
+  m.atlas = atlas_from_json(row.json());
+  for (const auto& repair : row.json())
     m.repairs.push_back(
         {repair.value("what", std::string()), repair.value("count", std::uint64_t{0})});
-  m.default_resolution = static_cast<int>(rows.integer(i, c++));
+  m.default_resolution = static_cast<int>(row.integer());
   for (std::string* text : {&m.inventory_number, &m.owner, &m.creator, &m.captured, &m.method,
                             &m.accuracy, &m.processing, &m.rights_uri, &m.credit})
-    *text = rows.text(i, c++);
+    *text = row.text();
   // What cannot be told is not given away.
-  m.source_download = parse_role(rows.text(i, c++)).value_or(Role::curator);
-  m.sequence = rows.integer(i, c++);
-  m.version = rows.integer(i, c++);
-  m.proposal = scale_proposal_from_json(rows.json(i, c++));
-  for (const auto& file : rows.json(i, c++))
+  m.source_download = parse_role(row.text()).value_or(Role::curator);
+  m.sequence = row.integer();
+  m.version = row.integer();
+  m.proposal = scale_proposal_from_json(row.json());
+  for (const auto& file : row.json())
     m.source_files.push_back({file.at("name"), file.at("sha256"), file.at("bytes")});
   return m;
 }

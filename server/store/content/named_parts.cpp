@@ -1,20 +1,22 @@
 #include "store/content/named_parts.h"
 
+#include "store/pg/pg_row.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
 namespace {
 
 NamedPart read_part(const PgResult& rows, int i) {
-  return {rows.id<NamedPartId>(i, 0),
-          rows.id<ModelId>(i, 1),
-          rows.text(i, 2),
-          rows.text(i, 3),
-          rows.text(i, 4),
-          rows.json(i, 5),
-          rows.text(i, 6),
-          rows.time(i, 7),
-          rows.integer(i, 8)};
+  PgRow row(rows, i);
+  return {row.id<NamedPartId>(),
+          row.id<ModelId>(),
+          row.text(),
+          row.text(),
+          row.text(),
+          row.json(),
+          row.text(),
+          row.time(),
+          row.integer()};
 }
 
 Result<void> check_part(const NamedPart& part) {

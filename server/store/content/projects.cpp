@@ -1,12 +1,13 @@
 #include "store/content/projects.h"
+#include "store/pg/pg_row.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
 namespace {
 
 Project read_project(const PgResult& rows, int i) {
-  return {rows.id<ProjectId>(i, 0), rows.text(i, 1),    rows.text(i, 2),
-          rows.text(i, 3),          rows.integer(i, 4), rows.boolean(i, 5)};
+  PgRow row(rows, i);
+  return {row.id<ProjectId>(), row.text(), row.text(), row.text(), row.integer(), row.boolean()};
 }
 
 Result<void> check(const Project& project) {

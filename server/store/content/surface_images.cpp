@@ -2,32 +2,34 @@
 
 #include "store/content/surface_image_rows.h"
 #include "store/pg/blobs.h"
+#include "store/pg/pg_row.h"
+#include "store/pg/sql.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
 namespace {
 
-#define STRATA_SURFACE_IMAGE_COLUMNS                                                                                \
-  "id, model_id, name, slug::text, description, media_type, width, height, opacity, visible, draw_order, version, " \
-  "encode(picture, 'hex'), (SELECT b.bytes FROM blobs b WHERE b.sha256 = picture)"
+constexpr auto kSurfaceImageColumns = sql(
+    "id, model_id, name, slug::text, description, media_type, width, height, opacity, visible, draw_order, version, "
+    "encode(picture, 'hex'), (SELECT b.bytes FROM blobs b WHERE b.sha256 = picture)");
 
 SurfaceImage read_surface_image(const PgResult& rows, int i) {
+  PgRow row(rows, i);
   SurfaceImage image;
-  int c = 0;
-  image.id = rows.id<SurfaceImageId>(i, c++);
-  image.model_id = rows.id<ModelId>(i, c++);
-  image.name = rows.text(i, c++);
-  image.slug = rows.text(i, c++);
-  image.description = rows.text(i, c++);
-  image.media_type = rows.text(i, c++);
-  image.width = static_cast<int>(rows.integer(i, c++));
-  image.height = static_cast<int>(rows.integer(i, c++));
-  image.opacity = rows.real(i, c++);
-  image.visible = rows.boolean(i, c++);
-  image.order = static_cast<int>(rows.integer(i, c++));
-  image.version = rows.integer(i, c++);
-  image.sha256 = rows.text(i, c++);
-  image.bytes = static_cast<std::uint64_t>(rows.integer(i, c++));
+  image.id = row.id<SurfaceImageId>();
+  image.model_id = row.id<ModelId>();
+  image.name = row.text();
+  image.slug = row.text();
+  image.description = row.text();
+  image.media_type = row.text();
+  image.width = static_cast<int>(row.integer());
+  image.height = static_cast<int>(row.integer());
+  image.opacity = row.real();
+  image.visible = row.boolean();
+  image.order = static_cast<int>(row.integer());
+  image.version = row.integer();
+  image.sha256 = row.text();
+  image.bytes = static_cast<std::uint64_t>(row.integer());
   return image;
 }
 
@@ -54,9 +56,10 @@ Result<SurfaceImage> insert_surface_image(PgConnection& connection, const Surfac
       image.model_id.number(), image.slug.empty() ? image.name : image.slug,
       [&](const std::string& slug) {
         return connection.query(
-            "INSERT INTO looks (model_id, name, slug, description, media_type, width, height, opacity, visible, draw_order, "
-            "picture) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11) "
-            "ON CONFLICT (model_id, slug) DO NOTHING RETURNING " STRATA_SURFACE_IMAGE_COLUMNS,
+            sql("INSERT INTO looks (model_id, name, slug, description, media_type, width, height, opacity, visible, draw_order, "
+                "picture) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11) "
+                "ON CONFLICT (model_id, slug) DO NOTHING RETURNING ",
+                kSurfaceImageColumns),
             Params()
                 .id(image.model_id)
                 .text(image.name)
@@ -79,8 +82,8 @@ Result<std::vector<SurfaceImage>> SurfaceImages::of_model(ModelId model_id) {
         STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1", Params().id(model_id)));
     if (known.rows() == 0) return no_such("model", to_string(model_id));
     auto rows =
-        STRATA_TRY(connection.query("SELECT " STRATA_SURFACE_IMAGE_COLUMNS
-                                    " FROM looks WHERE model_id = $1 ORDER BY draw_order, id",
+        STRATA_TRY(connection.query(sql("SELECT ", kSurfaceImageColumns,
+                                        " FROM looks WHERE model_id = $1 ORDER BY draw_order, id"),
                                     Params().id(model_id)));
     std::vector<SurfaceImage> images;
     for (int i = 0; i < rows.rows(); ++i) images.push_back(read_surface_image(rows, i));
@@ -92,12 +95,13 @@ Result<SurfaceImage> SurfaceImages::find(ModelId model_id, const std::string& re
   if (!check_text(ref, "look")) return no_such("look", ref);
   return pool_.read([&](PgConnection& connection) -> Result<SurfaceImage> {
     const auto id = id_of<SurfaceImageId>(ref);
-    auto rows = STRATA_TRY(id ? connection.query("SELECT " STRATA_SURFACE_IMAGE_COLUMNS
-                                                 " FROM looks WHERE model_id = $1 AND id = $2",
-                                                 Params().id(model_id).id(*id))
-                              : connection.query("SELECT " STRATA_SURFACE_IMAGE_COLUMNS
-                                                 " FROM looks WHERE model_id = $1 AND slug = $2",
-                                                 Params().id(model_id).text(ref)));
+    auto rows =
+        STRATA_TRY(id ? connection.query(sql("SELECT ", kSurfaceImageColumns,
+                                             " FROM looks WHERE model_id = $1 AND id = $2"),
+                                         Params().id(model_id).id(*id))
+                      : connection.query(sql("SELECT ", kSurfaceImageColumns,
+                                             " FROM looks WHERE model_id = $1 AND slug = $2"),
+                                         Params().id(model_id).text(ref)));
     if (rows.rows() == 0) return no_such("look", ref);
     return read_surface_image(rows, 0);
   });
@@ -130,8 +134,9 @@ Result<SurfaceImage> SurfaceImages::update(const SurfaceImage& image,
   STRATA_TRY(check_surface_image(image));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<SurfaceImage> {
     auto row = STRATA_TRY(connection.query(
-        "UPDATE looks SET name = $3, slug = $4, description = $5, opacity = $6, visible = $7, draw_order = $8, "
-        "version = version + 1 WHERE id = $1 AND version = $2 RETURNING " STRATA_SURFACE_IMAGE_COLUMNS,
+        sql("UPDATE looks SET name = $3, slug = $4, description = $5, opacity = $6, visible = $7, draw_order = $8, "
+            "version = version + 1 WHERE id = $1 AND version = $2 RETURNING ",
+            kSurfaceImageColumns),
         Params()
             .id(image.id)
             .integer(image.version)

@@ -1,14 +1,16 @@
 #include "store/content/tools.h"
+#include "store/pg/pg_row.h"
+#include "store/pg/sql.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
 namespace {
 
-#define STRATA_TOOL_COLUMNS "id, name, slug::text, deleted IS NOT NULL, version"
+constexpr auto kToolColumns = sql("id, name, slug::text, deleted IS NOT NULL, version");
 
 Tool read_tool(const PgResult& rows, int i) {
-  return {rows.id<ToolId>(i, 0), rows.text(i, 1), rows.text(i, 2), rows.boolean(i, 3),
-          rows.integer(i, 4)};
+  PgRow row(rows, i);
+  return {row.id<ToolId>(), row.text(), row.text(), row.boolean(), row.integer()};
 }
 
 constexpr std::size_t kShapeBytes = sizeof(ShapeBits);
@@ -32,8 +34,8 @@ ShapeBits bits_of(Bytes bytes) {
 Result<std::vector<Tool>> Tools::all() {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<Tool>> {
     auto rows =
-        connection.query("SELECT " STRATA_TOOL_COLUMNS
-                         " FROM tool_shapes WHERE deleted IS NULL ORDER BY lower(name), id");
+        connection.query(sql("SELECT ", kToolColumns,
+                             " FROM tool_shapes WHERE deleted IS NULL ORDER BY lower(name), id"));
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Tool> tools;
     for (int i = 0; i < rows->rows(); ++i) tools.push_back(read_tool(*rows, i));
@@ -46,10 +48,10 @@ Result<Tool> Tools::find(const std::string& ref) {
   return pool_.read([&](PgConnection& connection) -> Result<Tool> {
     const auto id = id_of<ToolId>(ref);
     auto rows =
-        id ? connection.query("SELECT " STRATA_TOOL_COLUMNS " FROM tool_shapes WHERE id = $1",
+        id ? connection.query(sql("SELECT ", kToolColumns, " FROM tool_shapes WHERE id = $1"),
                               Params().id(*id))
-           : connection.query("SELECT " STRATA_TOOL_COLUMNS
-                              " FROM tool_shapes WHERE slug = $1 AND deleted IS NULL",
+           : connection.query(sql("SELECT ", kToolColumns,
+                                  " FROM tool_shapes WHERE slug = $1 AND deleted IS NULL"),
                               Params().text(ref));
     if (!rows) return tl::unexpected(rows.error());
     if (rows->rows() == 0) return no_such("tool", ref);
@@ -76,8 +78,9 @@ Result<Tool> Tools::create(const Tool& tool, const ShapeBits& shape,
         "UNION ALL SELECT unnest(ARRAY['disc', 'square'])",
         {}, tool.slug.empty() ? tool.name : tool.slug, [&](const std::string& slug) {
           return connection.query(
-              "INSERT INTO tool_shapes (name, slug, cells) VALUES ($1, $2, $3) "
-              "ON CONFLICT (slug) WHERE deleted IS NULL DO NOTHING RETURNING " STRATA_TOOL_COLUMNS,
+              sql("INSERT INTO tool_shapes (name, slug, cells) VALUES ($1, $2, $3) "
+                  "ON CONFLICT (slug) WHERE deleted IS NULL DO NOTHING RETURNING ",
+                  kToolColumns),
               Params().text(tool.name).text(slug).bytes(cells));
         }));
     return read_tool(row, 0);
@@ -88,8 +91,9 @@ Result<Tool> Tools::update(const Tool& tool, const IdempotentResponse<Tool>& ans
   STRATA_TRY(check_name(tool.name));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Tool> {
     auto row = STRATA_TRY(connection.query(
-        "UPDATE tool_shapes SET name = $3, version = version + 1 WHERE id = $1 AND version = $2 AND deleted IS NULL "
-        "RETURNING " STRATA_TOOL_COLUMNS,
+        sql("UPDATE tool_shapes SET name = $3, version = version + 1 WHERE id = $1 AND version = $2 AND deleted IS NULL "
+            "RETURNING ",
+            kToolColumns),
         Params().id(tool.id).integer(tool.version).text(tool.name)));
     if (row.rows() > 0) return read_tool(row, 0);
     auto known = STRATA_TRY(connection.query(

@@ -1,6 +1,8 @@
 #include "store/content/trash.h"
 
 #include "store/pg/blobs.h"
+#include "store/pg/pg_row.h"
+#include "store/pg/sql.h"
 #include "store/store_impl.h"
 #include "store/tables/table_writer.h"
 
@@ -14,20 +16,20 @@ constexpr int kRowsAtOnce = 2000;
 // What is in the Trash of project $1 and of a model that is there: layers and models that have one
 // of the visibilities $2 where $3 (curators), and records that were deleted in the last $4 days and
 // not made again since.
-#define STRATA_TRASH                                                                                                    \
-  "(SELECT 'layer' AS kind, l.id, l.name, l.model_id, m.name AS model_name, 0::bigint AS table_id, '' AS table_name, "  \
-  "l.binned_by, l.binned, l.binned_bytes FROM all_layers l JOIN models m ON m.id = l.model_id WHERE m.project_id = $1 " \
-  "AND l.binned IS NOT NULL AND NOT l.erasing AND l.visibility = any($2) AND $3 UNION ALL "                             \
-  "SELECT 'model', id, name, id, '', 0, '', binned_by, binned, binned_bytes FROM all_models "                           \
-  "WHERE project_id = $1 AND binned IS NOT NULL AND NOT erasing AND $3 UNION ALL "                                      \
-  "SELECT 'record', c.subject_id, coalesce(nullif((SELECT c.before ->> r.id::text FROM record_columns r "               \
-  "WHERE r.table_id = c.table_id AND r.kind = 'text' AND NOT r.hidden AND r.visibility = any($2) "                      \
-  "ORDER BY (r.properties ->> 'order')::integer, r.id LIMIT 1), ''), c.subject_id::text), 0, '', t.id, t.name, "        \
-  "e.user_name, e.time, 0 FROM record_tables t JOIN table_edits e ON e.table_id = t.id "                                \
-  "JOIN table_changes c ON c.table_id = t.id AND c.sequence = e.sequence WHERE t.project_id = $1 "                      \
-  "AND e.time > clock_timestamp() - $4 * interval '1 day' AND e.op IN ('delete', 'redo') AND c.subject = 'record' "     \
-  "AND c.after -> 'exists' = 'false' AND NOT EXISTS (SELECT 1 FROM table_changes n WHERE n.table_id = c.table_id "      \
-  "AND n.subject = 'record' AND n.subject_id = c.subject_id AND n.sequence > c.sequence AND n.after ? 'exists')) bin "
+constexpr auto kTrash = sql(
+    "(SELECT 'layer' AS kind, l.id, l.name, l.model_id, m.name AS model_name, 0::bigint AS table_id, '' AS table_name, "
+    "l.binned_by, l.binned, l.binned_bytes FROM all_layers l JOIN models m ON m.id = l.model_id WHERE m.project_id = $1 "
+    "AND l.binned IS NOT NULL AND NOT l.erasing AND l.visibility = any($2) AND $3 UNION ALL "
+    "SELECT 'model', id, name, id, '', 0, '', binned_by, binned, binned_bytes FROM all_models "
+    "WHERE project_id = $1 AND binned IS NOT NULL AND NOT erasing AND $3 UNION ALL "
+    "SELECT 'record', c.subject_id, coalesce(nullif((SELECT c.before ->> r.id::text FROM record_columns r "
+    "WHERE r.table_id = c.table_id AND r.kind = 'text' AND NOT r.hidden AND r.visibility = any($2) "
+    "ORDER BY (r.properties ->> 'order')::integer, r.id LIMIT 1), ''), c.subject_id::text), 0, '', t.id, t.name, "
+    "e.user_name, e.time, 0 FROM record_tables t JOIN table_edits e ON e.table_id = t.id "
+    "JOIN table_changes c ON c.table_id = t.id AND c.sequence = e.sequence WHERE t.project_id = $1 "
+    "AND e.time > clock_timestamp() - $4 * interval '1 day' AND e.op IN ('delete', 'redo') AND c.subject = 'record' "
+    "AND c.after -> 'exists' = 'false' AND NOT EXISTS (SELECT 1 FROM table_changes n WHERE n.table_id = c.table_id "
+    "AND n.subject = 'record' AND n.subject_id = c.subject_id AND n.sequence > c.sequence AND n.after ? 'exists')) bin ");
 
 Params seen_in(ProjectId project_id, const Trash::Sight& sight) {
   Params params;
@@ -39,18 +41,19 @@ Params seen_in(ProjectId project_id, const Trash::Sight& sight) {
 }
 
 TrashEntry read_entry(const PgResult& rows, int i) {
+  PgRow row(rows, i);
   TrashEntry entry;
-  const std::string kind = rows.text(i, 0);
+  const std::string kind = row.text();
   entry.kind = kind == "layer" ? Kind::layer : kind == "model" ? Kind::model : Kind::record;
-  entry.id = rows.integer(i, 1);
-  entry.name = rows.text(i, 2);
-  entry.model_id = rows.id<ModelId>(i, 3);
-  entry.model_name = rows.text(i, 4);
-  entry.table_id = rows.id<TableId>(i, 5);
-  entry.table_name = rows.text(i, 6);
-  entry.user = rows.text(i, 7);
-  entry.deleted = rows.time(i, 8);
-  entry.bytes = static_cast<std::uint64_t>(rows.integer(i, 9));
+  entry.id = row.integer();
+  entry.name = row.text();
+  entry.model_id = row.id<ModelId>();
+  entry.model_name = row.text();
+  entry.table_id = row.id<TableId>();
+  entry.table_name = row.text();
+  entry.user = row.text();
+  entry.deleted = row.time();
+  entry.bytes = static_cast<std::uint64_t>(row.integer());
   return entry;
 }
 
@@ -82,13 +85,13 @@ Result<void> erase_layer(PgConnection& connection, LayerId id) {
 }
 
 // The blobs of model $1.
-#define STRATA_BLOBS_OF_MODEL                                                                                       \
-  "SELECT geometry FROM all_models WHERE id = $1 UNION "                                                            \
-  "SELECT sha256 FROM model_sources WHERE model_id = $1 UNION SELECT picture FROM looks WHERE model_id = $1 UNION " \
-  "SELECT geometry FROM detail_levels WHERE model_id = $1"
+constexpr auto kBlobsOfModel = sql(
+    "SELECT geometry FROM all_models WHERE id = $1 UNION "
+    "SELECT sha256 FROM model_sources WHERE model_id = $1 UNION SELECT picture FROM looks WHERE model_id = $1 UNION "
+    "SELECT geometry FROM detail_levels WHERE model_id = $1");
 
 Result<void> erase_model(PgConnection& connection, ModelId id) {
-  auto used = STRATA_TRY(connection.query(STRATA_BLOBS_OF_MODEL, Params().id(id)));
+  auto used = STRATA_TRY(connection.query(kBlobsOfModel, Params().id(id)));
   std::vector<std::vector<std::uint8_t>> hashes;
   for (int i = 0; i < used.rows(); ++i) {
     const Bytes hash = used.bytes(i, 0);
@@ -102,13 +105,13 @@ Result<Trash::Page> Trash::of_project(ProjectId project_id, const Sight& sight, 
                                       int offset, const std::optional<Place>& after) {
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
     auto total = STRATA_TRY(
-        connection.query("SELECT count(*) FROM " STRATA_TRASH, seen_in(project_id, sight)));
+        connection.query(sql("SELECT count(*) FROM ", kTrash), seen_in(project_id, sight)));
     const Place place = after.value_or(Place{});
     auto rows = STRATA_TRY(connection.query(
-        "SELECT * FROM " STRATA_TRASH
-        "CROSS JOIN (SELECT timestamptz 'epoch' + $7::bigint * interval '1 microsecond' AS time) place "
-        "WHERE NOT $8 OR binned < place.time OR (binned = place.time AND (kind, table_id, id) > ($9, $10::bigint, $11::bigint)) "
-        "ORDER BY binned DESC, kind, table_id, id LIMIT $5 OFFSET $6",
+        sql("SELECT * FROM ", kTrash,
+            "CROSS JOIN (SELECT timestamptz 'epoch' + $7::bigint * interval '1 microsecond' AS time) place "
+            "WHERE NOT $8 OR binned < place.time OR (binned = place.time AND (kind, table_id, id) > ($9, $10::bigint, $11::bigint)) "
+            "ORDER BY binned DESC, kind, table_id, id LIMIT $5 OFFSET $6"),
         seen_in(project_id, sight)
             .integer(limit)
             .integer(offset)
@@ -128,7 +131,7 @@ Result<TrashEntry> Trash::entry(ProjectId project_id, Kind kind, std::int64_t id
                                 const Sight& sight) {
   return pool_.read([&](PgConnection& connection) -> Result<TrashEntry> {
     auto rows = STRATA_TRY(connection.query(
-        "SELECT * FROM " STRATA_TRASH "WHERE kind = $5 AND id = $6 AND table_id = $7",
+        sql("SELECT * FROM ", kTrash, "WHERE kind = $5 AND id = $6 AND table_id = $7"),
         seen_in(project_id, sight).text(name_of(kind)).integer(id).id(table_id)));
     if (rows.rows() == 0)
       return fail(ErrorCode::not_found, "Not in the Bin",
@@ -155,11 +158,12 @@ Result<void> Trash::put_model(ModelId id, const IdempotentResponse<>& answer) {
   const auto work = [&](PgConnection& connection) {
     return changed_one(
         connection.query(
-            "UPDATE all_models SET binned = clock_timestamp(), binned_by = activity_author(), binned_bytes = "
-            "(SELECT coalesce(sum(octet_length(r.difference) + coalesce(octet_length(r.key_tile), 0)), 0) "
-            "FROM tile_revisions r JOIN all_layers l ON l.id = r.layer_id WHERE l.model_id = $1) + "
-            "(SELECT coalesce(sum(b.bytes), 0) FROM blobs b WHERE b.sha256 IN "
-            "(" STRATA_BLOBS_OF_MODEL ")) WHERE id = $1 AND binned IS NULL",
+            sql("UPDATE all_models SET binned = clock_timestamp(), binned_by = activity_author(), binned_bytes = "
+                "(SELECT coalesce(sum(octet_length(r.difference) + coalesce(octet_length(r.key_tile), 0)), 0) "
+                "FROM tile_revisions r JOIN all_layers l ON l.id = r.layer_id WHERE l.model_id = $1) + "
+                "(SELECT coalesce(sum(b.bytes), 0) FROM blobs b WHERE b.sha256 IN "
+                "(",
+                kBlobsOfModel, ")) WHERE id = $1 AND binned IS NULL"),
             Params().id(id)),
         Kind::model, id.number());
   };

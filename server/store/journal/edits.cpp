@@ -1,21 +1,26 @@
 #include "store/journal/journal_reads.h"
+#include "store/pg/pg_row.h"
+#include "store/pg/sql.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
 namespace {
 
-#define STRATA_EDIT_COLUMNS                                                                                        \
-  "e.sequence, e.id, e.stroke, e.user_name, e.op, e.record, e.answer, e.time, e.in_force, e.review, r.user_name, " \
-  "r.record ->> 'reason', r.time FROM edits e LEFT JOIN edits r ON r.model_id = e.model_id AND r.sequence = e.reviewed_by "
+constexpr auto kEditColumns = sql(
+    "e.sequence, e.id, e.stroke, e.user_name, e.op, e.record, e.answer, e.time, e.in_force, e.review, r.user_name, "
+    "r.record ->> 'reason', r.time FROM edits e LEFT JOIN edits r ON r.model_id = e.model_id AND r.sequence = e.reviewed_by ");
 
 JournalRow read_row(const PgResult& rows, int i) {
-  JournalRow row{rows.integer(i, 0), rows.uuid(i, 1), rows.uuid(i, 2),
-                 rows.text(i, 3),    rows.text(i, 4), rows.json(i, 5),
-                 rows.json(i, 6),    rows.time(i, 7), rows.boolean(i, 8)};
-  if (!rows.null(i, 9)) row.review = parse_review(rows.text(i, 9)).value_or(Review::none);
-  if (!rows.null(i, 10))
-    row.reviewer = {rows.text(i, 10), rows.null(i, 11) ? std::string() : rows.text(i, 11),
-                    rows.time(i, 12)};
+  PgRow columns(rows, i);
+  JournalRow row{columns.integer(), columns.uuid(), columns.uuid(),
+                 columns.text(),    columns.text(), columns.json(),
+                 columns.json(),    columns.time(), columns.boolean()};
+  if (const auto review = columns.optional_text())
+    row.review = parse_review(*review).value_or(Review::none);
+  if (const auto reviewer = columns.optional_text()) {
+    const auto reason = columns.optional_text();
+    row.reviewer = {*reviewer, reason.value_or(""), columns.time()};
+  }
   return row;
 }
 
@@ -37,8 +42,8 @@ Result<HistoryPage> Journal::history(LayerId layer_id, int limit, int offset,
         Params().id(layer_id)));
     if (total.rows() == 0) return no_such("layer", to_string(layer_id));
     auto rows = STRATA_TRY(connection.query(
-        "SELECT " STRATA_EDIT_COLUMNS
-        "WHERE e.layer_id = $1 AND e.sequence < $4 ORDER BY e.sequence DESC LIMIT $2 OFFSET $3",
+        sql("SELECT ", kEditColumns,
+            "WHERE e.layer_id = $1 AND e.sequence < $4 ORDER BY e.sequence DESC LIMIT $2 OFFSET $3"),
         Params()
             .id(layer_id)
             .integer(std::max(limit, 0))
@@ -62,7 +67,7 @@ Result<JournalState> Journal::state(ModelId model_id, std::span<const Uuid> ids)
     JournalState state{model->integer(0, 0), {}};
     if (ids.empty()) return state;
     auto rows =
-        connection.query("SELECT " STRATA_EDIT_COLUMNS "WHERE e.model_id = $1 AND e.id = any($2)",
+        connection.query(sql("SELECT ", kEditColumns, "WHERE e.model_id = $1 AND e.id = any($2)"),
                          Params().id(model_id).array(wanted));
     if (!rows) return tl::unexpected(rows.error());
     for (int i = 0; i < rows->rows(); ++i) state.known.push_back(read_row(*rows, i));
@@ -126,19 +131,18 @@ Result<std::int64_t> Journal::last_sequence(ModelId model_id) {
 
 Result<void> rename_in_journal(PgConnection& connection, const std::string& name,
                                const std::string& former) {
-  for (const char* sql :
+  constexpr auto kReasons = sql("UPDATE edits SET record = jsonb_set(record, '{reason}', to_jsonb(",
+                                mention_renamed("record ->> 'reason'", "1000"),
+                                ")) WHERE op IN ('accept', 'reject', 'reopen') AND ",
+                                mentions_them("record ->> 'reason'"));
+  for (const char* statement :
        {"UPDATE edits SET user_name = $2 WHERE user_name = $1",
         // Decisions on what waited for review tell whose edits were meant, and a reason in words.
         // Other records may be large.
         "UPDATE edits SET record = jsonb_set(record, '{user}', to_jsonb($2::text)) "
         "WHERE op IN ('accept', 'reject', 'reopen') AND record ->> 'user' = $1",
-        "UPDATE edits SET record = jsonb_set(record, '{reason}', "
-        "to_jsonb(" STRATA_CALL_RENAMED(
-            "record ->> 'reason'",
-            "1000") ")) "
-                    "WHERE op IN ('accept', 'reject', 'reopen') AND " STRATA_CALLS_THEM(
-                        "record ->> 'reason'")})
-    STRATA_TRY(connection.query(sql, Params().text(name).text(former)));
+        kReasons.c_str()})
+    STRATA_TRY(connection.query(statement, Params().text(name).text(former)));
   return {};
 }
 

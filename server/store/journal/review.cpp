@@ -1,4 +1,5 @@
 #include "store/journal/journal_reads.h"
+#include "store/pg/pg_row.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
@@ -32,11 +33,12 @@ Result<ReviewQueue> Journal::review_queue(LayerId layer_id, const std::optional<
             .integer(std::max(limit, 0))
             .integer(std::max(offset, 0))
             .integer(after)));
-    for (int i = 0; i < rows.rows(); ++i)
-      queue.strokes.push_back({rows.uuid(i, 0), rows.integer(i, 1), rows.integer(i, 2),
-                               rows.text(i, 3), rows.text(i, 4), rows.time(i, 5), rows.time(i, 6),
-                               static_cast<std::uint64_t>(rows.integer(i, 7)), rows.real(i, 8),
-                               rows.json(i, 9)});
+    for (int i = 0; i < rows.rows(); ++i) {
+      PgRow row(rows, i);
+      queue.strokes.push_back({row.uuid(), row.integer(), row.integer(), row.text(), row.text(),
+                               row.time(), row.time(), static_cast<std::uint64_t>(row.integer()),
+                               row.real(), row.json()});
+    }
     return queue;
   });
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "store/pg/pg_row.h"
+#include "store/pg/sql.h"
 #include "store/store_impl.h"
 
 // Who changes a group locks it first, and people after it, by their names: what is said of both in
@@ -13,12 +15,13 @@ namespace {
 
 constexpr std::size_t kMaxGroupNameLength = 100;  // characters
 
-#define STRATA_GROUP_COLUMNS                                                      \
-  "g.id, g.name, (SELECT count(*) FROM group_people p WHERE p.group_id = g.id), " \
-  "(SELECT count(*) FROM project_groups r WHERE r.group_id = g.id)"
+constexpr auto kGroupColumns =
+    sql("g.id, g.name, (SELECT count(*) FROM group_people p WHERE p.group_id = g.id), "
+        "(SELECT count(*) FROM project_groups r WHERE r.group_id = g.id)");
 
 Group read_group(const PgResult& rows, int i) {
-  return {rows.id<GroupId>(i, 0), rows.text(i, 1), rows.integer(i, 2), rows.integer(i, 3)};
+  PgRow row(rows, i);
+  return {row.id<GroupId>(), row.text(), row.integer(), row.integer()};
 }
 
 Role read_role(const PgResult& rows, int row, int column) {
@@ -26,10 +29,9 @@ Role read_role(const PgResult& rows, int row, int column) {
 }
 
 Result<Group> load(PgConnection& connection, GroupId id, bool lock) {
-  auto rows = STRATA_TRY(connection.query(
-      lock ? "SELECT " STRATA_GROUP_COLUMNS " FROM groups g WHERE g.id = $1 FOR UPDATE"
-           : "SELECT " STRATA_GROUP_COLUMNS " FROM groups g WHERE g.id = $1",
-      Params().id(id)));
+  constexpr auto kRead = sql("SELECT ", kGroupColumns, " FROM groups g WHERE g.id = $1");
+  constexpr auto kLock = sql(kRead, " FOR UPDATE");
+  auto rows = STRATA_TRY(connection.query(lock ? kLock.c_str() : kRead.c_str(), Params().id(id)));
   if (rows.rows() == 0) return no_such("group", to_string(id));
   return read_group(rows, 0);
 }
@@ -184,7 +186,7 @@ Result<void> join_groups(PgConnection& connection, PersonId person_id,
 Result<std::vector<Group>> Groups::all() {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<Group>> {
     auto rows =
-        connection.query("SELECT " STRATA_GROUP_COLUMNS " FROM groups g ORDER BY lower(g.name)");
+        connection.query(sql("SELECT ", kGroupColumns, " FROM groups g ORDER BY lower(g.name)"));
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Group> groups;
     for (int i = 0; i < rows->rows(); ++i) groups.push_back(read_group(*rows, i));
@@ -248,9 +250,9 @@ Result<std::vector<std::string>> Groups::remove(GroupId id, const std::string& b
 Result<std::vector<ProjectGroup>> Groups::of_project(ProjectId project_id) {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<ProjectGroup>> {
     auto rows =
-        connection.query("SELECT " STRATA_GROUP_COLUMNS
-                         ", i.role FROM project_groups i JOIN groups g ON g.id = i.group_id "
-                         "WHERE i.project_id = $1 ORDER BY lower(g.name)",
+        connection.query(sql("SELECT ", kGroupColumns,
+                             ", i.role FROM project_groups i JOIN groups g ON g.id = i.group_id "
+                             "WHERE i.project_id = $1 ORDER BY lower(g.name)"),
                          Params().id(project_id));
     if (!rows) return tl::unexpected(rows.error());
     std::vector<ProjectGroup> groups;

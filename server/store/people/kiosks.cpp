@@ -2,43 +2,46 @@
 
 #include "core/digest.h"
 #include "core/secret.h"
+#include "store/pg/pg_row.h"
+#include "store/pg/sql.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
 namespace {
 
-#define STRATA_KIOSKS                                                                                       \
-  "SELECT k.id, k.name, t.id, m.id, p.id, t.slug, t.name, m.slug, m.name, p.slug, k.user_name, k.created, " \
-  "k.expires, k.last_seen, k.revoked, k.wants_reload FROM kiosks k JOIN tours t ON t.id = k.tour_id "       \
-  "JOIN models m ON m.id = t.model_id JOIN projects p ON p.id = m.project_id "
-#define STRATA_GOOD_KIOSK "(k.revoked IS NULL AND (k.expires IS NULL OR k.expires > now()))"
+constexpr auto kKiosks = sql(
+    "SELECT k.id, k.name, t.id, m.id, p.id, t.slug, t.name, m.slug, m.name, p.slug, k.user_name, k.created, "
+    "k.expires, k.last_seen, k.revoked, k.wants_reload FROM kiosks k JOIN tours t ON t.id = k.tour_id "
+    "JOIN models m ON m.id = t.model_id JOIN projects p ON p.id = m.project_id ");
+constexpr auto kGoodKiosk = sql("(k.revoked IS NULL AND (k.expires IS NULL OR k.expires > now()))");
 // Others are cleared away when the next link is made; none is listed longer.
-#define STRATA_LISTED_KIOSK \
-  "(least(k.revoked, k.expires) IS NULL OR least(k.revoked, k.expires) > now() - interval '30 days')"
+constexpr auto kListedKiosk = sql(
+    "(least(k.revoked, k.expires) IS NULL OR least(k.revoked, k.expires) > now() - interval '30 days')");
 
 Kiosk read_kiosk(const PgResult& rows, int i) {
+  PgRow row(rows, i);
   Kiosk kiosk;
-  kiosk.id = rows.id<KioskId>(i, 0);
-  kiosk.name = rows.text(i, 1);
-  kiosk.tour_id = rows.id<NamedPartId>(i, 2);
-  kiosk.model_id = rows.id<ModelId>(i, 3);
-  kiosk.project_id = rows.id<ProjectId>(i, 4);
-  kiosk.tour = rows.text(i, 5);
-  kiosk.tour_name = rows.text(i, 6);
-  kiosk.model = rows.text(i, 7);
-  kiosk.model_name = rows.text(i, 8);
-  kiosk.project = rows.text(i, 9);
-  kiosk.user = rows.text(i, 10);
-  kiosk.created = rows.time(i, 11);
-  if (!rows.null(i, 12)) kiosk.expires = rows.time(i, 12);
-  if (!rows.null(i, 13)) kiosk.last_seen = rows.time(i, 13);
-  if (!rows.null(i, 14)) kiosk.revoked = rows.time(i, 14);
-  kiosk.wants_reload = rows.boolean(i, 15);
+  kiosk.id = row.id<KioskId>();
+  kiosk.name = row.text();
+  kiosk.tour_id = row.id<NamedPartId>();
+  kiosk.model_id = row.id<ModelId>();
+  kiosk.project_id = row.id<ProjectId>();
+  kiosk.tour = row.text();
+  kiosk.tour_name = row.text();
+  kiosk.model = row.text();
+  kiosk.model_name = row.text();
+  kiosk.project = row.text();
+  kiosk.user = row.text();
+  kiosk.created = row.time();
+  kiosk.expires = row.optional_time();
+  kiosk.last_seen = row.optional_time();
+  kiosk.revoked = row.optional_time();
+  kiosk.wants_reload = row.boolean();
   return kiosk;
 }
 
 Result<Kiosk> load(PgConnection& connection, KioskId id) {
-  auto rows = STRATA_TRY(connection.query(STRATA_KIOSKS "WHERE k.id = $1", Params().id(id)));
+  auto rows = STRATA_TRY(connection.query(sql(kKiosks, "WHERE k.id = $1"), Params().id(id)));
   if (rows.rows() == 0) return no_such("kiosk", to_string(id));
   return read_kiosk(rows, 0);
 }
@@ -52,12 +55,13 @@ Result<Kiosks::Page> Kiosks::all(const std::optional<std::vector<ProjectId>>& pr
     if (projects)
       for (const ProjectId project : *projects) ids.add(project);
     auto total = STRATA_TRY(connection.query(
-        "SELECT count(*) FROM kiosks k JOIN tours t ON t.id = k.tour_id JOIN models m ON m.id = t.model_id "
-        "WHERE ($1 OR m.project_id = any($2)) AND " STRATA_LISTED_KIOSK,
+        sql("SELECT count(*) FROM kiosks k JOIN tours t ON t.id = k.tour_id JOIN models m ON m.id = t.model_id "
+            "WHERE ($1 OR m.project_id = any($2)) AND ",
+            kListedKiosk),
         Params().boolean(!projects).array(ids)));
     auto rows = STRATA_TRY(connection.query(
-        STRATA_KIOSKS "WHERE ($1 OR p.id = any($2)) AND " STRATA_LISTED_KIOSK
-                      " AND k.id > $5 ORDER BY k.id LIMIT $3 OFFSET $4",
+        sql(kKiosks, "WHERE ($1 OR p.id = any($2)) AND ", kListedKiosk,
+            " AND k.id > $5 ORDER BY k.id LIMIT $3 OFFSET $4"),
         Params().boolean(!projects).array(ids).integer(limit).integer(offset).integer(after)));
     Page page;
     page.total = total.integer(0, 0);
@@ -91,12 +95,12 @@ Result<NewKiosk> Kiosks::create(NamedPartId tour_id, const std::string& name,
                                             Params().id(tour_id)));
     if (tour.rows() == 0) return no_such("tour", to_string(tour_id));
     auto cleared =
-        connection.query("DELETE FROM kiosks k WHERE k.tour_id = $1 AND NOT " STRATA_LISTED_KIOSK,
+        connection.query(sql("DELETE FROM kiosks k WHERE k.tour_id = $1 AND NOT ", kListedKiosk),
                          Params().id(tour_id));
     if (!cleared) return tl::unexpected(cleared.error());
-    auto count = STRATA_TRY(connection.query(
-        "SELECT count(*) FROM kiosks k WHERE k.tour_id = $1 AND " STRATA_GOOD_KIOSK,
-        Params().id(tour_id)));
+    auto count = STRATA_TRY(
+        connection.query(sql("SELECT count(*) FROM kiosks k WHERE k.tour_id = $1 AND ", kGoodKiosk),
+                         Params().id(tour_id)));
     if (count.integer(0, 0) >= kMaxKiosks)
       return fail(ErrorCode::conflict, "Too many kiosks",
                   "A tour has links for at most " + std::to_string(kMaxKiosks) +
@@ -118,8 +122,8 @@ Result<NewKiosk> Kiosks::create(NamedPartId tour_id, const std::string& name,
 Result<std::optional<Kiosk>> Kiosks::find(const std::string& secret) {
   return pool_.read([&](PgConnection& connection) -> Result<std::optional<Kiosk>> {
     const Sha256 hash = sha256(secret);
-    auto rows = STRATA_TRY(connection.query(
-        STRATA_KIOSKS "WHERE k.hash = $1 AND " STRATA_GOOD_KIOSK, Params().bytes(hash)));
+    auto rows = STRATA_TRY(
+        connection.query(sql(kKiosks, "WHERE k.hash = $1 AND ", kGoodKiosk), Params().bytes(hash)));
     return rows.rows() == 0 ? std::optional<Kiosk>() : read_kiosk(rows, 0);
   });
 }
@@ -147,7 +151,7 @@ Result<void> Kiosks::revoke(KioskId id) {
 Result<Kiosk> Kiosks::ask_reload(KioskId id) {
   return pool_.write([&](PgConnection& connection) -> Result<Kiosk> {
     auto done = STRATA_TRY(connection.query(
-        "UPDATE kiosks k SET wants_reload = true WHERE k.id = $1 AND " STRATA_GOOD_KIOSK,
+        sql("UPDATE kiosks k SET wants_reload = true WHERE k.id = $1 AND ", kGoodKiosk),
         Params().id(id)));
     auto kiosk = load(connection, id);
     if (kiosk && done.affected() == 0)

@@ -7,6 +7,8 @@
 #include "store/people/accounts.h"
 #include "store/people/members.h"
 #include "store/people/tokens.h"
+#include "store/pg/pg_row.h"
+#include "store/pg/sql.h"
 #include "store/store_impl.h"
 
 // Who is changed, or gets or loses a secret, is locked first (`lock_person`): what is said of them
@@ -33,20 +35,29 @@ std::optional<TokenKind> parse_kind(const std::string& text) {
   return std::nullopt;
 }
 
-#define STRATA_PERSON_COLUMNS                                                                           \
-  "id, name, full_name, role, password IS NOT NULL, disabled IS NOT NULL, created, last_seen, "         \
-  "(SELECT coalesce(jsonb_agg(g.name ORDER BY lower(g.name)), '[]') FROM group_people p JOIN groups g " \
-  "ON g.id = p.group_id WHERE p.user_id = users.id)"
-#define STRATA_GOOD_TOKEN "(revoked IS NULL AND (expires IS NULL OR expires > now()))"
+constexpr auto kPersonColumns = sql(
+    "id, name, full_name, role, password IS NOT NULL, disabled IS NOT NULL, created, last_seen, "
+    "(SELECT coalesce(jsonb_agg(g.name ORDER BY lower(g.name)), '[]') FROM group_people p JOIN groups g "
+    "ON g.id = p.group_id WHERE p.user_id = users.id)");
+constexpr auto kGoodToken = sql("(revoked IS NULL AND (expires IS NULL OR expires > now()))");
+
+Person read_person(PgRow& row) {
+  Person person;
+  person.id = row.id<PersonId>();
+  person.name = row.text();
+  person.full_name = row.text();
+  person.role = parse_role(row.text()).value_or(Role::viewer);
+  person.has_password = row.boolean();
+  person.disabled = row.boolean();
+  person.created = row.time();
+  person.last_seen = row.optional_time();
+  person.groups = row.json().get<std::vector<std::string>>();
+  return person;
+}
 
 Person read_person(const PgResult& rows, int i) {
-  Person person{rows.id<PersonId>(i, 0), rows.text(i, 1),
-                rows.text(i, 2),         parse_role(rows.text(i, 3)).value_or(Role::viewer),
-                rows.boolean(i, 4),      rows.boolean(i, 5),
-                rows.time(i, 6),         std::nullopt,
-                rows.json(i, 8)};
-  if (!rows.null(i, 7)) person.last_seen = rows.time(i, 7);
-  return person;
+  PgRow row(rows, i);
+  return read_person(row);
 }
 
 bool is_ascii(const std::string& text) {
@@ -56,16 +67,15 @@ bool is_ascii(const std::string& text) {
 Result<Person> load_person(PgConnection& connection, const std::string& name, bool lock) {
   // Names are ASCII. Other letters of which one has the same lower case must not lead to them.
   if (!is_ascii(name) || !check_text(name, "user")) return no_such("person", name);
-  auto rows = STRATA_TRY(connection.query(
-      lock ? "SELECT " STRATA_PERSON_COLUMNS
-             " FROM users WHERE lower(name) = lower($1) AND deleted IS NULL FOR UPDATE"
-           : "SELECT " STRATA_PERSON_COLUMNS
-             " FROM users WHERE lower(name) = lower($1) AND deleted IS NULL",
-      Params().text(name)));
+  constexpr auto kRead = sql("SELECT ", kPersonColumns,
+                             " FROM users WHERE lower(name) = lower($1) AND deleted IS NULL");
+  constexpr auto kLock = sql(kRead, " FOR UPDATE");
+  auto rows =
+      STRATA_TRY(connection.query(lock ? kLock.c_str() : kRead.c_str(), Params().text(name)));
   if (rows.rows() == 0) return no_such("person", name);
   return read_person(rows, 0);
 }
-Result<void> run(PgConnection& connection, const char* sql, const Params& params) {
+Result<void> run(PgConnection& connection, const auto& sql, const Params& params) {
   auto done = connection.query(sql, params);
   return done ? Result<void>() : tl::unexpected(done.error());
 }
@@ -81,27 +91,26 @@ Result<void> revoke_tokens(PgConnection& connection, const std::string& user, To
 
 Result<std::int64_t> count_good(PgConnection& connection, const std::string& user, TokenKind kind) {
   auto rows = connection.query(
-      "SELECT count(*) FROM tokens WHERE user_name = $1 AND kind = $2 AND " STRATA_GOOD_TOKEN,
+      sql("SELECT count(*) FROM tokens WHERE user_name = $1 AND kind = $2 AND ", kGoodToken),
       Params().text(user).text(name(kind)));
   return rows ? Result<std::int64_t>(rows->integer(0, 0)) : tl::unexpected(rows.error());
 }
 
 Token read_token(const PgResult& rows, TokenKind kind, int i) {
-  Token token{rows.id<TokenId>(i, 0),
-              kind,
-              rows.text(i, 1),
-              parse_role(rows.text(i, 2)).value_or(Role::viewer),
-              rows.time(i, 3),
-              {},
-              {},
-              {}};
-  if (!rows.null(i, 4)) token.expires = rows.time(i, 4);
-  if (!rows.null(i, 5)) token.last_used = rows.time(i, 5);
-  if (!rows.null(i, 6)) token.project = rows.text(i, 6);
+  PgRow row(rows, i);
+  Token token;
+  token.id = row.id<TokenId>();
+  token.kind = kind;
+  token.label = row.text();
+  token.role = parse_role(row.text()).value_or(Role::viewer);
+  token.created = row.time();
+  token.expires = row.optional_time();
+  token.last_used = row.optional_time();
+  token.project = row.optional_text();
   return token;
 }
-#define STRATA_TOKEN_COLUMNS \
-  "id, label, role, created, expires, last_used, (SELECT slug FROM projects p WHERE p.id = tokens.project_id)"
+constexpr auto kTokenColumns = sql(
+    "id, label, role, created, expires, last_used, (SELECT slug FROM projects p WHERE p.id = tokens.project_id)");
 
 // Of somebody who is locked.
 Result<NewToken> insert_token(PgConnection& connection, TokenKind kind, const std::string& user,
@@ -116,8 +125,9 @@ Result<NewToken> insert_token(PgConnection& connection, TokenKind kind, const st
   std::optional<Time> expires;
   if (lifetime) expires = std::chrono::system_clock::now() + *lifetime;
   auto row = STRATA_TRY(connection.query(
-      "INSERT INTO tokens (hash, kind, user_name, role, expires, label, project_id) VALUES ($1, $2, $3, $4, $5, $6, $7) "
-      "RETURNING " STRATA_TOKEN_COLUMNS,
+      sql("INSERT INTO tokens (hash, kind, user_name, role, expires, label, project_id) VALUES ($1, $2, $3, $4, $5, $6, $7) "
+          "RETURNING ",
+          kTokenColumns),
       Params()
           .bytes(sha256(made.secret))
           .text(name(kind))
@@ -138,8 +148,9 @@ Result<NewToken> open_session(PgConnection& connection, const Person& person,
   if (!made) return made;
   STRATA_TRY(run(
       connection,
-      "UPDATE tokens SET revoked = now() WHERE id IN (SELECT id FROM tokens WHERE user_name = $1 AND "
-      "kind = 'session' AND " STRATA_GOOD_TOKEN " ORDER BY id DESC OFFSET $2)",
+      sql("UPDATE tokens SET revoked = now() WHERE id IN (SELECT id FROM tokens WHERE user_name = $1 AND "
+          "kind = 'session' AND ",
+          kGoodToken, " ORDER BY id DESC OFFSET $2)"),
       Params().text(person.name).integer(kMaxTokens)));
   return made;
 }
@@ -150,11 +161,12 @@ struct Found {
 };
 Result<std::optional<Found>> find_secret(PgConnection& connection, const std::string& secret) {
   auto row = STRATA_TRY(connection.query(
-      "SELECT u.name, u.role, t.role, t.kind, t.id, u.id, coalesce(t.last_used > now() - interval '5 minutes', false), "
-      "t.project_id "
-      "FROM (SELECT * FROM tokens WHERE hash = $1 AND " STRATA_GOOD_TOKEN
-      ") t JOIN users u ON u.name = t.user_name "
-      "WHERE u.disabled IS NULL AND u.deleted IS NULL",
+      sql("SELECT u.name, u.role, t.role, t.kind, t.id, u.id, coalesce(t.last_used > now() - interval '5 minutes', false), "
+          "t.project_id "
+          "FROM (SELECT * FROM tokens WHERE hash = $1 AND ",
+          kGoodToken,
+          ") t JOIN users u ON u.name = t.user_name "
+          "WHERE u.disabled IS NULL AND u.deleted IS NULL"),
       Params().bytes(sha256(secret))));
   if (row.rows() == 0) return std::optional<Found>();
   const auto persons = parse_role(row.text(0, 1)), own = parse_role(row.text(0, 2));
@@ -199,7 +211,7 @@ Result<Person> lock_person(PgConnection& connection, const std::string& name) {
 Result<std::vector<Person>> Accounts::all() {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<Person>> {
     auto rows = STRATA_TRY(connection.query(
-        "SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE deleted IS NULL ORDER BY lower(name)"));
+        sql("SELECT ", kPersonColumns, " FROM users WHERE deleted IS NULL ORDER BY lower(name)")));
     std::vector<Person> people;
     for (int i = 0; i < rows.rows(); ++i) people.push_back(read_person(rows, i));
     return people;
@@ -216,7 +228,7 @@ Result<std::vector<Person>> Accounts::called(const std::vector<std::string>& nam
     if (check_text(name, "user")) asked.add(std::string_view(name));
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<Person>> {
     auto rows = STRATA_TRY(connection.query(
-        "SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE name = any($1)", Params().array(asked)));
+        sql("SELECT ", kPersonColumns, " FROM users WHERE name = any($1)"), Params().array(asked)));
     std::vector<Person> people;
     for (int i = 0; i < rows.rows(); ++i) people.push_back(read_person(rows, i));
     return people;
@@ -247,8 +259,9 @@ Result<Person> Accounts::create(const std::string& name, const std::string& full
   STRATA_TRY(check_texts({{&full_name, "full_name"}}));
   return pool_.write([&](PgConnection& connection) -> Result<Person> {
     auto made = STRATA_TRY(connection.query(
-        "INSERT INTO users (name, full_name, role) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING "
-        "RETURNING " STRATA_PERSON_COLUMNS,
+        sql("INSERT INTO users (name, full_name, role) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING "
+            "RETURNING ",
+            kPersonColumns),
         Params().text(name).text(full_name).text(strata::name(role))));
     if (made.rows() == 0)
       return fail(ErrorCode::conflict, "Name taken",
@@ -264,7 +277,7 @@ Result<Person> Accounts::update(PersonId id, const PersonChange& change) {
   if (change.full_name) STRATA_TRY(check_texts({{&*change.full_name, "full_name"}}));
   return pool_.write([&](PgConnection& connection) -> Result<Person> {
     auto rows = STRATA_TRY(connection.query(
-        "SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE id = $1 AND deleted IS NULL FOR UPDATE",
+        sql("SELECT ", kPersonColumns, " FROM users WHERE id = $1 AND deleted IS NULL FOR UPDATE"),
         Params().id(id)));
     if (rows.rows() == 0) return no_such("person", to_string(id));
     Person person = read_person(rows, 0);
@@ -317,23 +330,26 @@ Result<void> Accounts::remove(const std::string& name) {
     // what is said to them; names hold nothing that JSON writes otherwise.
     return run(
         connection,
-        "DELETE FROM answers WHERE position('\"' || $1 || '\"' IN replace(answer::text, '\\', '')) > 0 "
-        "OR " STRATA_CALLS_THEM("answer::text"),
+        sql("DELETE FROM answers WHERE position('\"' || $1 || '\"' IN replace(answer::text, '\\', '')) > 0 "
+            "OR ",
+            mentions_them("answer::text")),
         Params().text(person.name));
   });
 }
 
 Result<std::vector<Membership>> Members::of_project(ProjectId project_id) {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<Membership>> {
-    auto rows =
-        STRATA_TRY(connection.query(
-            "SELECT " STRATA_PERSON_COLUMNS ", in_project FROM users JOIN "
+    auto rows = STRATA_TRY(connection.query(
+        sql("SELECT ", kPersonColumns,
+            ", in_project FROM users JOIN "
             "(SELECT user_id, role AS in_project FROM project_members WHERE project_id = $1) m "
-            "ON user_id = id ORDER BY lower(name)",
-            Params().id(project_id)));
+            "ON user_id = id ORDER BY lower(name)"),
+        Params().id(project_id)));
     std::vector<Membership> members;
-    for (int i = 0; i < rows.rows(); ++i)
-      members.push_back({read_person(rows, i), parse_role(rows.text(i, 9)).value_or(Role::viewer)});
+    for (int i = 0; i < rows.rows(); ++i) {
+      PgRow row(rows, i);
+      members.push_back({read_person(row), parse_role(row.text()).value_or(Role::viewer)});
+    }
     return members;
   });
 }
@@ -466,9 +482,10 @@ Result<std::optional<Principal>> Tokens::find(const std::string& secret) {
 
 Result<std::vector<Token>> Tokens::of_user(const std::string& user, TokenKind kind) {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<Token>> {
-    auto rows = STRATA_TRY(connection.query("SELECT " STRATA_TOKEN_COLUMNS
-                                            " FROM tokens WHERE user_name = $1 AND kind = $2 "
-                                            "AND " STRATA_GOOD_TOKEN " ORDER BY id DESC",
+    auto rows = STRATA_TRY(connection.query(sql("SELECT ", kTokenColumns,
+                                                " FROM tokens WHERE user_name = $1 AND kind = $2 "
+                                                "AND ",
+                                                kGoodToken, " ORDER BY id DESC"),
                                             Params().text(user).text(name(kind))));
     std::vector<Token> tokens;
     for (int i = 0; i < rows.rows(); ++i) tokens.push_back(read_token(rows, kind, i));
@@ -525,8 +542,8 @@ Result<void> Tokens::revoke(const std::string& secret) {
 Result<void> Tokens::revoke(const std::string& user, TokenKind kind, TokenId id) {
   return pool_.write([&](PgConnection& connection) -> Result<void> {
     auto done = STRATA_TRY(connection.query(
-        "UPDATE tokens SET revoked = now() WHERE user_name = $1 AND kind = $2 AND id = $3 AND " STRATA_GOOD_TOKEN
-        " RETURNING id",
+        sql("UPDATE tokens SET revoked = now() WHERE user_name = $1 AND kind = $2 AND id = $3 AND ",
+            kGoodToken, " RETURNING id"),
         Params().text(user).text(name(kind)).id(id)));
     if (done.rows() == 0)
       return no_such(kind == TokenKind::session ? "session" : "token", to_string(id));

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "core/progress.h"
+#include "store/pg/sql.h"
 
 namespace strata::store {
 namespace {
@@ -153,12 +154,12 @@ Result<void> stream_blob(Pool& pool, const std::vector<std::uint8_t>& sha256, st
   return {};
 }
 
-#define STRATA_IS_UNUSED                                                        \
-  "NOT EXISTS (SELECT 1 FROM all_models WHERE geometry = b.sha256) "            \
-  "AND NOT EXISTS (SELECT 1 FROM detail_levels d WHERE d.geometry = b.sha256) " \
-  "AND NOT EXISTS (SELECT 1 FROM model_sources s WHERE s.sha256 = b.sha256) "   \
-  "AND NOT EXISTS (SELECT 1 FROM looks WHERE picture = b.sha256) "              \
-  "AND NOT EXISTS (SELECT 1 FROM attachments a WHERE a.sha256 = b.sha256)"
+constexpr auto kIsUnused =
+    sql("NOT EXISTS (SELECT 1 FROM all_models WHERE geometry = b.sha256) "
+        "AND NOT EXISTS (SELECT 1 FROM detail_levels d WHERE d.geometry = b.sha256) "
+        "AND NOT EXISTS (SELECT 1 FROM model_sources s WHERE s.sha256 = b.sha256) "
+        "AND NOT EXISTS (SELECT 1 FROM looks WHERE picture = b.sha256) "
+        "AND NOT EXISTS (SELECT 1 FROM attachments a WHERE a.sha256 = b.sha256)");
 
 Result<void> drop_unused(PgConnection& connection,
                          const std::vector<std::vector<std::uint8_t>>& hashes) {
@@ -170,18 +171,18 @@ Result<void> drop_unused(PgConnection& connection,
       connection.query("SELECT 1 FROM blobs WHERE sha256 = any($1) ORDER BY sha256 FOR UPDATE",
                        Params().array(list));
   if (!locked) return tl::unexpected(locked.error());
-  auto done = connection.query("DELETE FROM blobs b WHERE sha256 = any($1) AND " STRATA_IS_UNUSED,
+  auto done = connection.query(sql("DELETE FROM blobs b WHERE sha256 = any($1) AND ", kIsUnused),
                                Params().array(list));
   return done ? Result<void>{} : tl::unexpected(done.error());
 }
 
 Result<std::int64_t> drop_all_unused(PgConnection& connection) {
-  auto locked = STRATA_TRY(connection.query("SELECT sha256 FROM blobs b WHERE " STRATA_IS_UNUSED
-                                            " FOR UPDATE SKIP LOCKED"));
+  auto locked = STRATA_TRY(connection.query(
+      sql("SELECT sha256 FROM blobs b WHERE ", kIsUnused, " FOR UPDATE SKIP LOCKED")));
   PgArray list(oid::kBytea);
   for (int i = 0; i < locked.rows(); ++i) list.add(locked.bytes(i, 0));
   auto done = STRATA_TRY(connection.query(
-      "DELETE FROM blobs b WHERE sha256 = any($1) AND " STRATA_IS_UNUSED, Params().array(list)));
+      sql("DELETE FROM blobs b WHERE sha256 = any($1) AND ", kIsUnused), Params().array(list)));
   return done.affected();
 }
 

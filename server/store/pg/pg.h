@@ -18,6 +18,7 @@
 #include "core/ids.h"
 #include "core/uuid.h"
 #include "store/pg/pg_limits.h"
+#include "store/pg/sql.h"
 
 namespace strata::store {
 
@@ -160,6 +161,10 @@ class PgConnection {
 
   Result<void> script(const std::string& sql);  // any number of statements without parameters
   Result<PgResult> query(const char* sql, const Params& params = {});
+  template <std::size_t Length>
+  Result<PgResult> query(const SqlText<Length>& sql, const Params& params = {}) {
+    return query(sql.c_str(), params);
+  }
   // The same without preparing it: for statements that name generated tables, of which there is no
   // end.
   Result<PgResult> query_once(const std::string& sql, const Params& params = {});

@@ -3,6 +3,8 @@
 #include "domain/tables/column_value.h"
 #include "media/media_type.h"
 #include "store/pg/blobs.h"
+#include "store/pg/pg_row.h"
+#include "store/pg/sql.h"
 #include "store/store_impl.h"
 #include "store/tables/attachments.h"
 #include "store/tables/table_rows.h"
@@ -11,37 +13,38 @@
 namespace strata::store {
 namespace {
 
-#define STRATA_ATTACHMENT_COLUMNS                                                       \
-  "a.id, a.table_id, a.name, a.media_type, b.bytes, encode(a.sha256, 'hex'), a.width, " \
-  "a.height, a.user_name, a.time, a.visibility"
+constexpr auto kAttachmentColumns =
+    sql("a.id, a.table_id, a.name, a.media_type, b.bytes, encode(a.sha256, 'hex'), a.width, "
+        "a.height, a.user_name, a.time, a.visibility");
 
-std::optional<int> side_of(const PgResult& rows, int row, int column) {
-  return rows.null(row, column) ? std::nullopt
-                                : std::optional(static_cast<int>(rows.integer(row, column)));
+std::optional<int> side_of(std::optional<std::int64_t> pixels) {
+  return pixels ? std::optional(static_cast<int>(*pixels)) : std::nullopt;
 }
 
 Attachment read_attachment_row(const PgResult& rows, int i) {
-  return {rows.id<AttachmentId>(i, 0),
-          rows.id<TableId>(i, 1),
-          rows.text(i, 2),
-          rows.text(i, 3),
-          static_cast<std::uint64_t>(rows.integer(i, 4)),
-          rows.text(i, 5),
-          side_of(rows, i, 6),
-          side_of(rows, i, 7),
-          rows.text(i, 8),
-          rows.time(i, 9),
-          parse_visibility(rows.text(i, 10)).value_or(Visibility::curators)};
+  PgRow row(rows, i);
+  return {row.id<AttachmentId>(),
+          row.id<TableId>(),
+          row.text(),
+          row.text(),
+          static_cast<std::uint64_t>(row.integer()),
+          row.text(),
+          side_of(row.optional_integer()),
+          side_of(row.optional_integer()),
+          row.text(),
+          row.time(),
+          parse_visibility(row.text()).value_or(Visibility::curators)};
 }
 
 Result<std::vector<Attachment>> rows_of_ids(PgConnection& connection, TableId table_id,
                                             std::span<const AttachmentId> ids) {
   PgArray list(oid::kInt8);
   for (const auto id : ids) list.add(id);
-  auto rows = STRATA_TRY(connection.query("SELECT " STRATA_ATTACHMENT_COLUMNS
-                                          " FROM attachments a JOIN blobs b USING (sha256) "
-                                          "WHERE a.table_id = $1 AND a.id = any($2) ORDER BY a.id",
-                                          Params().id(table_id).array(list)));
+  auto rows =
+      STRATA_TRY(connection.query(sql("SELECT ", kAttachmentColumns,
+                                      " FROM attachments a JOIN blobs b USING (sha256) "
+                                      "WHERE a.table_id = $1 AND a.id = any($2) ORDER BY a.id"),
+                                  Params().id(table_id).array(list)));
   std::vector<Attachment> found;
   for (int i = 0; i < rows.rows(); ++i) found.push_back(read_attachment_row(rows, i));
   return found;
@@ -217,8 +220,8 @@ Result<TableChange> Attachments::detach(AttachmentId attachment_id, const std::s
 Result<Attachment> Attachments::find(AttachmentId id, const Author& seen_by) {
   return pool_.read([&](PgConnection& connection) -> Result<Attachment> {
     auto row = STRATA_TRY(
-        connection.query("SELECT " STRATA_ATTACHMENT_COLUMNS
-                         " FROM attachments a JOIN blobs b USING (sha256) WHERE a.id = $1",
+        connection.query(sql("SELECT ", kAttachmentColumns,
+                             " FROM attachments a JOIN blobs b USING (sha256) WHERE a.id = $1"),
                          Params().id(id)));
     if (row.rows() == 0) return no_such("attachment", to_string(id));
     Attachment found = read_attachment_row(row, 0);
@@ -240,8 +243,8 @@ Result<Attachment> Attachments::show(AttachmentId id, Visibility visibility,
                                      const IdempotentResponse<Attachment>& answer) {
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Attachment> {
     auto row = STRATA_TRY(connection.query(
-        "WITH a AS (UPDATE attachments SET visibility = $2 WHERE id = $1 RETURNING *) SELECT " STRATA_ATTACHMENT_COLUMNS
-        " FROM a JOIN blobs b USING (sha256)",
+        sql("WITH a AS (UPDATE attachments SET visibility = $2 WHERE id = $1 RETURNING *) SELECT ",
+            kAttachmentColumns, " FROM a JOIN blobs b USING (sha256)"),
         Params().id(id).text(name(visibility))));
     if (row.rows() == 0) return no_such("attachment", to_string(id));
     return read_attachment_row(row, 0);

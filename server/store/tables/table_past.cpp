@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "domain/tables/cell_history.h"
+#include "store/pg/pg_row.h"
 #include "store/store_impl.h"
 #include "store/tables/table_rows.h"
 
@@ -160,14 +161,15 @@ Result<TableHistory> read_history(PgConnection& connection, TableId table_id, Ro
   TableHistory history;
   history.total = total.integer(0, 0);
   for (int i = 0; i < rows.rows(); ++i) {
-    TableEditRow row{rows.integer(i, 0),
-                     rows.text(i, 1),
-                     rows.text(i, 2),
-                     rows.json(i, 3),
-                     rows.time(i, 4),
-                     rows.boolean(i, 5),
+    PgRow columns(rows, i);
+    TableEditRow row{columns.integer(),
+                     columns.text(),
+                     columns.text(),
+                     columns.json(),
+                     columns.time(),
+                     columns.boolean(),
                      {},
-                     rows.integer(i, 6)};
+                     columns.integer()};
     auto changes = STRATA_TRY(connection.query(
         "SELECT subject = 'column', subject_id, before, after FROM table_changes WHERE table_id = $1 AND sequence = $2 "
         "AND ($3::bigint IS NULL OR (subject = 'record' AND subject_id = $3)) ORDER BY subject, subject_id LIMIT $4",

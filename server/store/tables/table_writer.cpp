@@ -6,6 +6,7 @@
 #include "domain/tables/column_value.h"
 #include "domain/tables/term_list.h"
 #include "media/media_type.h"
+#include "store/pg/pg_row.h"
 #include "store/store_impl.h"
 #include "store/tables/table_rows.h"
 
@@ -481,40 +482,42 @@ void put_cells(OpenTable& open, const std::map<ColumnId, Cells>& columns) {
 }
 
 Result<OpenTable> read_table(PgConnection& connection, TableId id, Role seen_by) {
-  auto row = STRATA_TRY(connection.query(
+  auto rows = STRATA_TRY(connection.query(
       "SELECT id, project_id, name, slug::text, labels, description, records, sequence, version, next_key, title_column "
       "FROM record_tables WHERE id = $1",
       Params().id(id)));
-  if (row.rows() == 0) return no_such("table", to_string(id));
+  if (rows.rows() == 0) return no_such("table", to_string(id));
+  PgRow row(rows, 0);
   OpenTable open;
   open.seen_by = seen_by;
-  open.table.id = row.id<TableId>(0, 0);
-  open.table.project_id = row.id<ProjectId>(0, 1);
-  open.table.name = row.text(0, 2);
-  open.table.slug = row.text(0, 3);
-  open.table.labels = labels_of(row.json(0, 4));
-  open.table.description = row.text(0, 5);
-  open.table.records = row.integer(0, 6);
-  open.table.sequence = row.integer(0, 7);
-  open.table.version = row.integer(0, 8);
-  open.next_key = row.integer(0, 9);
-  open.table.title_column = row.id<std::optional<ColumnId>>(0, 10);
+  open.table.id = row.id<TableId>();
+  open.table.project_id = row.id<ProjectId>();
+  open.table.name = row.text();
+  open.table.slug = row.text();
+  open.table.labels = labels_of(row.json());
+  open.table.description = row.text();
+  open.table.records = row.integer();
+  open.table.sequence = row.integer();
+  open.table.version = row.integer();
+  open.next_key = row.integer();
+  open.table.title_column = row.id<std::optional<ColumnId>>();
   auto columns = STRATA_TRY(connection.query(
       "SELECT id, kind, target, properties, hidden, visibility FROM record_columns WHERE table_id = $1 ORDER BY id",
       Params().id(id)));
   for (int i = 0; i < columns.rows(); ++i) {
+    PgRow cells(columns, i);
     Column column;
-    column.id = columns.id<ColumnId>(i, 0);
-    const auto kind = parse_column_kind(columns.text(i, 1));
+    column.id = cells.id<ColumnId>();
+    const auto kind = parse_column_kind(cells.text());
     if (!kind)
       return fail(ErrorCode::internal, "Damaged table",
                   "Column " + to_string(column.id) + " has an unknown kind.");
     column.kind = *kind;
-    column.target = columns.id<std::optional<TableId>>(i, 2);
-    set_properties(column, columns.json(i, 3));
-    column.hidden = columns.boolean(i, 4);
+    column.target = cells.id<std::optional<TableId>>();
+    set_properties(column, cells.json());
+    column.hidden = cells.boolean();
     // What cannot be told is not shown.
-    column.visibility = parse_visibility(columns.text(i, 5)).value_or(Visibility::curators);
+    column.visibility = parse_visibility(cells.text()).value_or(Visibility::curators);
     open.all.push_back(std::move(column));
   }
   show_columns(open);
