@@ -528,6 +528,7 @@ CREATE TABLE public.all_models (
     binned_bytes bigint,
     erasing boolean DEFAULT false NOT NULL,
     proposal jsonb,
+    open_edges jsonb,
     CONSTRAINT all_models_check CHECK ((((binned IS NULL) = (binned_by IS NULL)) AND ((binned IS NULL) = (binned_bytes IS NULL)) AND ((binned IS NOT NULL) OR (NOT erasing)))),
     CONSTRAINT models_bounds_max_check CHECK ((cardinality(bounds_max) = 3)),
     CONSTRAINT models_bounds_min_check CHECK ((cardinality(bounds_min) = 3)),
@@ -602,7 +603,8 @@ CREATE VIEW public.models AS
     all_models.sequence,
     all_models.version,
     all_models.source_download,
-    all_models.proposal
+    all_models.proposal,
+    all_models.open_edges
    FROM public.all_models
   WHERE (all_models.binned IS NULL);
 

@@ -1,6 +1,7 @@
 #include "jobs/model_geometry.h"
 
 #include "mesh/surface/detail_levels.h"
+#include "mesh/surface/open_edges.h"
 #include "store/content/models.h"
 
 namespace strata::jobs {
@@ -12,6 +13,7 @@ Result<void> put_geometry(const mesh::Geometry& geometry, Progress& progress,
   model.triangles = geometry.triangle_count();
   model.vertices = geometry.positions.size();
   model.area = mesh::surface_area(geometry);
+  model.open_edges = mesh::measure_open_edges(geometry);
   model.bounds_min = model.bounds_max = geometry.positions.front();
   for (const auto& position : geometry.positions) {
     model.bounds_min = glm::min(model.bounds_min, position);

@@ -8,7 +8,7 @@
 namespace strata::jobs {
 
 // Puts a geometry into a new model, with what follows from it: its stored form and that of its
-// coarser copies, counts, box and area. Refused only when cancelled.
+// coarser copies, counts, box, area and open edges. Refused only when cancelled.
 Result<void> put_geometry(const mesh::Geometry& geometry, Progress& progress,
                           store::NewModel& fresh);
 

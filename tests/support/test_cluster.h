@@ -32,7 +32,7 @@ class Hang {
 };
 
 // A fresh database of the shared cluster, with all migrations: its connection string. It is a copy
-// of one that was migrated once, since 34 migrations take longer than most tests.
+// of one that was migrated once, since the migrations take longer than most tests.
 std::string fresh_database();
 // Without any table, for tests of the migrations themselves.
 std::string empty_database();

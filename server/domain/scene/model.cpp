@@ -73,6 +73,19 @@ std::optional<ScaleProposal> scale_proposal_from_json(const nlohmann::json& json
       text("up"), *up_reason,   json.value("up_confidence", 1.0),   text("up_comment")};
 }
 
+nlohmann::json to_json(const OpenEdges& edges, double metres_per_unit) {
+  nlohmann::json longest = nlohmann::json::array();
+  for (const double length : edges.longest) longest.push_back(length * metres_per_unit);
+  return {
+      {"loops", edges.loops}, {"length_m", edges.length * metres_per_unit}, {"longest_m", longest}};
+}
+
+std::optional<OpenEdges> open_edges_from_json(const nlohmann::json& json) {
+  if (!json.is_object()) return std::nullopt;
+  return OpenEdges{json.value("loops", std::uint64_t{0}), json.value("length_m", 0.0),
+                   json.value("longest_m", std::vector<double>())};
+}
+
 nlohmann::json to_json(const Project& project) {
   return {{"id", project.id},
           {"name", project.name},
@@ -161,6 +174,7 @@ nlohmann::json to_json(const Model& model, const std::string& project_slug) {
       {"source_download", name(model.source_download)},
       {"sequence", model.sequence}};
   if (model.proposal) json["proposal"] = to_json(*model.proposal);
+  if (model.open_edges) json["open_edges"] = to_json(*model.open_edges, model.metres());
   return json;
 }
 

@@ -81,6 +81,18 @@ struct Repair {
   std::uint64_t count = 0;
 };
 
+// Where the surface ends: loops of edges that belong to one triangle only, which are the rims of
+// holes and of what was scanned in part. A closed surface has none.
+struct OpenEdges {
+  static constexpr std::size_t kMaxListed = 16;
+  std::uint64_t loops = 0;
+  double length = 0;            // unit, of all loops together
+  std::vector<double> longest;  // unit, of single loops, longest first, at most kMaxListed
+};
+nlohmann::json to_json(const OpenEdges& edges, double metres_per_unit);
+// of our own stored form, which has metres_per_unit = 1
+std::optional<OpenEdges> open_edges_from_json(const nlohmann::json& json);
+
 struct SourceFile {
   std::string name;
   std::string sha256;  // lower-case hex
@@ -108,6 +120,8 @@ struct Model {
   double area = 0;  // unit²
   AtlasReport atlas;
   std::vector<Repair> repairs;
+  // none for models that were imported before they were measured
+  std::optional<OpenEdges> open_edges;
   std::vector<SourceFile> source_files;
   // the least that gets them, and what is as good as they are
   Role source_download = Role::annotator;

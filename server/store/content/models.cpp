@@ -18,6 +18,7 @@ constexpr const char* kSelectModels =
     "m.origin, m.bounds_min, m.bounds_max, m.triangles, m.vertices, m.area, m.atlas, m.repairs, m.default_resolution, "
     "m.inventory_number, m.owner, m.creator, m.captured, m.method, m.accuracy, m.processing, m.rights_uri, m.credit, "
     "m.source_download, m.sequence, m.version, coalesce(m.proposal, 'null'), "
+    "coalesce(m.open_edges, 'null'), "
     "(SELECT coalesce(jsonb_agg(jsonb_build_object('name', s.name, 'sha256', encode(s.sha256, 'hex'), 'bytes', b.bytes) "
     "ORDER BY s.position), '[]') FROM model_sources s JOIN blobs b USING (sha256) WHERE s.model_id = m.id) "
     "FROM models m ";
@@ -58,6 +59,7 @@ Model read_model(const PgResult& rows, int i) {
   m.sequence = row.integer();
   m.version = row.integer();
   m.proposal = scale_proposal_from_json(row.json());
+  m.open_edges = open_edges_from_json(row.json());
   for (const auto& file : row.json())
     m.source_files.push_back({file.at("name"), file.at("sha256"), file.at("bytes")});
   return m;
@@ -133,13 +135,14 @@ Result<PgResult> insert_model(PgConnection& connection, const Model& m, const st
       .json(to_json(m.atlas, 1.0))
       .json(repairs)
       .bytes(geometry)
-      .json(m.proposal ? to_json(*m.proposal) : nlohmann::json());
+      .json(m.proposal ? to_json(*m.proposal) : nlohmann::json())
+      .json(m.open_edges ? to_json(*m.open_edges, 1.0) : nlohmann::json());
   return connection.query(
       "INSERT INTO models (name, slug, project_id, unit, unit_assumed, scale_verified, up, north, crs, default_resolution, "
       "inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, source_download, "
-      "origin, bounds_min, bounds_max, triangles, vertices, area, atlas, repairs, geometry, proposal) "
+      "origin, bounds_min, bounds_max, triangles, vertices, area, atlas, repairs, geometry, proposal, open_edges) "
       "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20, $21, $22, $23, $24, "
-      "$25, $26, $27, $28, $29, nullif($30, 'null')) ON CONFLICT DO NOTHING RETURNING id",
+      "$25, $26, $27, $28, $29, nullif($30, 'null'), nullif($31, 'null')) ON CONFLICT DO NOTHING RETURNING id",
       params);
 }
 

@@ -119,6 +119,11 @@ TEST_F(Import, texture_coordinates_that_can_carry_layers_are_kept) {
   ASSERT_TRUE(model) << model.error().detail;
   EXPECT_EQ(model->atlas.source, "file");
   EXPECT_TRUE(model->repairs.empty());
+  // Two squares side by side have one rim: 2 × 1.
+  ASSERT_TRUE(model->open_edges);
+  EXPECT_EQ(model->open_edges->loops, 1u);
+  EXPECT_DOUBLE_EQ(model->open_edges->length, 6);
+  EXPECT_EQ(model->open_edges->longest, std::vector<double>{6});
   EXPECT_TRUE(model->unit_assumed);
   EXPECT_EQ(model->unit, Unit::m);
   EXPECT_EQ(model->up, "z");

@@ -137,6 +137,7 @@ TEST(Models, every_field_comes_back) {
              0.61,   0.0006, 1.25,
              3.5,    1e-9,   {{4096, 0.1, 1.0 / 3}, {8192, 1e-300, 0.2}}};
   m.repairs = {{"dropped degenerate faces", 12}, {"welded", 7}};
+  m.open_edges = OpenEdges{3, 0.1 + 0.2, {0.2, 1.0 / 15}};
   m.default_resolution = 8192;
   m.inventory_number = "ÄM 21300";
   m.owner = "o";

@@ -6,6 +6,9 @@ import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { encode_png } from "../support/js/png.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
 
 async function shoot({ page }, name) {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -15,7 +18,7 @@ async function choose_for({ page }, menu, command) {
   await page.getByRole("button", { name: menu, exact: true }).click();
   await page.getByRole("menuitem", { name: command, exact: true }).click();
 }
-const row_of = ({ page }) => page.getByRole("button", { name: "Paint on Finds" });
+const row_of = ({ page }) => page.getByRole("button", { name: words.layers.select("Finds") });
 const badge = (where, says) => where.getByRole("img", { name: says });
 const kCurators = "Only curators of the project see this.";
 const kTeam = "Only annotators and curators of the project see this.";
@@ -70,19 +73,19 @@ test("a curator and two viewers look at the model", async () => {
     await who.page.goto(`${server.url}/models/${model.id}`);
     await who.drawn();
   }
-  const later = carl.page.getByRole("button", { name: "Decide later" });
+  const later = carl.page.getByRole("button", { name: words.scale.later });
   if (await later.isVisible()) await later.click();
   await row_of(vera).click();
 });
 
 test("the layer becomes the curators' own: it is gone for the others while they look", async () => {
-  await choose_for(carl, "Options for Finds", "Edit…");
+  await choose_for(carl, words.layers.options("Finds"), words.layers.edit);
   dialog = carl.page.locator("strata-layer-dialog");
-  await dialog.getByText("Everybody who sees the project sees this.").waitFor();
-  await dialog.getByRole("radio", { name: "Curators" }).click();
+  await dialog.getByText(words.visibility.says.public).waitFor();
+  await dialog.getByRole("radio", { name: words.visibility.names.private }).click();
   await dialog.getByText(kCurators).waitFor();
   await shoot(carl, "layer_dialog");
-  await dialog.getByRole("button", { name: "Save", exact: true }).click();
+  await dialog.getByRole("button", { name: words.save, exact: true }).click();
   await badge(carl.page.locator("strata-layer-panel"), kCurators).waitFor();
   await wait_for(async () => (await row_of(vera).count()) === 0, "the layer to be gone for her");
   await shoot(carl, "layer_badge");
@@ -90,9 +93,9 @@ test("the layer becomes the curators' own: it is gone for the others while they 
 });
 
 test("it is everybody's again", async () => {
-  await choose_for(carl, "Options for Finds", "Edit…");
-  await dialog.getByRole("radio", { name: "Everybody" }).click();
-  await dialog.getByRole("button", { name: "Save", exact: true }).click();
+  await choose_for(carl, words.layers.options("Finds"), words.layers.edit);
+  await dialog.getByRole("radio", { name: words.visibility.names.public }).click();
+  await dialog.getByRole("button", { name: words.save, exact: true }).click();
   await row_of(vera).waitFor();
   await wait_for(
     async () => (await badge(carl.page.locator("strata-layer-panel"), kCurators).count()) === 0,
@@ -106,11 +109,11 @@ test("a column of the team", async () => {
     await who.page.keyboard.press("t");
     await who.page.locator("strata-table-panel").getByText("Under the slab").waitFor();
   }
-  await choose_for(carl, "Options for the column Place", "Change…");
+  await choose_for(carl, words.tables.column_menu("Place"), words.tables.change_column);
   const column = carl.page.locator("strata-column-dialog");
-  await column.getByRole("radio", { name: "The team" }).click();
+  await column.getByRole("radio", { name: words.visibility.names.team }).click();
   await shoot(carl, "column_dialog");
-  await column.getByRole("button", { name: "Save", exact: true }).click();
+  await column.getByRole("button", { name: words.save, exact: true }).click();
   await badge(carl.page.locator("strata-table-panel"), kTeam).waitFor();
   await wait_for(
     async () =>
@@ -127,9 +130,11 @@ test("a photo of the curators", async () => {
     .locator("strata-table-panel")
     .getByRole("rowheader", { name: "1", exact: true })
     .click();
-  await carl.page.getByRole("button", { name: "Edit the record", exact: true }).click();
-  const choice = carl.page.locator("strata-record-dialog").getByLabel("Who sees ring.png");
-  await choice.selectOption({ label: "Curators" });
+  await carl.page.getByRole("button", { name: words.tables.edit, exact: true }).click();
+  const choice = carl.page
+    .locator("strata-record-dialog")
+    .getByLabel(words.visibility.of("ring.png"));
+  await choice.selectOption({ label: words.visibility.names.private });
   await wait_for(
     async () =>
       (await server.json("GET", "/tables/finds/records/1/attachments")).attachments[0]
@@ -141,17 +146,20 @@ test("a photo of the curators", async () => {
 });
 
 test("who downloads the scan", async () => {
-  await carl.page.getByRole("button", { name: "About this model" }).click();
+  await carl.page.getByRole("button", { name: words.model.details }).click();
   const about = carl.page.locator("strata-about-sheet");
+  await about.getByText(words.model.details_list.open_edges).waitFor();
   await about
-    .getByLabel("The scan's files are for")
-    .selectOption({ label: "everybody who sees the project" });
+    .getByLabel(words.visibility.download)
+    .selectOption({ label: words.visibility.download_roles.viewer });
   await shoot(carl, "about");
   await wait_for(
     async () => (await server.json("GET", `/models/${model.id}`)).source_download === "viewer",
     "the right to be given",
   );
-  await about.getByLabel("The scan's files are for").selectOption({ label: "curators alone" });
+  await about
+    .getByLabel(words.visibility.download)
+    .selectOption({ label: words.visibility.download_roles.curator });
   await wait_for(
     async () => (await server.json("GET", `/models/${model.id}`)).source_download === "curator",
     "the right to be taken",

@@ -572,6 +572,15 @@ export interface Repair {
   count: number;
 }
 
+/** Where the surface ends: loops of edges of one triangle only. The rims of holes and of what was scanned in part. A closed surface has 0 loops. Models imported before they were measured have none of this. */
+export interface OpenEdges {
+  loops: number;
+  /** Of all loops together. */
+  length_m: number;
+  /** Of single loops, longest first. */
+  longest_m: number[];
+}
+
 /** Uploaded file, kept bit for bit. */
 export interface SourceFile {
   name: string;
@@ -604,6 +613,7 @@ export interface Model {
   area_m2: number;
   atlas: Atlas;
   repairs: Repair[];
+  open_edges?: OpenEdges;
   source_files: SourceFile[];
   /** Of new layers. */
   default_resolution: Resolution;

@@ -2424,6 +2424,8 @@ export interface components {
         ModelList: wire.ModelList;
         /** Changes to a model's description */
         ModelPatch: wire.ModelPatch;
+        /** Where the surface ends: loops of edges of one triangle only */
+        OpenEdges: wire.OpenEdges;
         /** Outline of an area */
         Outline: wire.Outline;
         /** Palette */

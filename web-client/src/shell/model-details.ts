@@ -20,6 +20,14 @@ import { detailStyles } from "./detail-styles";
 
 const kDownloaders = ["viewer", "annotator", "curator"] as const;
 
+/** Empty where the model was imported before its open edges were measured. */
+function openEdgesText({ open_edges: edges }: Model): string {
+  const words = texts.model.details_list;
+  if (!edges) return "";
+  if (edges.loops === 0) return words.closed_surface;
+  return words.loops(edges.loops, formatLength(edges.length_m), formatLength(edges.longest_m[0]!));
+}
+
 @customElement("strata-about-sheet")
 export class StrataModelDetails extends LitElement {
   @property({ attribute: false }) model!: Model;
@@ -52,6 +60,7 @@ export class StrataModelDetails extends LitElement {
       [words.captured, model.captured],
       [words.rights, model.rights_uri],
       [words.credit, model.credit],
+      [words.open_edges, openEdgesText(model)],
       [
         words.repairs,
         model.repairs.map((repair) => `${repair.what}: ${formatCount(repair.count)}`).join("; "),

@@ -458,6 +458,12 @@ export const texts = {
       rights: "Rechte",
       credit: "Nachweis",
       files: "Ausgangsdateien",
+      open_edges: "Offene Kanten",
+      closed_surface: "Keine: Die Oberfläche ist geschlossen",
+      loops: (n: number, length: string, longest: string) =>
+        n === 1
+          ? `1 Rand, ${length}`
+          : `${count(n, "Rand", "Ränder")}, zusammen ${length}; der längste ${longest}`,
       repairs: "Beim Import behoben",
       smallest: "Kleinstes Detail, übliche Ebene",
     },

@@ -438,6 +438,12 @@ export const texts = {
       rights: "Rights",
       credit: "Credit",
       files: "Source files",
+      open_edges: "Open edges",
+      closed_surface: "None: the surface is closed",
+      loops: (n: number, length: string, longest: string) =>
+        n === 1
+          ? `1 loop, ${length}`
+          : `${count(n, "loop", "loops")}, ${length} together; the longest ${longest}`,
       repairs: "Mended at import",
       smallest: "Smallest detail, standard layer",
     },

@@ -459,6 +459,12 @@ export const texts = {
       rights: "Derechos",
       credit: "Crédito",
       files: "Archivos de origen",
+      open_edges: "Bordes abiertos",
+      closed_surface: "Ninguno: la superficie está cerrada",
+      loops: (n: number, length: string, longest: string) =>
+        n === 1
+          ? `1 borde, ${length}`
+          : `${count(n, "borde", "bordes")}, ${length} en total; el más largo, ${longest}`,
       repairs: "Reparado al importar",
       smallest: "Detalle mínimo, capa corriente",
     },

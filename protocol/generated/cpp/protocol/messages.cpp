@@ -1140,6 +1140,20 @@ nlohmann::json to_json(const Repair& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, OpenEdges& value) {
+  read_member(json, "loops", value.loops);
+  read_member(json, "length_m", value.length_m);
+  read_member(json, "longest_m", value.longest_m);
+}
+
+nlohmann::json to_json(const OpenEdges& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "loops", value.loops);
+  write_member(json, "length_m", value.length_m);
+  write_member(json, "longest_m", value.longest_m);
+  return json;
+}
+
 void read(const nlohmann::json& json, SourceFile& value) {
   read_member(json, "name", value.name);
   read_member(json, "sha256", value.sha256);

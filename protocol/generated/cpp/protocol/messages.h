@@ -98,6 +98,7 @@ enum class Schema {
   AtlasLimit,
   TexelSize,
   Repair,
+  OpenEdges,
   SourceFile,
   Model,
   SurfaceValue,
@@ -315,7 +316,7 @@ enum class Schema {
   Readiness,
   ServerVersion,
 };
-constexpr int kSchemaCount = 289;
+constexpr int kSchemaCount = 290;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -702,6 +703,18 @@ void read(const nlohmann::json& json, Repair& value);
 nlohmann::json to_json(const Repair& value);
 template <>
 inline constexpr Schema kSchemaOf<Repair> = Schema::Repair;
+
+// Where the surface ends: loops of edges of one triangle only. The rims of holes and of what was scanned in part. A closed surface has 0 loops. Models imported before they were measured have none of this.
+struct OpenEdges {
+  std::int64_t loops = 0;
+  double length_m = 0;  // Of all loops together.
+  std::vector<double> longest_m;  // Of single loops, longest first.
+  bool operator==(const OpenEdges&) const = default;
+};
+void read(const nlohmann::json& json, OpenEdges& value);
+nlohmann::json to_json(const OpenEdges& value);
+template <>
+inline constexpr Schema kSchemaOf<OpenEdges> = Schema::OpenEdges;
 
 // Uploaded file, kept bit for bit.
 struct SourceFile {
