@@ -551,11 +551,13 @@ void LiveSession::presence_changed() {
     std::lock_guard lock(mutex_);
     if (std::exchange(presence_scheduled_, true)) return;
     const LiveLimits& limits = shared_->limits;
-    const auto due = presence_sent_ + limits.presence_every *
-                                          std::max(people_told_, limits.presence_people) /
-                                          limits.presence_people;
-    delay = std::max(delay, std::chrono::ceil<std::chrono::milliseconds>(
-                                due - std::chrono::steady_clock::now()));
+    if (presence_sent_) {
+      const auto due = *presence_sent_ + limits.presence_every *
+                                             std::max(people_told_, limits.presence_people) /
+                                             limits.presence_people;
+      delay = std::max(delay, std::chrono::ceil<std::chrono::milliseconds>(
+                                  due - std::chrono::steady_clock::now()));
+    }
   }
   socket->run_after(delay, [weak = weak_from_this()] {
     if (auto self = weak.lock()) self->send_presence();

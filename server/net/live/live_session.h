@@ -161,7 +161,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   std::shared_ptr<room::Participant> member_;
   std::unordered_map<Uuid, bool> own_edits_;  // on their way; true: applied
   bool presence_scheduled_ = false;
-  std::chrono::steady_clock::time_point presence_sent_{};
+  std::optional<std::chrono::steady_clock::time_point> presence_sent_;
   int people_told_ = 0;  // by that one
   struct Pointer {
     Camera camera;
