@@ -1,4 +1,4 @@
-"""The README's tour with curl, word for word, and whether its figures agree with one another."""
+"""The tour with curl of docs/scripting.md, word for word, and whether its figures agree with one another."""
 import json
 import os
 import re
@@ -11,16 +11,16 @@ from support.meshes import bumpy_ball
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
 
 
-def tour_of_readme():
-    with open(os.path.join(ROOT, "README.md"), encoding="utf-8") as file:
-        block = re.search(r"## The same with curl\n+```\n(.*?)```", file.read(), re.S).group(1)
+def tour_of_the_guide():
+    with open(os.path.join(ROOT, "docs", "scripting.md"), encoding="utf-8") as file:
+        block = re.search(r"```\n(.*?)```", file.read(), re.S).group(1)
     kept = []
     for line in block.splitlines():
         # The server of this test runs already; the rest stays as it is written.
         if line.startswith(("export STRATA_OWNER_TOKEN=", "STRATA_NO_BROWSER=1 ./run")):
             continue
         kept.append(re.sub(r"^S=http://127.0.0.1:8080", "S=$STRATA_URL", line))
-    assert any(line.startswith("S=$STRATA_URL") for line in kept), "the README no longer sets S"
+    assert any(line.startswith("S=$STRATA_URL") for line in kept), "the guide no longer sets S"
     return "set -euo pipefail\n" + "\n".join(kept) + "\n"
 
 
@@ -47,7 +47,7 @@ def test_its_figures_agree_with_one_another(server, folder):
         file.write(bumpy_ball())
     os.symlink(os.path.join(ROOT, "scripts"), os.path.join(folder, "scripts"))
     done = subprocess.run(
-        ["bash", "-c", tour_of_readme()],
+        ["bash", "-c", tour_of_the_guide()],
         cwd=folder,
         capture_output=True,
         text=True,
