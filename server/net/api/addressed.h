@@ -19,13 +19,13 @@ namespace strata::net {
 struct Request;
 struct RouteContext;
 
-// What the address names, as the role of who asks sees it. From the store: reading needs no open
-// room.
+// Finds the entity that the address names, as the caller's role may see it. Reads from the store:
+// no room is opened.
 Result<Project> stored_project(const RouteContext& context, const Request& request);
 Result<Model> stored_model(const RouteContext& context, const Request& request);
 Result<Layer> stored_layer(const RouteContext& context, const Request& request);
 Result<Table> stored_table(const RouteContext& context, const Request& request);
-// The open room of the model that the address names; it is opened where it is not.
+// Opens the room of the model that the address names, unless it is open already.
 Result<std::shared_ptr<room::Room>> open_room(const RouteContext& context, const Request& request);
 
 }  // namespace strata::net

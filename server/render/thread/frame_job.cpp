@@ -137,14 +137,15 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   }
   STRATA_TRY(validate(request.style.light));
   if (request.style.images.size() > kMaxSurfaceImagesShown)
-    return fail(ErrorCode::invalid, "Too many looks",
-                "A view shows at most " + std::to_string(kMaxSurfaceImagesShown) + " looks.",
-                "looks");
+    return fail(
+        ErrorCode::invalid, "Too many surface images",
+        "A view shows at most " + std::to_string(kMaxSurfaceImagesShown) + " surface images.",
+        "looks");
   for (const SurfaceImageStyle& style : request.style.images) {
     auto image = STRATA_TRY(scene.image(style.image));
     if (image->model != view.model)
       return fail(ErrorCode::invalid, "Look of another model",
-                  "A view shows looks of its own model.", "looks");
+                  "A view shows surface images of its own model.", "looks");
     if (!std::isfinite(style.opacity))
       return fail(ErrorCode::invalid, "Opacity not finite", "An opacity is 0 to 1.", "looks");
   }

@@ -176,10 +176,10 @@ Result<Model> Models::create(const NewModel& fresh, const std::function<bool()>&
     STRATA_TRY(check_text(source.name, "source_files"));
   }
   if (fresh.images.size() > SurfaceImages::kMaxSurfaceImages)
-    return fail(
-        ErrorCode::invalid, "Too many looks",
-        "A model holds at most " + std::to_string(SurfaceImages::kMaxSurfaceImages) + " looks.",
-        "looks");
+    return fail(ErrorCode::invalid, "Too many surface images",
+                "A model holds at most " + std::to_string(SurfaceImages::kMaxSurfaceImages) +
+                    " surface images.",
+                "looks");
   for (std::size_t i = 0; i < fresh.images.size(); ++i)
     STRATA_TRY(check_surface_image(surface_image_of(fresh.images[i], i)));
   // The geometry, its coarser copies, the looks, the source files.

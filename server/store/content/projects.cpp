@@ -142,7 +142,7 @@ Result<void> Projects::remove(ProjectId id, const IdempotentResponse<>& answer) 
                       " models. Delete them or move them to another project first.");
     if (row.integer(0, 3) > 0)
       return fail(ErrorCode::conflict, "Conflict",
-                  "The project's Bin still holds " + std::to_string(row.integer(0, 3)) +
+                  "The project's Trash still holds " + std::to_string(row.integer(0, 3)) +
                       " models. Restore them, or erase them there first.");
     if (row.integer(0, 2) > 0)
       return fail(ErrorCode::conflict, "Conflict",

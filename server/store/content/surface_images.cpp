@@ -41,11 +41,11 @@ Result<void> check_surface_image(const SurfaceImage& image) {
     return fail(ErrorCode::malformed, "Bad opacity", "`opacity` must be between 0 and 1.",
                 "opacity");
   if (image.media_type != "image/jpeg" && image.media_type != "image/png")
-    return fail(ErrorCode::unsupported, "Bad picture", "A look is a JPEG or a PNG picture.",
+    return fail(ErrorCode::unsupported, "Bad picture", "A surface image is a JPEG or PNG picture.",
                 "media_type");
   if (image.width < 1 || image.height < 1)
-    return fail(ErrorCode::invalid, "Bad picture", "A look has at least one pixel a side.",
-                "width");
+    return fail(ErrorCode::invalid, "Bad picture",
+                "A surface image has at least one pixel on each side.", "width");
   return check_texts({{&image.slug, "slug"}, {&image.description, "description"}});
 }
 
@@ -120,9 +120,9 @@ Result<SurfaceImage> SurfaceImages::create(const SurfaceImage& image,
     auto count = STRATA_TRY(connection.query("SELECT count(*) FROM looks WHERE model_id = $1",
                                              Params().id(image.model_id)));
     if (count.integer(0, 0) >= kMaxSurfaceImages)
-      return fail(ErrorCode::conflict, "Too many looks",
+      return fail(ErrorCode::conflict, "Too many surface images",
                   "A model holds at most " + std::to_string(kMaxSurfaceImages) +
-                      " looks. Delete one first.");
+                      " surface images. Delete one first.");
     STRATA_TRY(keep_blob(connection, content, {}));
     return insert_surface_image(connection, image, content.hash);
   };

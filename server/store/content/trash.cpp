@@ -62,9 +62,9 @@ const char* name_of(Kind kind) {
 }
 
 tl::unexpected<Error> not_in_trash(const TrashEntry& entry) {
-  return fail(ErrorCode::not_found, "Not in the Bin",
+  return fail(ErrorCode::not_found, "Not in the Trash",
               "The " + std::string(name_of(entry.kind)) + " " + entry.name +
-                  " is not in the Bin any more: it was restored or erased.");
+                  " is no longer in the Trash: it was restored or erased.");
 }
 
 // Done where one row was changed; `id` is of something that may not be there.
@@ -134,8 +134,8 @@ Result<TrashEntry> Trash::entry(ProjectId project_id, Kind kind, std::int64_t id
         sql("SELECT * FROM ", kTrash, "WHERE kind = $5 AND id = $6 AND table_id = $7"),
         seen_in(project_id, sight).text(name_of(kind)).integer(id).id(table_id)));
     if (rows.rows() == 0)
-      return fail(ErrorCode::not_found, "Not in the Bin",
-                  "The project's Bin has no such " + std::string(name_of(kind)) + ": " +
+      return fail(ErrorCode::not_found, "Not in the Trash",
+                  "The project's Trash has no such " + std::string(name_of(kind)) + ": " +
                       std::to_string(id) + ".");
     return read_entry(rows, 0);
   });

@@ -154,7 +154,7 @@ Result<void> Tables::remove(TableId id, const IdempotentResponse<>& answer) {
     if (users.rows() > 0 && users.boolean(0, 1))
       return fail(ErrorCode::conflict, "Table in use",
                   "The table is named by " + users.text(0, 0) +
-                      ", which lies in the Bin. Erase that one there first.");
+                      ", which is in the Trash. Erase that one there first.");
     if (users.rows() > 0)
       return fail(ErrorCode::conflict, "Table in use",
                   "The table is named by " + users.text(0, 0) + ". Delete that one first.");

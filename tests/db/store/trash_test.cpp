@@ -278,9 +278,9 @@ TEST_F(TrashOfAProject, projects_and_tables_that_something_in_it_needs_are_kept)
   ASSERT_TRUE(trash_.put_layer(units.id, by<>("ada")));
   ASSERT_TRUE(trash_.put_model(vase.id, by<>("ada")));
   EXPECT_THAT(store_->tables().remove(*units.table).error().detail,
-              ::testing::HasSubstr("lies in the Bin"));
+              ::testing::HasSubstr("is in the Trash"));
   EXPECT_THAT(store_->projects().remove(villa.id).error().detail,
-              ::testing::HasSubstr("Bin still holds 1"));
+              ::testing::HasSubstr("Trash still holds 1"));
   ASSERT_TRUE(trash_.erase(
       trash_.entry(villa.id, Kind::model, vase.id.number(), 0, {Role::owner, days(30)}).value(),
       by<>("carl")));

@@ -165,7 +165,7 @@ async function chosen_theme(page) {
   assert.equal(await theme(), "dark");
   await page.emulateMedia({ colorScheme: "light", contrast: "more" });
   assert.equal(await theme(), "dark", "a theme that was chosen gave way");
-  await choose_theme("As the system");
+  await choose_theme(words.settings.themes.system);
   await becomes("contrast");
   await page.emulateMedia({ colorScheme: "dark", contrast: "no-preference" });
   await becomes("dark");

@@ -75,7 +75,7 @@ test("a layer that was deleted comes back by Undo", async () => {
   await shoot(carl, "undo");
   assert.deepEqual((await layers_of()).includes(name), false);
   await undo(carl).click();
-  await notice(carl, `“${name}” is back.`).waitFor();
+  await notice(carl, words.bin.restored(name)).waitFor();
   await button(carl, `Options for ${name}`).waitFor();
   assert.deepEqual(await layers_of(), before);
 });
@@ -92,7 +92,7 @@ test("the Bin lists it, and gives it back by keys", async () => {
     .getByRole("button", { name: `Restore ${name}` })
     .focus();
   await carl.page.keyboard.press("Enter");
-  await bin(carl).getByText(`“${name}” is back.`).waitFor();
+  await bin(carl).getByText(words.bin.restored(name)).waitFor();
   await bin(carl).getByText(words.bin.none).waitFor();
   assert.deepEqual(await layers_of(), before);
   await carl.page.keyboard.press("Escape");
@@ -119,7 +119,7 @@ test("annotators find records in it, and nothing else", async () => {
   assert.equal(await bin(bea).locator("li").count(), 1, "layers are for curators");
   assert.equal(
     await bin(bea)
-      .getByRole("button", { name: /for ever/ })
+      .getByRole("button", { name: /permanently/ })
       .count(),
     0,
   );
@@ -162,11 +162,11 @@ test("for ever is asked before, and is for ever", async () => {
   await phone.page.goto(`${server.url}/projects/${pot.project}`);
   await menu(phone, words.home.options("Demo"), words.bin.open);
   await entry(phone, name).waitFor();
-  await button(phone, `Delete ${name} for ever`).tap();
-  await phone.page.getByRole("heading", { name: `Delete “${name}” for ever?` }).waitFor();
+  await button(phone, words.bin.erase_of(name)).tap();
+  await phone.page.getByRole("heading", { name: words.bin.erase_title(name) }).waitFor();
   await shoot(phone, "for_ever");
   await confirm(phone, words.bin.erase_yes);
-  await bin(phone).getByText(`“${name}” was deleted for ever.`).waitFor();
+  await bin(phone).getByText(words.bin.erased(name)).waitFor();
   assert.deepEqual((await server.json("GET", `/projects/${pot.project}/bin`)).entries, []);
   assert.equal((await layers_of()).includes(name), false);
 });

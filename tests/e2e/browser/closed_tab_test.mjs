@@ -125,7 +125,7 @@ test("somebody else at the same browser sends nothing of it", async () => {
 test("who painted it comes back: it is sent, in their name, once", async () => {
   await browser.sign_in(server, ada);
   await open_model();
-  await page.getByText(/from earlier sent again/).waitFor();
+  await page.getByText(/earlier changes? (was|were) sent again/).waitFor();
   await browser.saved();
   await wait_for(async () => (await kept()).length === 0, "all to be saved");
   const now = await history();

@@ -83,13 +83,13 @@ test("a click with the tool begins a comment there, and one beside the model non
   await open_model(ada);
   await open_model(bea);
   await ada.page.keyboard.press("c");
-  assert.equal(await button(ada, words.comments.text).getAttribute("aria-pressed"), "true");
+  assert.equal(await button(ada, words.tools.comment).getAttribute("aria-pressed"), "true");
   await click_at(ada, 0.04, 0.5);
   await ada.page.getByText(words.comments.missed).waitFor();
   await click_at(ada, 0.47, 0.62);
   await card(ada).getByRole("textbox", { name: words.comments.text }).waitFor();
   assert.equal(await focused(ada), "textarea");
-  assert.equal(await button(ada, words.comments.text).first().isDisabled(), false);
+  assert.equal(await button(ada, words.tools.comment).first().isDisabled(), false);
   assert.equal(
     await card(ada).getByRole("button", { name: words.comments.send, exact: true }).isDisabled(),
     true,
@@ -125,7 +125,7 @@ test("it is sent by the keyboard, and seen by others without asking", async () =
   await pin(bea, first.id).waitFor();
   assert.match(
     await pin(bea, first.id).getAttribute("aria-label"),
-    /^Comment by ada: something new: Is this the crack of 2019\? See/,
+    /^Comment by ada: unread: Is this the crack of 2019\? See/,
   );
   assert.equal(await button(ada, words.comments.pin_draft).count(), 0);
   assert.match(ada.page.url(), new RegExp(`#comment=${first.id}$`));
@@ -139,7 +139,7 @@ test("a reply with somebody's name reaches them", async () => {
   await pin(bea, first.id).click();
   await article(bea, "Is this the crack").waitFor();
   await wait_for(
-    async () => !/something new/.test(await pin(bea, first.id).getAttribute("aria-label")),
+    async () => !/unread/.test(await pin(bea, first.id).getAttribute("aria-label")),
     "the thread to be read",
   );
   await ada.page.keyboard.press("Escape");
@@ -151,7 +151,7 @@ test("a reply with somebody's name reaches them", async () => {
   await article(bea, "it has grown").or(article(bea, "has grown.")).first().waitFor();
   assert.equal(await card(bea).locator(".mention").innerText(), "@ada");
   await ada.page.getByText(words.comments.mentioned("bea")).waitFor();
-  assert.match(await pin(ada, first.id).getAttribute("aria-label"), /something new/);
+  assert.match(await pin(ada, first.id).getAttribute("aria-label"), /unread/);
   await ada.page.getByRole("button", { name: words.comments.show, exact: true }).click();
   await article(ada, "<b>it</b> has grown.").waitFor();
   await shot(bea, "reply");
@@ -319,7 +319,7 @@ test("the list finds threads by words, state and person, and goes to them", asyn
   await pin(bea, fingerprint.id).waitFor();
   await shot(bea, "flown");
   await panel(bea).getByRole("button", { name: words.comments.mark_all_read }).click();
-  await gone(panel(bea).getByRole("img", { name: /something new/ }));
+  await gone(panel(bea).getByRole("img", { name: /unread/ }));
 });
 
 test("an address leads to its comment, also to a reply", async () => {
@@ -353,7 +353,7 @@ test("a first comment that is deleted leaves its place while there are replies",
 test("on a phone the thread is a sheet, and a finger writes", async () => {
   await open_model(phone);
   const box = await phone.stage_box();
-  await button(phone, words.comments.text).click();
+  await button(phone, words.tools.comment).click();
   await phone.page.touchscreen.tap(box.x + 0.35 * box.width, box.y + 0.62 * box.height);
   await card(phone).getByRole("textbox", { name: words.comments.text }).fill("Glaze?");
   await shot(phone, "phone_composer");
@@ -367,7 +367,9 @@ test("what somebody says meanwhile is shown above the sheet", async () => {
     text: "@carl, see here",
     position: first.position,
   });
-  const told = phone.page.locator("strata-notices .notice", { hasText: "owner wrote to you" });
+  const told = phone.page.locator("strata-notices .notice", {
+    hasText: words.comments.mentioned("owner"),
+  });
   await told.waitFor();
   await shot(phone, "phone_told");
   await wait_for(async () => {
@@ -416,7 +418,7 @@ test("who only looks reads, and is not offered to write", async () => {
   await phone.page.context().clearCookies();
   await phone.sign_in(server, await server.add_person("vera", "viewer"));
   await open_model(phone);
-  assert.equal(await button(phone, words.comments.text).count(), 0);
+  assert.equal(await button(phone, words.tools.comment).count(), 0);
   await pin(phone, fingerprint.id).tap();
   await article(phone, "Fingerprint").waitFor();
   assert.equal(await card(phone).getByRole("textbox").count(), 0);

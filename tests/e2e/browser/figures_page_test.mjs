@@ -172,13 +172,13 @@ test("the dialog shows the sheet: white paper with the model on it, of all that 
   assert.equal(preview.layers.find(({ layer }) => layer === hidden).visible, false);
   assert.match(
     await dialog(ada).locator("figure img").getAttribute("alt"),
-    /A4, seen from: As I see it, scale: As fits/,
+    /A4, seen from: Current view, scale: Fit to page/,
   );
   await shot(ada, "first");
 });
 
 test("where nobody has confirmed the size, that is told, until somebody has", async () => {
-  const unsure = dialog(ada).getByText(/^Nobody has confirmed the size of this model/);
+  const unsure = dialog(ada).getByText(words.figures.unsure);
   await unsure.waitFor();
   await server.json("PATCH", kBase, { scale_verified: true, unit: model.unit });
   await unsure.waitFor({ state: "detached" });
@@ -199,9 +199,7 @@ test("another scale is another sheet: twice as small is a quarter of the area", 
   );
   await field(ada, "scale").selectOption("own");
   await field(ada, "own_scale").fill("2 to 1");
-  await dialog(ada)
-    .getByText(/^Write it as 1 : 40/)
-    .waitFor();
+  await dialog(ada).getByText(words.figures.wrong_scale).waitFor();
   assert.equal(await field(ada, "own_scale").getAttribute("aria-invalid"), "true");
   await button(ada, words.figures.make).click();
   assert.equal(asked.get(ada).file, undefined);
@@ -269,9 +267,7 @@ test("square to a face: the dialog steps aside, Escape leads back as it was, a c
 test("labels are what records have in a column; in SVG they are words", async () => {
   const unlabelled = await sheet(ada);
   await field(ada, "caption").fill("The handle,\nfrom the side");
-  await sheet_after(ada, unlabelled, () =>
-    field(ada, "labels").selectOption({ label: words.layer_dialog.name_hint.records }),
-  );
+  await sheet_after(ada, unlabelled, () => field(ada, "labels").selectOption({ label: "Finds" }));
   assert.deepEqual(await field(ada, "column").locator("option").allTextContents(), [
     "Name",
     "Depth",
@@ -380,7 +376,7 @@ test("what was written is there again, also what was chosen, in another visit as
 });
 
 test("what the server refuses stands at its field", async () => {
-  await field(ada, "labels").selectOption({ label: words.layer_dialog.name_hint.records });
+  await field(ada, "labels").selectOption({ label: "Finds" });
   await field(ada, "column").selectOption("depth");
   await sheet(ada);
   const columns = (await server.json("GET", `/tables/${finds.id}`)).columns;

@@ -282,7 +282,7 @@ test("on a phone what is painted and undo are always in sight", async () => {
     });
     assert.ok(hit, `something lies over ${what}`);
   };
-  await button(words.brush.title, phone).click();
+  await button(words.tools.brush, phone).click();
   chip = phone.page.locator("strata-paint-chip button");
   await chip.waitFor();
   for (const place of [0, 60, 100_000]) {

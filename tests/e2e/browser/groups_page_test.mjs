@@ -56,7 +56,7 @@ test.beforeAll(async () => {
   await gil.sign_in(server, await server.add_person("gil", "guest"));
   await server.add_person("max", "viewer");
   await server.json("PATCH", "/users/gil", { full_name: "Gil Guest" });
-  await gil.page.getByText("You see the models of projects that you have a role in.").waitFor();
+  await gil.page.getByText(words.home.empty_guest).waitFor();
 });
 
 test("a group is made with the keyboard; a name that is taken is told at its field", async () => {
@@ -83,7 +83,7 @@ test("a group is made with the keyboard; a name that is taken is told at its fie
 test("people are put into it and taken out, found by their names", async () => {
   await choose_for(words.groups.options("Students"), words.groups.members);
   await owner.page.getByRole("checkbox", { name: "max" }).check();
-  await owner.page.getByText("1 person is in it.").waitFor();
+  await owner.page.getByText(words.groups.inside(1)).waitFor();
   await owner.page.getByRole("checkbox", { name: "max" }).uncheck();
   await owner.page.getByText(words.groups.taken_out).waitFor();
   await owner.page.getByLabel(words.site_people.filter).last().fill("gil");
@@ -174,14 +174,12 @@ test("a page that is open follows the group's role, and ends with the group", as
     .getByRole("button", { name: words.tools.brush, exact: true })
     .waitFor({ state: "detached" });
   await leave_inner_dialog();
-  await choose_for(words.groups.options("Students"), words.view.look_rename);
+  await choose_for(words.groups.options("Students"), words.groups.rename);
   await owner.page.getByLabel(words.groups.name, { exact: true }).fill("Pupils");
   await owner.page.keyboard.press("Enter");
   await owner.page.getByText("Pupils").waitFor();
   await choose_for(words.groups.options("Pupils"), words.layers.delete);
-  await owner.page
-    .getByText("2 people of the 2 in it will see fewer projects, or may do less there.")
-    .waitFor();
+  await owner.page.getByText(words.groups.delete_lead(2, 2)).waitFor();
   await shot(owner, "delete");
   await owner.page.keyboard.press("Escape");
   await owner.page.getByText("2 people · a role in 1 project").waitFor();
@@ -189,7 +187,7 @@ test("a page that is open follows the group's role, and ends with the group", as
   await owner.page.getByRole("button", { name: words.delete, exact: true }).click();
   await owner.page.getByText(words.groups.none).waitFor();
   await gil.page.goto(server.url);
-  await gil.page.getByText("You see the models of projects that you have a role in.").waitFor();
+  await gil.page.getByText(words.home.empty_guest).waitFor();
 });
 
 test("the project's activity tells it", async () => {
@@ -200,7 +198,7 @@ test("the project's activity tells it", async () => {
   await activity.getByRole("button", { name: words.activity.title, expanded: false }).click();
   await activity.getByRole("radio", { name: words.activity.of_project }).click();
   await activity.getByText(words.activity.done["group removed"]).waitFor();
-  await activity.getByText("put into a group").first().waitFor();
+  await activity.getByText(words.activity.done["in_group added"]).first().waitFor();
   await activity.evaluate((panel) => panel.scrollIntoView());
   await shot(owner, "activity");
   assert.ok(project);

@@ -118,7 +118,7 @@ test("the lock falls while her button is down: what she painted stays, and nothi
   await ada.page.mouse.move(...at(0.48, 0.4), { steps: 5 });
   await wait_for(async () => (await edits()) > before, "the beginning of the stroke to be saved");
   await ada.saved();
-  await choose_for(carl, words.layer_dialog.name_hint.records, words.layers.lock);
+  await choose_for(carl, "Finds", words.layers.lock);
   await notice(ada).waitFor();
   await told_in_panel(ada).waitFor();
   await lock_of(ada, words.layers.locked_to_you).waitFor();

@@ -111,7 +111,7 @@ test("a shapefile tells its attributes, and names become classes", async () => {
   await page.getByText("2 areas · 2 attributes").waitFor();
   await page.getByLabel(words.maps.attribute).selectOption("STATE");
   await page.getByText(words.maps.samples("Salt, Moss")).waitFor();
-  await page.getByText("others become new classes").waitFor();
+  await page.getByText(words.maps.names_become).waitFor();
   await seen_from_front();
   await shot("maps-shapefile");
   await paint();
@@ -156,7 +156,7 @@ test("a scanned map: its colours are found, and get values", async () => {
   await values.nth(1).fill("");
   await seen_from_front();
   await button(words.maps.paint).click();
-  await page.getByRole("alert").getByText("Give every colour that is used a number").waitFor();
+  await page.getByRole("alert").getByText(words.maps.colors_wrong).waitFor();
   await values.nth(1).fill("4");
   await values.nth(2).fill("11");
   await shot("maps-colours");
@@ -174,7 +174,7 @@ test("a raster of numbers lies where it says", async () => {
   await open_dialog("Depth");
   await give("depth.tif");
   await page.getByText("16 × 16 px · 1 band").waitFor();
-  await page.getByText("The number that the raster has there").waitFor();
+  await page.getByText(words.maps.mode_hints.band).waitFor();
   await seen_from_front();
   await shot("maps-raster");
   await paint();
@@ -192,7 +192,7 @@ test("a map with a coordinate system on a model without one is asked about", asy
   await seen_from_front();
   await button(words.maps.paint).click();
   const question = page.getByRole("alertdialog", {
-    name: /The map lies in EPSG:25830, and this model has no coordinate system/,
+    name: /The map is in EPSG:25830, but this model has no coordinate system/,
   });
   await question.waitFor();
   await wait_for(
@@ -247,7 +247,7 @@ test("what is no map, and numbers for vertices", async () => {
   await give("walls.dbf");
   await page.getByRole("alert").getByText("walls.dbf is no map by itself").waitFor();
   await give("values.csv");
-  await page.getByText("One number a line").waitFor();
+  await page.getByText(words.maps.vertices_hint).waitFor();
   await button(words.maps.paint).click();
   await page.getByRole("alert").waitFor();
   await shot("maps-vertices");

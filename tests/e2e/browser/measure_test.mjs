@@ -287,7 +287,7 @@ test("a second click on the last place ends; a rectangle on one side of the roof
   await desk.is_about("straight", 2 * wide + deep, 3 * near);
   await desk.is_about("ends", deep, near * kAlong);
   assert.equal(
-    await desk.panel.getByText(/off its plane/).count(),
+    await desk.panel.getByText(/off the plane/).count(),
     0,
     "one side of a roof is flat",
   );
@@ -417,7 +417,7 @@ test("the profile is saved as the server's CSV and as a picture", async () => {
       text: readFileSync(await download.path(), "utf8"),
     };
   };
-  const csv = await save(words.tables.save_csv);
+  const csv = await save(words.measure.save_csv);
   assert.equal(csv.name, "roof-profile.csv");
   const [head, ...lines] = csv.text
     .trim()
@@ -453,7 +453,7 @@ test("the profile is saved as the server's CSV and as a picture", async () => {
 test("where there is no surface there is no place", async () => {
   await page.keyboard.press("Escape");
   await click(100, 140);
-  await page.locator("strata-notices").getByText("There is no surface there.").waitFor();
+  await page.locator("strata-notices").getByText(words.marks.missed).waitFor();
   await desk.none();
 });
 
@@ -502,7 +502,7 @@ test("buttons do the same, and the keyboard stays in the panel when the one that
   await page.keyboard.press("Enter");
   await desk.panel.getByRole("heading", { name: words.measure.profile }).waitFor();
   await wait_for(
-    async () => (await focused()) === "Take back",
+    async () => (await focused()) === words.measure.take_back,
     "the keyboard at the first button that is left",
   );
   await desk.is_about("straight", moved_px * mm_per_px, near);
@@ -510,10 +510,10 @@ test("buttons do the same, and the keyboard stays in the panel when the one that
 
 test("where not all places are seen at once, the nearest surface counts, and the panel says so", async () => {
   await desk.panel.getByRole("radio", { name: words.measure.ways.nearest }).click();
-  await desk.panel.getByText(/Of each step of the straight lines/).waitFor();
+  await desk.panel.getByText(words.measure.way_hints.nearest).waitFor();
   await desk.is_about("along", moved_px * mm_per_px, near);
   await desk.panel.getByRole("radio", { name: words.measure.ways.seen }).click();
-  await desk.panel.getByText(/The surface that was seen/).waitFor();
+  await desk.panel.getByText(words.measure.way_hints.seen).waitFor();
 });
 
 test("what lies on two sides is measured straight; a line through the object is no way over its surface, and none is told", async () => {

@@ -257,7 +257,7 @@ test("somebody else changes the layer that is being edited", async () => {
   await server.json("PATCH", `${base}/layers/test`, { description: "by the other" });
   await page.getByLabel(words.layer_dialog.name, { exact: true }).fill("Mine");
   await button(words.save).click();
-  await page.getByText("Somebody else changed this layer meanwhile").waitFor();
+  await page.getByText(words.layer_dialog.changed).waitFor();
   await button(words.layer_dialog.reload).click();
   await wait_for(
     async () =>
@@ -281,7 +281,7 @@ test("somebody else changes the layer that is being edited", async () => {
 
 test("a layer of things with records", async () => {
   await button(words.layers.new).click();
-  await radio(/^Things with records/).click();
+  await radio(/^Objects with records/).click();
   await page.getByLabel(words.layer_dialog.name, { exact: true }).fill("Finds");
   await button(words.layer_dialog.create).click();
   await page.getByLabel(words.brush.record).fill("70012");
@@ -300,7 +300,7 @@ test("a layer of things with records", async () => {
   await browser.saved();
   await browser.point(0.5, 0.45);
   await page.locator("strata-value-readout").getByText(words.tables.record(70_012)).waitFor();
-  await menu(words.layer_dialog.name_hint.records, words.layers.statistics);
+  await menu("Finds", words.layers.statistics);
   await page.getByText(words.tables.record(70_012)).last().waitFor();
   await page.keyboard.press("Escape");
   assert.deepEqual(
@@ -330,7 +330,7 @@ test("a scan that is dropped on a model's page is imported, and the person stays
   await page.getByRole("link", { name: words.import.open, exact: true }).click();
   await page.getByRole("heading", { name: "dropped box", exact: true }).waitFor();
   await browser.drawn(); // straight from one model to another
-  await page.getByText(/This object is .*: right\?/).waitFor();
+  await page.getByText(/Is this object .*\?/).waitFor();
 });
 
 test("the pages have nothing to complain of, and the server ends with a clean log", async () => {

@@ -119,7 +119,7 @@ test("the owner, who came by the printed link, is asked for a password, and told
   await owner.page.getByLabel(words.account.new, { exact: true }).fill(kOwnersPassword);
   await owner.page.getByLabel(words.account.repeat).fill("four words of his");
   await owner.page.keyboard.press("Enter");
-  await alert_of(owner, "not the same");
+  await alert_of(owner, words.password.differs);
   await owner.page.getByLabel(words.account.repeat).fill(kOwnersPassword);
   await owner.page.keyboard.press("Enter");
   await owner.page.getByText("Your password is set.").waitFor();
@@ -136,9 +136,9 @@ test("they sign out, and in again by name and password", async () => {
   await choose_in_menu(owner, words.account.sign_out);
   await at_sign_in(owner);
   await sign_in(owner, "owner", "four words of hers");
-  await alert_of(owner, "Name or password does not fit");
+  await alert_of(owner, words.sign_in.wrong);
   await sign_in(owner, "nobody", kOwnersPassword);
-  await alert_of(owner, "Name or password does not fit");
+  await alert_of(owner, words.sign_in.wrong);
   await sign_in(owner, "Owner", kOwnersPassword); // in any case
   await at_home(owner);
 });
@@ -148,7 +148,7 @@ test("a token that is not known is told so, and the owner's is one for scripts s
   await phone.page.getByText(words.sign_in.otherwise).click();
   await phone.page.getByLabel(words.sign_in.token).fill("no such token");
   await phone.page.keyboard.press("Enter");
-  await alert_of(phone, "is not known here");
+  await alert_of(phone, words.sign_in.token_wrong);
   await phone.page.getByLabel(words.sign_in.token).fill(server.token);
   await phone.page.keyboard.press("Enter");
   await alert_of(phone, "for scripts");
@@ -264,18 +264,18 @@ test("the owner makes her a viewer: her page, which is open, offers no painting 
 
 test("the owner disables her: she is out, and cannot come back", async () => {
   await choose_for(owner, "Ada Lovelace", words.site_people.disable);
-  await owner.page.getByText("They are signed out everywhere").waitFor();
+  await owner.page.getByText(words.site_people.disable_lead).waitFor();
   await owner.page
     .getByRole("button", { name: words.site_people.disable_button, exact: true })
     .click();
   await owner.page
     .getByRole("row", { name: /Ada Lovelace/ })
-    .getByText(words.site_people.states.disabled)
+    .getByText(words.site_people.states.disabled, { exact: true })
     .waitFor();
   await at_sign_in(ada);
   await sign_in(ada, "ada", kAdasPassword);
   // before the next try, which must not come while this one is under way
-  await alert_of(ada, "Name or password does not fit");
+  await alert_of(ada, words.sign_in.wrong);
   await at_sign_in(ada);
 });
 
@@ -300,7 +300,7 @@ test("who forgot a password gets a new link; the old password is good for nothin
   await at_home(phone);
   await at_sign_in(ada); // the new password has ended her other sessions
   await sign_in(ada, "ada", kAdasPassword);
-  await alert_of(ada, "Name or password does not fit");
+  await alert_of(ada, words.sign_in.wrong);
   await sign_in(ada, "ada", kAdasNext);
   await ada.drawn();
 });
@@ -314,7 +314,7 @@ test("she changes her password on the page, with the one until now; it ends her 
     await phone.page.getByRole("button", { name: words.account.password_change }).click();
   };
   await change("", kAdasThird);
-  await alert_of(phone, "Give the password that you have now.");
+  await alert_of(phone, words.account.current_missing);
   await change(kAdasPassword, kAdasThird);
   await alert_of(phone, "not the password that you have now");
   await change(kAdasNext, "short");
@@ -324,7 +324,7 @@ test("she changes her password on the page, with the one until now; it ends her 
   await shot(phone, "password_changed");
   await at_sign_in(ada);
   await sign_in(ada, "ada", kAdasNext);
-  await alert_of(ada, "Name or password does not fit");
+  await alert_of(ada, words.sign_in.wrong);
   await sign_in(ada, "ada", kAdasThird);
   await ada.drawn();
   await close_dialog(phone);
@@ -333,9 +333,9 @@ test("she changes her password on the page, with the one until now; it ends her 
 test("she signs out at one of her browsers, from another", async () => {
   await choose_in_menu(phone, words.account.open);
   await phone.page.getByText(words.account.this_browser).waitFor();
-  await phone.page.getByRole("button", { name: /^Sign out: / }).click();
+  await phone.page.getByRole("button", { name: /^Sign out of / }).click();
   await at_sign_in(ada);
-  await phone.page.getByRole("button", { name: /^Sign out: / }).waitFor({ state: "detached" });
+  await phone.page.getByRole("button", { name: /^Sign out of / }).waitFor({ state: "detached" });
   await sign_in(ada, "ada", kAdasThird);
   await ada.drawn();
   await close_dialog(phone);
@@ -360,7 +360,7 @@ test("a token made on the page works for a script, as its role allows, until it 
   await choose_in_menu(owner, words.account.open);
   await owner.page.getByRole("button", { name: words.account.token_new }).click();
   await owner.page.getByRole("button", { name: words.account.token_make }).click();
-  await alert_of(owner, "Say what it is for");
+  await alert_of(owner, words.account.token_name_missing);
   await owner.page.getByLabel(words.account.token_name).fill("Nightly report");
   const role_of_token = owner.page.getByRole("combobox", {
     name: words.account.token_role,
@@ -397,7 +397,7 @@ test("deleted she is out; what she did stays, under a name that nobody can tell"
   await choose_in_menu(owner, words.account.people);
   await owner.page.getByLabel(words.site_people.filter).fill("countess");
   await owner.page.getByText(words.site_people.count_of(1, 2)).waitFor();
-  await choose_for(owner, "Countess of Lovelace", words.layers.delete);
+  await choose_for(owner, "Countess of Lovelace", words.site_people.delete);
   await owner.page.getByText("stays in the history").waitFor();
   await owner.page.getByRole("button", { name: words.delete, exact: true }).click();
   await owner.page.getByText(words.site_people.none_found).waitFor();
@@ -416,10 +416,10 @@ test("an administrator lets a guest annotate in one project: they see its models
   await import_square("Threshold", "villa-giulia");
   await ada.sign_in(server, await server.add_person("anna", "administrator"));
   await phone.sign_in(server, await server.add_person("gil", "guest"));
-  await phone.page.getByText("You see the models of projects that you have a role in.").waitFor();
+  await phone.page.getByText(words.home.empty_guest).waitFor();
   await choose_in_menu(ada, words.account.people);
   await choose_for(ada, "gil", words.site_people.projects);
-  await ada.page.getByText("Everywhere: guest.").waitFor();
+  await ada.page.getByText(words.project_roles.lead("guest")).waitFor();
   const in_villa = ada.page.getByRole("combobox", {
     name: words.project_roles.role_in("Villa Giulia"),
   });
@@ -453,7 +453,7 @@ test("an administrator lets a guest annotate in one project: they see its models
     .getByText(words.project_roles.removed)
     .waitFor();
   await phone.page.goto(server.url);
-  await phone.page.getByText("You see the models of projects that you have a role in.").waitFor();
+  await phone.page.getByText(words.home.empty_guest).waitFor();
 });
 
 test("the pages have nothing to complain of, and the server ends with a clean log", async () => {

@@ -122,7 +122,7 @@ test("a curator computes a condition: painted where it holds, hidden for others,
 test("unlocked, it is edited by hand, and says so to everybody", async () => {
   await panel(cleo).getByRole("button", { name: words.layers.unlock_computed }).click();
   await panel(cleo)
-    .getByText(/^Edited by hand: .* It is not computed again by itself\.$/)
+    .getByText(/^Edited by hand: .* It does not update automatically\.$/)
     .waitFor();
   assert.equal(await edits(), computed, "nothing was painted while it was locked");
   await cleo.page.keyboard.press("Escape");
@@ -139,7 +139,7 @@ test("unlocked, it is edited by hand, and says so to everybody", async () => {
     .waitFor();
   await shoot(cleo, "by_hand");
   await panel(cleo).getByRole("button", { name: words.layers.recompute }).click();
-  await cleo.page.getByText("This overwrites what was edited by hand.").waitFor();
+  await cleo.page.getByText(words.layers.overwrite_lead).waitFor();
   await cleo.page
     .locator("strata-question")
     .getByRole("button", { name: words.layers.recompute })

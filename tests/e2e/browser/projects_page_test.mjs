@@ -116,12 +116,12 @@ test("an administrator makes a project by keyboard, and is led to it", async () 
   await ada.page.keyboard.type("Frescoes of the east wing, campaign of 2026.");
   await shoot(ada, "new_desk");
   await button(ada, words.projects.create).click();
-  await heading(ada, words.projects.name_hint);
+  await heading(ada, "Villa Giulia");
   await is_closed(ada);
   assert.equal(new URL(ada.page.url()).pathname, "/projects/villa-giulia");
   await ada.page.getByText("Frescoes of the east wing").waitFor();
   await heading(ada, words.home.empty_title);
-  await ada.page.getByText("Who may work on it is said in the account menu").waitFor();
+  await ada.page.getByText(words.projects.made_next).waitFor();
   await shoot(ada, "made_desk");
   assert.equal((await server.json("GET", "/projects/villa-giulia")).name, "Villa Giulia");
 });
@@ -153,12 +153,12 @@ test("who changes a project that somebody else changed meanwhile is told, and th
   await ada.page.getByRole("link", { name: words.home.all_projects }).click();
   await heading(ada, words.home.projects);
   assert.deepEqual(await cards(ada), ["Demo", "Villa Giulia"]);
-  await from_menu(ada, words.projects.name_hint, words.projects.describe);
-  await ada.page.getByText("Its address stays as it is, /projects/villa-giulia").waitFor();
+  await from_menu(ada, "Villa Giulia", words.projects.describe);
+  await ada.page.getByText(words.projects.describe_lead("/projects/villa-giulia")).waitFor();
   await server.json("PATCH", "/projects/villa-giulia", { name: "Villa Julia" });
   await box(ada, "Name").fill("Villa Giulia, Rome");
   await button(ada, words.save).click();
-  await ada.page.getByText("it is called “Villa Julia” now").waitFor();
+  await ada.page.getByText(words.projects.changed("Villa Julia")).waitFor();
   await shoot(ada, "changed_meanwhile");
   await button(ada, words.save).click();
   await is_closed(ada);
@@ -178,7 +178,7 @@ test("a project may demand that programs name versions; the page does", async ()
   const demand = () => inside(ada).getByRole("checkbox", { name: words.projects.require_version });
   for (const is_demanded of [true, false]) {
     await from_menu(ada, "Villa Giulia, Rome", words.projects.describe);
-    await ada.page.getByText("Nothing changes for work on this page.").waitFor();
+    await ada.page.getByText(words.projects.require_version_hint).waitFor();
     assert.equal(await demand().isChecked(), !is_demanded);
     await demand().setChecked(is_demanded);
     if (is_demanded) await shoot(ada, "demands_versions");
@@ -279,7 +279,7 @@ test("by touch: a project is made on a phone, and deleted while it is empty by o
   await heading(pia, words.home.projects);
   await shoot(pia, "gallery_phone_dark");
   await from_menu(pia, "遺跡", "Delete…");
-  await pia.page.getByText("Links to it lead nowhere").waitFor();
+  await pia.page.getByText(words.projects.delete_lead).waitFor();
   await shoot(pia, "delete_phone_dark");
   await inside(pia).getByRole("button", { name: words.delete, exact: true }).tap();
   await heading(pia, words.home.title);

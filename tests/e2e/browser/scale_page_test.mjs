@@ -130,7 +130,7 @@ test.beforeAll(async () => {
 test("a PLY whose header has the unit: the card says so, and the scale bar agrees", async () => {
   await drop(desk, file_of("bowl_with_unit.ply", bowl("y", "unit: mm")));
   await asked(desk);
-  assert.match(await reason(desk, "unit"), /From the file itself: “unit: mm”/);
+  assert.match(await reason(desk, "unit"), /From a comment in the file: “unit: mm”/);
   assert.match(await title(desk), /80 × 40 × 80 mm/);
   assert.deepEqual(await chosen(desk), ["millimetres", "+Y"]);
   await bar_says(desk, "(mm|cm)");
@@ -178,7 +178,7 @@ test("the picture is not dimmed, and the model can be turned while the question 
 test("another choice turns the model and changes the scale bar at once, and nothing is kept", async () => {
   await choose(desk, "metres");
   await bar_says(desk, "m");
-  assert.match(await title(desk), /80 × 40 × 80 m:/);
+  assert.match(await title(desk), /80 × 40 × 80 m\?/);
   await choose(desk, "−Y");
   const upside_down = await desk.settled(() =>
     desk.page.locator("strata-stage canvas").first().screenshot(),
@@ -254,7 +254,7 @@ test("without a unit in the file the size decides, and says that it is guessed; 
       buffer: readFileSync(kScan),
     });
     await asked(desk);
-    assert.match(await reason(desk, "unit"), /From the file itself: “unit: mm”/);
+    assert.match(await reason(desk, "unit"), /From a comment in the file: “unit: mm”/);
     assert.match(await title(desk), /49.6 × 80.3 × 49.8 mm/);
     await bar_says(desk, "(mm|cm)");
     assert.deepEqual(await chosen(desk), ["millimetres", "+Y"]);

@@ -93,7 +93,7 @@ test.beforeAll(async () => {
 test("a layer is computed from the shape", async () => {
   await start_computing("Curvature", { "Within a radius of": "0" });
   await button(words.layer_dialog.compute).click();
-  await page.getByText("Give a length larger than 0").waitFor();
+  await page.getByText(words.shape.bad_length).waitFor();
   await page.getByLabel(words.shape.radius).fill("4");
   await keep_picture("dialog");
   await button(words.layer_dialog.compute).click();
@@ -136,10 +136,10 @@ test("it is locked; unlocked, it can be taken back like a stroke", async () => {
 });
 
 test("long work shows how far it is, and is cancelled", async () => {
-  await start_computing("Openness", {
+  await start_computing(words.shape.kinds.ambient_occlusion.title, {
     Name: "Never",
-    "Looks as far as": "30",
-    "Rays at each point": "7",
+    [words.shape.distance]: "30",
+    [words.shape.rays]: "7",
   });
   await button(words.layer_dialog.compute).click();
   await page.getByText(words.shape.bad_rays(16, 1024)).waitFor();
@@ -225,7 +225,7 @@ test("a table of numbers for the vertices of the scan is painted", async () => {
     mimeType: "text/csv",
     buffer: Buffer.from(numbers.join("\n")),
   });
-  await page.getByText("One number a line").waitFor();
+  await page.getByText(words.maps.vertices_hint).waitFor();
   await button(words.maps.paint).click();
   await page.locator("strata-map-dialog").waitFor({ state: "detached" });
   const tenfold = await server.json("GET", `/models/${now}/layers/quality/statistics`);

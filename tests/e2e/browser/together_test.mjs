@@ -385,14 +385,14 @@ test("a move of one's own stops it, and so does Escape", async () => {
 });
 
 test("somebody asks to look along: the others get a notice, and she sees who follows", async () => {
-  await choose(bea, /Look with me/);
-  await bar(bea).getByText("You asked the others to look with you").waitFor();
+  await choose(bea, /Invite to follow me/);
+  await bar(bea).getByText(words.together.leading(0)).waitFor();
   await anna.page.getByText(words.together.invites("Bea Ost")).waitFor();
   await anna.page
     .locator("strata-notices")
     .getByRole("button", { name: words.together.accept, exact: true })
     .click();
-  await bar(bea).getByText("1 person looks with you").waitFor();
+  await bar(bea).getByText(words.together.leading(1)).waitFor();
   await shot(bea, "leading_1280");
   await bea.page.keyboard.press("ArrowRight");
   await wait_for(() => same_view(anna.sent.camera, bea.sent.camera), "Anna to look along");
@@ -400,18 +400,18 @@ test("somebody asks to look along: the others get a notice, and she sees who fol
 
 test("she takes it back and asks again: who went their own way is asked again", async () => {
   await anna.page.keyboard.press("Escape");
-  await bar(bea).getByText("You asked the others to look with you").waitFor();
+  await bar(bea).getByText(words.together.leading(0)).waitFor();
   await bar(bea).click();
   await bar(bea).waitFor({ state: "detached" });
   await wait_for(() => bea_as_heard().leading === false, "Anna to hear that it is over");
-  await choose(bea, /Look with me/);
+  await choose(bea, /Invite to follow me/);
   await anna.page.getByText(words.together.invites("Bea Ost")).waitFor();
   await shot(anna, "asked_1280");
   await anna.page.setViewportSize(kPhone);
   await shot(anna, "asked_390");
   await anna.page.setViewportSize(kDesk);
   await choose(anna, /Follow Bea Ost/);
-  await bar(bea).getByText("1 person looks with you").waitFor();
+  await bar(bea).getByText(words.together.leading(1)).waitFor();
 });
 
 test("she leaves: who followed her is told", async () => {

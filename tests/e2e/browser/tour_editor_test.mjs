@@ -74,7 +74,7 @@ async function open_panel(who) {
   await who.page.goto(server.url);
   await open_model(who);
   if (who === phone) await who.page.getByRole("button", { name: words.model.show_panel }).click();
-  await who.page.locator("strata-view-panel").getByRole("button", exact(words.view.title)).click();
+  await who.page.locator("strata-view-panel").getByRole("button", exact(words.tours.view)).click();
   await who.page.locator("strata-view-list").waitFor();
 }
 async function keep_view(who, name, keys) {
@@ -119,13 +119,9 @@ test.beforeAll(async () => {
 
 test("a tour needs views, and says how they are had", async () => {
   await open_panel(ada);
-  await list(ada)
-    .getByText(/^None is made yet/)
-    .waitFor();
+  await list(ada).getByText(words.tours.none).waitFor();
   await button(list(ada), words.tours.new).click();
-  await editor(ada)
-    .getByText(/^No view is kept yet/)
-    .waitFor();
+  await editor(ada).getByText(words.tours.no_views).waitFor();
   await shot(ada, "no_views");
   await button(editor(ada), words.cancel).click(); // nothing was written: nothing is asked
   await gone(editor(ada));
@@ -138,10 +134,10 @@ test("it is made of views, and what it lacks is told at its field", async () => 
   await button(list(ada), words.tours.new).click();
   await button(stops(ada), words.tours.add).waitFor();
   await save(ada);
-  await refused(ada, words.projects.name_empty);
+  await refused(ada, words.tours.wrong.name_missing);
   await editor(ada).getByLabel(words.tours.name, { exact: true }).fill("Around the pot");
   await save(ada);
-  await refused(ada, /^Add a stop/);
+  await refused(ada, words.tours.wrong.stops_missing);
   for (const [index, name] of ["West wall", "From above", "The handle"].entries()) {
     await button(stops(ada), words.tours.add).click();
     await stops(ada)
@@ -189,10 +185,10 @@ test("layers and records are chosen in an order, with columns that are called ot
   await ada.page.keyboard.press("Tab");
   await fields(ada)
     .getByRole("combobox", exact(words.tours.column_add))
-    .selectOption({ label: words.site_people.state });
+    .selectOption({ label: "State" });
   await button(fields(ada), words.tours.column_add).click();
   await fields(ada)
-    .getByLabel(/^What State is called on the card/)
+    .getByLabel(/^Label of State on the card/)
     .fill("Condition");
   await shot(ada, "things");
   await save(ada);
@@ -270,7 +266,7 @@ test("it is translated, and what lacks is marked", async () => {
   await button(question(ada), words.cancel).click();
   assert.equal((await fields(ada).getByRole("radio").count()) > 0, true);
   await button(editor(ada), words.tours.language_remove("German")).click();
-  await button(question(ada), words.column_filter.remove).click();
+  await button(question(ada), words.tours.language_remove_yes).click();
   await gone(button(editor(ada), words.tours.language_remove("German")));
 });
 
@@ -351,7 +347,7 @@ test("leaving the page asks as well while a stop is tried: by its links, back, s
 test("what somebody else saved meanwhile is told, and nothing is lost", async () => {
   await server.json("PATCH", `${kBase}/tours/around-the-pot`, { name: "Twice around" });
   await save(ada);
-  await refused(ada, /^Somebody changed this tour meanwhile/);
+  await refused(ada, words.tours.conflict);
   await shot(ada, "conflict");
   assert.equal(
     await fields(ada).getByLabel(words.tours.stop_title_in("Spanish")).inputValue(),
@@ -447,7 +443,7 @@ test("a stop whose view is gone is marked, and says what to do", async () => {
     .waitFor();
   await shot(ada, "view_gone");
   await fields(ada)
-    .getByRole("combobox", exact(words.view.title))
+    .getByRole("combobox", exact(words.tours.view))
     .selectOption({ label: "From above" });
   await save(ada);
   await gone(editor(ada));
@@ -467,7 +463,7 @@ test("a link for a kiosk is made, and shown once", async () => {
   await kiosks(ada).getByLabel(words.kiosks.days).fill("4000");
   await button(kiosks(ada), words.kiosks.make).click();
   await kiosks(ada)
-    .getByText(/^A whole number of days/)
+    .getByText(/^Enter a whole number of days/)
     .waitFor();
   await kiosks(ada).getByLabel(words.kiosks.days).fill("30");
   await button(kiosks(ada), words.kiosks.make).click();
@@ -496,7 +492,7 @@ test("who sees to kiosks finds all of them in their menu: seen, asked to reload,
   assert.equal((await as_kiosk("/kiosk")).status, 200);
   await button(ada.page, words.account.menu("ada")).click();
   await ada.page.getByRole("menuitem", exact(words.kiosks.open)).click();
-  const entry = kiosks(ada).getByRole("listitem", exact(words.kiosks.name_hint));
+  const entry = kiosks(ada).getByRole("listitem", exact("Entrance hall"));
   await entry.getByText(words.kiosks.states.running, { exact: true }).waitFor();
   await entry.getByText("Around the pot").waitFor();
   await button(entry, words.kiosks.reload_of("Entrance hall")).click();
@@ -507,7 +503,7 @@ test("who sees to kiosks finds all of them in their menu: seen, asked to reload,
   await button(question(ada), words.cancel).click();
   assert.equal((await as_kiosk("/kiosk")).status, 200);
   await button(entry, words.kiosks.revoke_of("Entrance hall")).click();
-  await button(question(ada), words.account.revoke).click();
+  await button(question(ada), words.kiosks.revoke_yes).click();
   await entry.getByText(words.kiosks.states.revoked, { exact: true }).waitFor();
   assert.equal((await as_kiosk("/kiosk")).status, 401);
   assert.equal(await entry.getByRole("button").count(), 0);
@@ -558,7 +554,7 @@ test("a tour that was deleted meanwhile is made anew", async () => {
   await editor(ada).getByLabel(words.tours.name, { exact: true }).fill("Once more");
   await server.request("DELETE", `${kBase}/tours/around-the-pot`);
   await save(ada);
-  await refused(ada, /^This tour was deleted meanwhile/);
+  await refused(ada, words.tours.gone);
   await save(ada);
   await gone(editor(ada));
   assert.deepEqual(
@@ -567,9 +563,7 @@ test("a tour that was deleted meanwhile is made anew", async () => {
   );
   await from_menu(ada, "Once more", words.layers.delete);
   await button(question(ada), words.delete).click();
-  await list(ada)
-    .getByText(/^None is made yet/)
-    .waitFor();
+  await list(ada).getByText(words.tours.none).waitFor();
   assert.deepEqual(await tours(), []);
 });
 

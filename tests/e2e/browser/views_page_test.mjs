@@ -96,9 +96,7 @@ test("what is seen is kept under a name, and others have it at once", async () =
   await open_model(bea);
   await open_panel(ada);
   await open_panel(bea);
-  await list(ada)
-    .getByText(/^None is kept yet/)
-    .waitFor();
+  await list(ada).getByText(words.kept_views.none).waitFor();
   await shot(ada, "empty");
   await surface(ada);
   for (const key of ["4", "ArrowUp", "ArrowRight", "+", "+", "o"])
@@ -196,10 +194,7 @@ test("it gets another name, and its link goes on", async () => {
     await route.continue();
   });
   await dialog(ada).getByRole("button", { name: words.save }).click();
-  await dialog(ada)
-    .getByRole("alert")
-    .getByText(/changed this view meanwhile; it is called “East wall” now/)
-    .waitFor();
+  await dialog(ada).getByRole("alert").getByText(words.kept_views.changed("East wall")).waitFor();
   await shot(ada, "stale");
   await ada.page.unroute("**/views/*");
   assert.equal(await dialog(ada).getByLabel(words.kept_views.name).inputValue(), "North wall");
@@ -212,8 +207,8 @@ test("it gets another name, and its link goes on", async () => {
 test("who did not make it is offered its link alone", async () => {
   await row(bea, "North wall").getByRole("button", { name: "Options for North wall" }).click();
   assert.deepEqual(await row(bea, "North wall").getByRole("menuitem").allTextContents(), [
-    "Copy the link",
-    "Figure of this view…",
+    words.kept_views.copy_link,
+    words.figures.of_view,
   ]);
   await shot(bea, "menu");
   await bea.page.keyboard.press("Escape");

@@ -20,8 +20,8 @@ async function choose_for({ page }, menu, command) {
 }
 const row_of = ({ page }) => page.getByRole("button", { name: words.layers.select("Finds") });
 const badge = (where, says) => where.getByRole("img", { name: says });
-const kCurators = "Only curators of the project see this.";
-const kTeam = "Only annotators and curators of the project see this.";
+const kCurators = words.visibility.says.private;
+const kTeam = words.visibility.says.team;
 const photo = encode_png({ width: 64, height: 48, data: Buffer.alloc(64 * 48 * 4, 200) });
 
 let carl, vera, phone, server, model, dialog;

@@ -298,7 +298,7 @@ test("with several a project is chosen first; the empty ones are last, and say s
 test("a project is gone to by keyboard; its address leads there, and Back to the others", async () => {
   await nora.page.getByRole("link", { name: /^Villa Giulia/ }).focus();
   await nora.page.keyboard.press("Enter");
-  await nora.page.getByRole("heading", { name: words.projects.name_hint, exact: true }).waitFor();
+  await nora.page.getByRole("heading", { name: "Villa Giulia", exact: true }).waitFor();
   assert.equal(nora.page.url(), `${server.url}/projects/villa-giulia`);
   assert.equal(await nora.page.title(), "Villa Giulia – Strata");
   await wait_for(
@@ -320,11 +320,11 @@ test("a project is gone to by keyboard; its address leads there, and Back to the
   await nora.page.getByRole("heading", { name: words.home.projects, exact: true }).waitFor();
   assert.equal(await nora.page.title(), "Strata");
   await nora.page.goForward();
-  await nora.page.getByRole("heading", { name: words.projects.name_hint, exact: true }).waitFor();
+  await nora.page.getByRole("heading", { name: "Villa Giulia", exact: true }).waitFor();
   await nora.page.getByRole("link", { name: words.home.open("Lintel") }).click();
   await nora.drawn();
   await nora.page.getByRole("link", { name: words.model.back }).click();
-  await nora.page.getByRole("heading", { name: words.projects.name_hint, exact: true }).waitFor();
+  await nora.page.getByRole("heading", { name: "Villa Giulia", exact: true }).waitFor();
   await nora.page.getByRole("link", { name: words.home.all_projects }).click();
   await nora.page.getByRole("heading", { name: words.home.projects, exact: true }).waitFor();
   await vic.page.goto(`${server.url}/projects/villa-giulia`);
@@ -334,7 +334,7 @@ test("a project is gone to by keyboard; its address leads there, and Back to the
 
 test("where nothing is, it says what to do: wait for a curator, import, ask for a role", async () => {
   await vic.page.goto(`${server.url}/projects/archive`);
-  await vic.page.getByText("Curators of the project do; ask one of them").waitFor();
+  await vic.page.getByText(words.home.empty_viewer).waitFor();
   assert.equal(await vic.page.getByRole("button", { name: words.home.choose_file }).count(), 0);
   await shoot(vic, "empty_phone");
   await vic.page.goto(`${server.url}/projects/nowhere`);
@@ -343,7 +343,7 @@ test("where nothing is, it says what to do: wait for a curator, import, ask for 
   await vic.page.getByRole("heading", { name: words.home.projects, exact: true }).waitFor();
   await tablet.sign_in(server, await server.add_person("gil", "guest"));
   await tablet.page.getByRole("heading", { name: words.home.no_projects }).waitFor();
-  await tablet.page.getByText("Ask whoever invited you for one.").waitFor();
+  await tablet.page.getByText(words.home.empty_guest).waitFor();
   await shoot(tablet, "no_project_tablet");
 });
 

@@ -7,13 +7,13 @@ const en = {
   begin: "Touch to begin",
   still_there: "Are you still there?",
   begins_anew: (seconds: number) =>
-    `The tour begins anew in ${seconds} ${seconds === 1 ? "second" : "seconds"}.`,
+    `The tour restarts in ${seconds} ${seconds === 1 ? "second" : "seconds"}.`,
   here: "I am still here",
   previous: "Previous",
   next: "Next",
   stop: (number: number, count: number) => `Stop ${number} of ${count}`,
   languages: "Language",
-  layers: "What is shown",
+  layers: "Layers",
   as_kept: "Overview",
   records: "More about",
   record: (key: number) => `No. ${key}`,
@@ -22,16 +22,14 @@ const en = {
   yes: "yes",
   no: "no",
   stage:
-    "The object in 3D. One finger turns it; two fingers move, enlarge and tilt it; a tap tells more about a place.",
-  hint: "Turn with one finger, enlarge with two. Tap a place to learn more.",
+    "The object in 3D. Use one finger to turn it, two fingers to move, zoom and tilt it. Tap a place to learn more.",
+  hint: "Turn with one finger, zoom with two. Tap a place to learn more.",
   stored: "Still pictures for a moment",
   waiting: "One moment …",
-  worthless: "This screen has no tour any more",
-  worthless_detail:
-    "Its link was withdrawn or is over. Whoever looks after the screen can make a new one in Strata.",
+  worthless: "This screen no longer has a tour",
+  worthless_detail: "Its link was revoked or has expired. Create a new link in Strata.",
   nothing: "This tour has nothing to show yet",
-  nothing_detail:
-    "Whoever looks after it can give its stops views in Strata. This screen then begins by itself.",
+  nothing_detail: "Add views to its stops in Strata. This screen then starts automatically.",
 };
 export type KioskTexts = typeof en;
 

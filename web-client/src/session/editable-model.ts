@@ -1,5 +1,4 @@
-// What is known about the open model itself: its version, changes of it, and how it would look with
-// another unit and up direction.
+// The metadata of the open model: reads and changes it, and previews another unit and up direction.
 
 import type { Api, Versioned } from "../net/api";
 import type { Model, ModelPatch } from "../core/types";
@@ -25,7 +24,7 @@ export class EditableModel {
     return this._value;
   }
 
-  /** As the server has it now; nothing takes it over. */
+  /** Reads the server's version without showing it. */
   read(): Promise<Versioned<Model>> {
     return this._api.versioned("GET /models/{model}", { path: { model: this._id } });
   }

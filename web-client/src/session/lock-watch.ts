@@ -1,4 +1,4 @@
-// Whether the chosen layer may be changed with the tool in hand, and who tries to is told why not.
+// Decides whether the active tool may change the selected layer, and explains why not.
 
 import type { ProblemMessage } from "../core/protocol.gen";
 import { isAsComputed, type Layer } from "../core/types";
@@ -11,25 +11,24 @@ export interface LockWatchHost {
   selected(): Layer | null;
   tool(): ToolName;
   canCurate(): boolean;
-  /** What is being painted has come to nothing. */
+  /** Cancels the stroke under way. */
   stop(): void;
 }
 
 export class LockWatch {
-  // the layer of which the person knows that it is locked
+  // the layer of the last notice
   private _told: number | null = null;
 
   constructor(private readonly _host: LockWatchHost) {}
 
   /**
-   * To this person: curators change locked layers, too, but for those that are as they were
-   * computed.
+   * For this user: curators may change locked layers, except those that are as they were computed.
    */
   isLocked(layer: Layer): boolean {
     return layer.locked && (!this._host.canCurate() || isAsComputed(layer));
   }
 
-  /** The chosen layer, where a tool is in hand that would change its texels but may not. */
+  /** The selected layer, if the active tool would change its texels but may not. */
   get target(): Layer | null {
     const selected = this._host.selected();
     const tool = this._host.tool();
@@ -37,7 +36,7 @@ export class LockWatch {
     return paints && selected && this.isLocked(selected) ? selected : null;
   }
 
-  /** Who cannot paint any more is told so once, before they try. */
+  /** Shows one notice for each locked layer, before the user tries to paint. */
   lookAgain(): void {
     const { target } = this;
     const told = this._told;
@@ -47,7 +46,7 @@ export class LockWatch {
     this.tell(target);
   }
 
-  /** Painting that was on its way when the layer was locked is refused: told in the same words. */
+  /** Shows the same notice when the server refused a stroke because the layer is locked. */
   explains({ status, field }: Pick<ProblemMessage, "status" | "field">): boolean {
     const selected = this._host.selected();
     if (status !== 403 || field !== "layer" || !selected || !this.isLocked(selected)) return false;
@@ -55,7 +54,7 @@ export class LockWatch {
     return true;
   }
 
-  /** In the words that the page has for it, whoever noticed: one notice stands for all. */
+  /** Always in the same words, so that repeated notices merge. */
   private tell(layer: Layer): void {
     notices.show("problem", texts.layers.locked, whyLocked(layer));
   }

@@ -1,9 +1,9 @@
-// What the server tells of while a model is open, and the parts that are to know it.
+// Passes the server's events to the parts of an open model.
 
 import type { ConnectionCallbacks } from "../net/connection";
 import type { ModelSession } from "../session/model-session";
 
-/** What concerns the session itself, too, is not among it. */
+/** The session handles the others itself. */
 export type EventsOfParts = Omit<
   ConnectionCallbacks,
   "state" | "welcome" | "frame" | "saving" | "model" | "problem" | "takenUp"

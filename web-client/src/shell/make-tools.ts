@@ -1,4 +1,4 @@
-// The tools of an open model, and what each of them moves in its parts.
+// Makes the tools of an open model and connects them to its parts.
 
 import type { Point } from "../net/stroke";
 import type { PointerSample } from "../ui/input";
@@ -17,13 +17,13 @@ import type { Tool, ToolName } from "../tools/tool";
 import { ToolManager } from "../tools/tool-manager";
 
 export interface ToolChanges {
-  /** Another tool is in hand. */
+  /** Another tool is active. */
   chosen(): void;
-  /** The outline that is being drawn. */
+  /** The outline of the active tool changed. */
   outline(): void;
 }
 
-export function makeTools(session: ModelSession, told: ToolChanges): ToolManager {
+export function makeTools(session: ModelSession, changes: ToolChanges): ToolManager {
   const brushHost = {
     beginStroke: (erase: boolean) => session.painting.beginStroke(erase),
     strokeEnded: () => session.painting.strokeEnded(),
@@ -59,7 +59,7 @@ export function makeTools(session: ModelSession, told: ToolChanges): ToolManager
     finishOutline: (path: Point[]) => session.painting.finishOutline(path),
     outlineEnded: () => session.painting.strokeEnded(),
     scale: () => session.view.scale,
-    outlineChanged: () => told.outline(),
+    outlineChanged: () => changes.outline(),
   };
   const lineHost = {
     ...outlineHost,
@@ -67,7 +67,7 @@ export function makeTools(session: ModelSession, told: ToolChanges): ToolManager
     finishOutline: (path: Point[]) => session.marks.finishLine(path),
     outlineChanged: () => {
       session.marks.lineChanged(session.tools.outline);
-      told.outline();
+      changes.outline();
     },
   };
   const tools: Readonly<Record<ToolName, Tool>> = {
@@ -88,5 +88,5 @@ export function makeTools(session: ModelSession, told: ToolChanges): ToolManager
       y: session.view.camera.height / 2,
     })),
   };
-  return new ToolManager(Object.values(tools), "orbit", () => told.chosen());
+  return new ToolManager(Object.values(tools), "orbit", () => changes.chosen());
 }

@@ -20,7 +20,7 @@ import { detailStyles } from "./detail-styles";
 
 const kDownloaders = ["viewer", "annotator", "curator"] as const;
 
-/** Empty where the model was imported before its open edges were measured. */
+/** Empty for models that an earlier release imported. */
 function openEdgesText({ open_edges: edges }: Model): string {
   const words = texts.model.details_list;
   if (!edges) return "";

@@ -6,7 +6,7 @@
 // kept to come back to, `tours` what curators make of views, `measuring` what is measured,
 // `figures` what is drawn to scale, `face` the one that is asked for. Elements subscribe and draw
 // themselves from their state; they change it only through their methods.
-// Long, because here alone each part is told what it may ask of the others.
+// Long, because this file alone connects the parts.
 
 import type { Api } from "../net/api";
 import { ApiError } from "../net/api-error";

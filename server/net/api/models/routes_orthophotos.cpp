@@ -35,7 +35,8 @@ Result<Wish> wish_of(const Request& request) {
   Wish wish{{}, axis, 0};
   wish.image.name = request.query_or("name", {});
   if (wish.image.name.empty() || wish.image.name.size() > 200)
-    return fail(ErrorCode::invalid, "Name missing", "A look has a name of 1 to 200 bytes.", "name");
+    return fail(ErrorCode::invalid, "Name missing", "A surface image has a name of 1 to 200 bytes.",
+                "name");
   wish.image.description = request.query_or("description", {});
   if (const std::string text = request.query_or("resolution", {}); !text.empty()) {
     const auto resolution =
@@ -74,11 +75,11 @@ Result<SurfaceImage> bake(room::Room& room, const Wish& wish, const app::MapPict
         ErrorCode::invalid, "Beside the model",
         "Nothing of the model lies under the picture. Check its place, the direction and the unit.",
         "world");
-  progress.report(0.4, "Painting the look");
+  progress.report(0.4, "Painting the surface image");
   const auto map_of_surface = STRATA_TRY(room.surface().map(wish.resolution));
   const Picture picture = jobs::orthophoto_surface_image(*tiles, *map_of_surface);
   if (progress.cancelled()) return cancelled_problem();
-  progress.report(0.6, "Packing the look");
+  progress.report(0.6, "Packing the surface image");
   const auto png = encode_png(picture.rgba, picture.width, picture.height);
   if (progress.cancelled()) return cancelled_problem();
   progress.report(0.9, "Saving");

@@ -131,8 +131,8 @@ Result<TrashEntry> find_entry(const RouteContext& context, const Request& reques
                                        TableId(is_record ? numbers->front() : 0),
                                        sight_of(context, request));
   }
-  return fail(ErrorCode::not_found, "Not in the Bin",
-              "The project's Bin has no `" + std::string(ref.substr(0, 100)) + "`.");
+  return fail(ErrorCode::not_found, "Not in the Trash",
+              "The project's Trash has no `" + std::string(ref.substr(0, 100)) + "`.");
 }
 
 Result<Response> restore(const RouteContext& context, const Request& request) {

@@ -228,8 +228,7 @@ test("a record that has a line or a point alone is gone to, also after the page 
     await row(name).getByRole("rowheader").click();
     const go = panel.getByRole("button", { name: words.tables.fly });
     await wait_for(
-      async () =>
-        (await go.isEnabled()) && (await go.getAttribute("title")) === "Go to where they are",
+      async () => (await go.isEnabled()) && (await go.getAttribute("title")) === words.tables.fly,
       "the way there",
     );
     const before = await view_of();
@@ -251,7 +250,7 @@ test("a record that has a line or a point alone is gone to, also after the page 
   await row("Nothing").getByRole("rowheader").click();
   await panel
     .getByRole("button", { name: words.tables.fly })
-    .and(page.locator("[title='None of them has an area, a line or a point on this model']"))
+    .and(page.locator(`[title="${words.tables.nothing_here}"]`))
     .waitFor();
   await server.request("DELETE", `/tables/damages/records/${bare.key}`);
   await wait_for(async () => (await row("Nothing").count()) === 0, "the record to be gone");
@@ -305,7 +304,7 @@ test("a drag along the silhouette is one line on the surface that was begun", as
   assert.equal(
     await page
       .locator("strata-notices")
-      .getByText(/was cut into/)
+      .getByText(/was split into/)
       .count(),
     0,
   );
@@ -348,13 +347,13 @@ test("a line that crosses an edge for good is cut, says so, and is taken back as
     [middle, 0.24 * frame.height],
   ]);
   const cut = page.locator("strata-notices .notice", {
-    hasText: /The line crossed an edge and was cut into \d pieces\./,
+    hasText: /The line crossed an edge and was split into \d pieces\./,
   });
   await cut.waitFor();
   const pieces = (await marks(1, "cracks")).length - kept;
   assert.match(
     await cut.innerText(),
-    new RegExp(`cut into ${pieces} pieces[^]*drawn for “North crack”`),
+    new RegExp(`split into ${pieces} pieces[^]*drawn for “North crack”`),
   );
   await shot("mark-cut");
   await cut.getByRole("button", { name: words.model.undo }).click();
@@ -368,10 +367,10 @@ test("a line that crosses an edge for good is cut, says so, and is taken back as
 test("the form lists what the record has, and takes one out", async () => {
   await row("North crack").getByRole("rowheader").click();
   await button(words.tables.edit).click();
-  cracks = form.getByRole("group", { name: words.layer_dialog.name_hint.presence });
-  await cracks.getByRole("button", { name: /^Take out / }).waitFor();
+  cracks = form.getByRole("group", { name: "Cracks" });
+  await cracks.getByRole("button", { name: /^Remove / }).waitFor();
   await shot("mark-form");
-  await cracks.getByRole("button", { name: /^Take out / }).click();
+  await cracks.getByRole("button", { name: /^Remove / }).click();
   await button(words.save).click();
   await hides(kCrack, "the line to be gone");
   await wait_for(

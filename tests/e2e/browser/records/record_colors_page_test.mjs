@@ -85,7 +85,7 @@ test.beforeAll(async () => {
 
 test("the layer is coloured by a column, as it is chosen", async () => {
   await open_colors();
-  await dialog.getByLabel(words.colors.column).selectOption({ label: words.site_people.state });
+  await dialog.getByLabel(words.colors.column).selectOption({ label: "State" });
   await dialog.locator("li", { hasText: "firm" }).getByText("9", { exact: true }).waitFor();
   await dialog.getByText("1 record has no value.").waitFor();
   await dialog.getByLabel(words.colors.color_of("loose")).fill(kLoose);

@@ -132,11 +132,11 @@ test("where a key cannot be meant as text it is one of the page; Home and End st
   await cell(2, "Soil").click();
   await page.keyboard.press("m");
   await wait_for(
-    async () => (await tool()) === "Measure",
+    async () => (await tool()) === words.tools.measure,
     "the measuring tool, by M in a cell of choices",
   );
   await page.keyboard.press("v");
-  await wait_for(async () => (await tool()) === "Turn", "turning, by V");
+  await wait_for(async () => (await tool()) === words.tools.orbit, "turning, by V");
   await page.keyboard.press("Home");
   await wait_for(
     () => panel.locator(".cell.key.active").count(),
@@ -149,12 +149,15 @@ test("where a key cannot be meant as text it is one of the page; Home and End st
   );
   await page.keyboard.press("b");
   await wait_for(
-    async () => (await tool()) === "Brush",
+    async () => (await tool()) === words.tools.brush,
     "the brush, by B in a cell that is computed",
   );
   await cell(2, "Depth").click();
   await page.keyboard.press("h");
-  await wait_for(async () => (await tool()) === "Move", "moving, by H in a cell of numbers");
+  await wait_for(
+    async () => (await tool()) === words.tools.pan,
+    "moving, by H in a cell of numbers",
+  );
   await page.keyboard.press("7");
   await panel.locator(".editor").waitFor();
   await page.keyboard.press("Escape");
@@ -324,7 +327,7 @@ test("two layers are set against each other, with names and sums", async () => {
     "pieces / Units",
     "SU 2",
     "not in Units",
-    "All",
+    words.cross_table.sum,
   ]);
   const expected = await server.json("POST", `${base}/cross-table`, {
     rows: "pieces",

@@ -82,7 +82,7 @@ test.beforeAll(async () => {
 test("a template makes its tables and layers, and the first layer is painted on next", async () => {
   await menu(words.layers.more, words.templates.open);
   await templates.getByRole("listitem", { name: "Stone condition" }).waitFor();
-  assert.equal(await templates.getByRole("button", { name: /^Make / }).count(), 4);
+  assert.equal(await templates.getByRole("button", { name: /^Create / }).count(), 4);
   await shot("templates");
   await button(words.templates.make_of("Stone condition")).click();
   await wait_for(async () => (await templates.count()) === 0, "the dialog to close");
@@ -204,7 +204,7 @@ test("a SKOS file is looked at first, and is not written while one of its terms 
   await choose_file("glaze.pdf", "no terms");
   await importer
     .getByRole("alert")
-    .getByText(/no list of terms/)
+    .getByText(/is not supported/)
     .waitFor();
   prefixes =
     "@prefix skos: <http://www.w3.org/2004/02/skos/core#> .\n@prefix g: <https://glaze.example/> .\n";
@@ -281,7 +281,7 @@ test("the list is saved as SKOS, as it may be imported elsewhere", async () => {
 
 test("a new layer may hold the terms of a list that is there", async () => {
   await button(words.layers.new).click();
-  await page.getByRole("radio", { name: /Things with records/ }).click();
+  await page.getByRole("radio", { name: /Objects with records/ }).click();
   await maker
     .getByLabel(words.layer_dialog.table)
     .selectOption({ label: words.layer_dialog.table_of_terms("glaze terms", 4) });

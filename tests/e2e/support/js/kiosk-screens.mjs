@@ -106,7 +106,7 @@ export function kiosk_screens_of({ page }, server, { path, kiosk }) {
       start: async () => {
         await server.request("DELETE", `/kiosks/${kiosk.id}`);
         await pass_until(
-          () => heading("This screen has no tour any more").isVisible(),
+          () => heading("This screen no longer has a tour").isVisible(),
           "the end of it",
         );
       },

@@ -864,7 +864,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
         await bea.page.getByRole("button", { name: "Paint on Finds" }).click();
         await bea.page.keyboard.press("t");
         await bea.page.getByRole("grid").getByRole("rowheader", exact("2")).click();
-        await bea.page.getByRole("button", exact("Edit the record")).click();
+        await bea.page.getByRole("button", exact("Edit record")).click();
         await row(2)
           .getByRole("img", exact(w.tables.edited_by("Bea Ost")))
           .waitFor();
@@ -911,7 +911,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       name: "asked to look along",
       start: async () => {
         await bea.page.locator("strata-people-menu .faces").click();
-        await bea.page.getByRole("menuitem", { name: /Look with me/ }).click();
+        await bea.page.getByRole("menuitem", { name: /Invite to follow me/ }).click();
         await page.getByText(w.together.invites("Bea Ost")).waitFor();
       },
       end: () => bea.page.locator("strata-together-bar button").click(),

@@ -39,7 +39,8 @@ export async function wait_for(condition, what, every_ms = 50) {
 }
 
 export class StrataServer {
-  constructor({ demo = false } = {}) {
+  /** `env`: variables that this server has beside those of the test. */
+  constructor({ demo = false, env = {} } = {}) {
     this.binary = process.env.STRATA_BINARY;
     if (!this.binary) throw new Error("STRATA_BINARY names the server");
     this.token = randomBytes(24).toString("hex");
@@ -50,6 +51,7 @@ export class StrataServer {
     this.port = 0;
     process.on("exit", () => this.process?.kill("SIGKILL"));
     this.demo = demo;
+    this.env = env;
   }
 
   /** Copies what tests/support/prepare made, or makes it where that did not run. */
@@ -73,7 +75,7 @@ export class StrataServer {
       this.binary,
       ["serve", "--data", this.data, "--listen", `127.0.0.1:${this.port}`, ...kOften],
       {
-        env: { ...process.env, STRATA_OWNER_TOKEN: this.token },
+        env: { ...process.env, ...this.env, STRATA_OWNER_TOKEN: this.token },
         stdio: ["ignore", "pipe", "pipe"],
       },
     );

@@ -1,4 +1,4 @@
-// Which record lies under the pointer, by the layers that are shown and the tool in hand.
+// Finds the record under the pointer, from the visible layers and the active tool.
 
 import type { Picked } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
@@ -8,24 +8,24 @@ import type { RecordAt } from "./record-hover";
 
 export interface RecordSightHost {
   layers: Pick<LayersPart, "all" | "selected" | "visible">;
-  /** What is known to lie under the pointer. */
+  /** The last answer about the place under the pointer. */
   picked(): Picked | null;
   tool(): ToolName;
-  /** The record whose card is shown. */
+  /** The record whose card is open. */
   card(): RecordAt | null;
 }
 
 export class RecordSight {
   constructor(private readonly _host: RecordSightHost) {}
 
-  /** The layer that is painted on, if there is a record, or the topmost that shows one. */
+  /** The selected layer if it has a record there, otherwise the topmost layer that has one. */
   layerWithRecord(picked: Picked): Layer | null {
     const { selected, all } = this._host.layers;
     if (selected && this.showsRecord(selected, picked)) return selected;
     return [...all].reverse().find((layer) => this.showsRecord(layer, picked)) ?? null;
   }
 
-  /** Where the tool's tap would show its card, and does not already. */
+  /** The record whose card a tap would open; null if that card is open already. */
   get here(): RecordAt | null {
     const picked = this._host.picked();
     const layer = picked && this.layerOfTap(picked);

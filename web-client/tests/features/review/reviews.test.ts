@@ -2,6 +2,7 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { notices, type Notice } from "../../../src/ui/notices";
 import { Reviews } from "../../../src/features/review/reviews";
+import { texts } from "../../../src/texts";
 import { ApiError } from "../../../src/net/api-error";
 import { fakeApi } from "../../fake-api";
 import type { Review, ReviewQueue, WaitingStroke } from "../../../src/core/protocol.gen";
@@ -158,7 +159,7 @@ describe("what waits for review", () => {
     expect(told).toEqual([]);
     reviews.onEvent(event("cleo", ["ada", "ben"]));
     expect(told).toMatchObject([
-      { kind: "problem", title: "cleo rejected what you painted on Cracks", detail: "Too wide" },
+      { kind: "problem", title: texts.review.told.reject("cleo", "Cracks"), detail: "Too wide" },
     ]);
     reviews.close();
   });
@@ -169,7 +170,7 @@ describe("what waits for review", () => {
     expect(await reviews.decide(layers[0]!, { decision: "accept", user: "ben" })).toBe(true);
     expect(reviews.count).toBe(1);
     expect(told).toMatchObject([
-      { kind: "success", title: "1 edit accepted", link: { label: "Take back" } },
+      { kind: "success", title: "1 edit accepted", link: { label: texts.review.take_back } },
     ]);
     const { link } = told[0]!;
     if (link && "act" in link) link.act();

@@ -1,0 +1,69 @@
+import { describe, expect, it } from "vitest";
+import { texts } from "../../src/texts/en";
+
+/** What people do not say to each other, with what to write instead. */
+const kAvoided: readonly [RegExp, string][] = [
+  [/\banew\b/i, "again, or name what happens"],
+  [/\bmeanwhile\b/i, "has changed"],
+  [/\bby itself\b/i, "automatically"],
+  [/\bbeside\b/i, "next to"],
+  [/\btells?\b|\btold\b/i, "shows, lists"],
+  [/\bbears?\b|\bhears?\b/i, "the verb for what happens"],
+  [/\btak(e|es|en) (it )?(back|out|away)\b/i, "undo, remove"],
+  [/\bbr(ing|ings|ought) (it )?(back|over)\b/i, "restore, transfer"],
+  [/\bgives? up\b/i, "cancel, discard"],
+  [/\bworthless\b|\bof no use\b/i, "no longer works"],
+  [/\bmended?\b/i, "repaired"],
+  [/\bwhoever\b|\bwhatever\b/i, "anyone, the person, the role"],
+  [/\bof (his|her|their) own\b|\ba \w+ of its own\b/i, "own"],
+  [/\bis (not )?here any more\b/i, "was deleted"],
+  [/\bis (called|said) that\b/i, "no matching …"],
+  [/\bGive (it|the \w+|a \w+|every)\b/, "Enter"],
+  [/\bmay not\b/, "cannot"],
+  [/\bcome (nearer|back)\b|\bcomes nearer\b/i, "zoom, return"],
+  [/\ball of it\b|\bnone of (it|them)\b/i, "everything, no …"],
+  [/^Who |^What [a-z]+ (is|are) /, "a noun"],
+];
+
+type Texts = { readonly [name: string]: unknown };
+
+/** Nothing where the text takes another kind of argument. */
+function textOf(make: unknown, argument: unknown): unknown {
+  try {
+    return (make as (...all: unknown[]) => unknown)(...Array(5).fill(argument));
+  } catch {
+    return undefined;
+  }
+}
+
+/** Every text with where it stands, as it is for one thing and for several. */
+function* sentences(of: unknown, at: string): Generator<[string, string]> {
+  if (typeof of === "string") yield [at, of];
+  else if (typeof of === "function")
+    for (const argument of [1, 3, "Pot"])
+      yield* sentences(textOf(of, argument), `${at}(${argument})`);
+  else if (typeof of === "object" && of !== null)
+    for (const [name, inner] of Object.entries(of as Texts))
+      yield* sentences(inner, at ? `${at}.${name}` : name);
+}
+
+const awkward = (of: unknown): string[] =>
+  [...sentences(of, "")].flatMap(([at, text]) =>
+    kAvoided
+      .filter(([pattern]) => pattern.test(text))
+      .map(
+        ([pattern, better]) => `${at}: “${text}”: in place of ${pattern.source} write: ${better}`,
+      ),
+  );
+
+describe("The English of the page", () => {
+  it("has none of the phrases that the guide to style avoids", () => {
+    expect([...sentences(texts, "")].length).toBeGreaterThan(1300);
+    expect(awkward(texts)).toEqual([]);
+  });
+
+  it("is refused where it has one", () => {
+    expect(awkward({ saved: "It begins anew." })).toHaveLength(1);
+    expect(awkward({ n: (n: number) => `${n} taken back` })).toHaveLength(3);
+  });
+});
