@@ -1,4 +1,5 @@
 import { describe, expect, it } from "vitest";
+import { textsIn } from "../../src/kiosk/texts";
 import { texts } from "../../src/texts/en";
 
 /** What people do not say to each other, with what to write instead. */
@@ -56,10 +57,11 @@ const awkward = (of: unknown): string[] =>
       ),
   );
 
-describe("The English of the page", () => {
+describe("The English of the page and the kiosk", () => {
   it("has none of the phrases that the guide to style avoids", () => {
     expect([...sentences(texts, "")].length).toBeGreaterThan(1300);
     expect(awkward(texts)).toEqual([]);
+    expect(awkward(textsIn("en", ["en"]))).toEqual([]);
   });
 
   it("is refused where it has one", () => {

@@ -3,6 +3,9 @@
 import assert from "node:assert/strict";
 import { encode_png } from "./png.mjs";
 import { wait_for } from "./strata-server.mjs";
+import { texts_of } from "./texts.mjs";
+
+const english = texts_of("en"); // Bea's, whatever language the other page is in
 
 const kGroup = "Students of the summer school in Northern Archaeology 2026";
 const kGoneLayer = "Condition before the cleaning";
@@ -861,10 +864,10 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       name: "record that somebody else edits",
       start: async () => {
         await bea_at({ server, bea, model: site.model });
-        await bea.page.getByRole("button", { name: "Paint on Finds" }).click();
+        await bea.page.getByRole("button", { name: english.layers.select("Finds") }).click();
         await bea.page.keyboard.press("t");
         await bea.page.getByRole("grid").getByRole("rowheader", exact("2")).click();
-        await bea.page.getByRole("button", exact("Edit record")).click();
+        await bea.page.getByRole("button", exact(english.tables.edit)).click();
         await row(2)
           .getByRole("img", exact(w.tables.edited_by("Bea Ost")))
           .waitFor();
@@ -911,7 +914,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       name: "asked to look along",
       start: async () => {
         await bea.page.locator("strata-people-menu .faces").click();
-        await bea.page.getByRole("menuitem", { name: /Invite to follow me/ }).click();
+        await bea.page.getByRole("menuitem", { name: english.together.lead }).click();
         await page.getByText(w.together.invites("Bea Ost")).waitFor();
       },
       end: () => bea.page.locator("strata-together-bar button").click(),
