@@ -69,7 +69,7 @@ test("a group is made with the keyboard; a name that is taken is told at its fie
   await owner.page.getByLabel(words.groups.new_name).fill("Students");
   await owner.page.keyboard.press("Enter");
   await owner.page.getByRole("heading", { name: words.groups.members_of("Students") }).waitFor();
-  await owner.page.getByText("0 people are in it.").waitFor();
+  await owner.page.getByText(words.groups.inside(0)).waitFor();
   await leave_inner_dialog();
   await owner.page.getByLabel(words.groups.new_name).fill("STUDENTS");
   await owner.page.keyboard.press("Enter");

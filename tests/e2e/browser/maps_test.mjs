@@ -243,7 +243,7 @@ test("who may only paint adds no names to the legend, and paints those that are 
 test("what is no map, and numbers for vertices", async () => {
   await open_dialog("Depth");
   await give("notes.doc");
-  await page.getByRole("alert").getByText("“notes.doc” is none of these").waitFor();
+  await page.getByRole("alert").getByText(words.maps.unknown("notes.doc")).waitFor();
   await give("walls.dbf");
   await page.getByRole("alert").getByText("walls.dbf is no map by itself").waitFor();
   await give("values.csv");

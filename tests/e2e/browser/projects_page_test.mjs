@@ -248,7 +248,7 @@ test("with tables only, these are named, and its name is typed", async () => {
   await pia.page.reload();
   await heading(pia, words.home.empty_title);
   await from_menu(pia, "Villa Giulia, Rome", "Delete…");
-  await pia.page.getByText("Its 2 tables go with it").waitFor();
+  await pia.page.getByText(words.projects.delete_tables_lead(2)).waitFor();
   await inside(pia).getByText("1 record").waitFor();
   const remove = inside(pia).getByRole("button", { name: words.delete, exact: true });
   const typed = box(pia, "Type “Villa Giulia, Rome” to delete them");

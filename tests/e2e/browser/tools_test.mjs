@@ -129,7 +129,7 @@ test("what is no picture is refused in plain words", async () => {
   await picker
     .locator("input[type=file]")
     .setInputFiles({ name: "notes.png", mimeType: "image/png", buffer: Buffer.from("hello") });
-  await dialog.getByText("“notes.png” is not a picture that can be read").waitFor();
+  await dialog.getByText(words.shapes.unreadable("notes.png")).waitFor();
   assert.equal(await dialog.getByRole("button", { name: words.shapes.add }).isDisabled(), true);
   await page.keyboard.press("Escape");
   await dialog.waitFor({ state: "detached" });

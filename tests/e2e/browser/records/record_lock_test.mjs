@@ -149,7 +149,7 @@ test("left by the other it is one's own again: the text is still there, and what
   await form(ada).getByText("bea took this over.").waitFor({ state: "detached" });
   assert.equal(await note(ada).inputValue(), "Mine, and not saved");
   await save(ada).click();
-  await form(ada).getByText("bea changed this record meanwhile.").waitFor();
+  await form(ada).getByText(words.tables.changed_meanwhile("bea")).waitFor();
   assert.equal((await record(1)).note, "Bea's");
   await save(ada).click();
   await stored(1, "note", "Mine, and not saved");
