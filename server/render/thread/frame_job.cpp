@@ -170,7 +170,7 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
 Result<bool> FrameJob::bring_layers(GpuScene& scene) {
   for (const LayerStyle& style : task_.request.style.layers) {
     auto layer = STRATA_TRY(scene.layer(style.layer));
-    const auto here = layer->bring();
+    auto here = layer->bring();
     if (!here || !*here) return here;
   }
   return true;
@@ -197,8 +197,8 @@ Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
     mesh_look.uniforms.look_opacity[static_cast<glm::length_t>(i)] =
         std::clamp(view.images[i].opacity, 0.0f, 1.0f);
   }
-  const auto complete = scene.gbuffer_pass().draw_slice(
-      mesh, mesh_look, {view.gbuffer, view.depth->texture}, progress_);
+  auto complete = scene.gbuffer_pass().draw_slice(mesh, mesh_look,
+                                                  {view.gbuffer, view.depth->texture}, progress_);
   if (!complete || !*complete) return complete;
   view.gbuffer_complete = view.depth->complete = true;
   // A software renderer works while it is called, a GPU until the picture can be read.
@@ -275,9 +275,11 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   const std::size_t offset =
       shaded_.before + row_bytes(rect) * static_cast<std::size_t>(rows_below);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, pixels_.buffer().id());
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): GL takes the offset into the buffer as a pointer
+  void* const into = reinterpret_cast<void*>(offset);
   glGetTextureSubImage(view.picture.id(), 0, band.x, request.height - band.y - band.height, 0,
                        band.width, band.height, 1, GL_RGBA, GL_UNSIGNED_BYTE,
-                       static_cast<GLsizei>(rgba_bytes(band)), reinterpret_cast<void*>(offset));
+                       static_cast<GLsizei>(rgba_bytes(band)), into);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   advance(shaded_, band.height);
   if (!complete(shaded_)) return false;

@@ -59,7 +59,7 @@ Result<Response> list_review(const RouteContext& context, const Request& request
       queue.strokes, page, [](const auto& stroke) { return ListPlace::array({stroke.sequence}); });
   nlohmann::json answer = to_json(queue);
   STRATA_TRY(People::add_to(context.store, answer));
-  Response response = json_response(std::move(answer));
+  Response response = json_response(answer);
   add_page_links(response, request, page, last);
   return response;
 }

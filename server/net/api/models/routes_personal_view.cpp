@@ -21,8 +21,8 @@ namespace {
 
 Result<Response> get_view(const RouteContext& context, const Request& request) {
   const auto room = STRATA_TRY(open_room(context, request));
-  auto view = STRATA_TRY(personal_view(context.store, request.user(), request.role(), *room));
-  return json_response(std::move(view)).with("Cache-Control", "no-store");
+  const auto view = STRATA_TRY(personal_view(context.store, request.user(), request.role(), *room));
+  return json_response(view).with("Cache-Control", "no-store");
 }
 
 Result<Response> put_view(const RouteContext& context, const Request& request) {

@@ -42,7 +42,7 @@ Result<Response> list_activity(const RouteContext& context, const Request& reque
   nlohmann::json answer{{"activity", std::move(lines)}};
   if (found.next) answer["next"] = to_text(*found.next);
   STRATA_TRY(People::add_to(context.store, answer));
-  return json_response(std::move(answer));
+  return json_response(answer);
 }
 
 // From where a reader comes back, or from now.
