@@ -541,7 +541,7 @@ export const texts = {
     shape: "Shape",
     disc: "Round",
     square: "Square",
-    slant: "Skip surfaces tilted from view by more than",
+    slant: "Skip surfaces tilted more than",
     slant_degrees: "Largest angle between the surface and your view, in degrees",
     slant_through: "Not available while painting through to the back.",
     pressure: "Pen pressure changes the width",
@@ -2066,7 +2066,7 @@ export const texts = {
         "round, square, or a picture: choose + or drop a PNG or JPEG next to the shapes; everyone on the site shares them",
       ],
       [
-        "Skip surfaces tilted from view",
+        "Skip surfaces tilted more than",
         "leaves out surfaces at a flat angle to your view; orbit to paint them",
       ],
       ["Paint through to the back", "also paints hidden surfaces"],
