@@ -425,7 +425,7 @@ test("columns come, get names in other languages, change their kind and tell wha
   await button(words.save).click();
   await dialog.getByText(/did not fit the new type/).waitFor();
   await shot("column-lost");
-  await button(words.column_dialog.take_back).click();
+  await dialog.getByRole("button", { name: words.column_dialog.take_back, exact: true }).click();
   await cell(1, "Note").getByText("changed").waitFor();
   await menu(words.tables.column_menu("Finds bags"), words.tables.drop_column);
   await button(words.tables.drop).click();

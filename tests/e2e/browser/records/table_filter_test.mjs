@@ -306,7 +306,7 @@ test("areas are copied and saved", async () => {
   await areas.getByRole("button", { name: "Copy: Areas of “pieces”" }).click();
   const copied = await page.evaluate(() => navigator.clipboard.readText());
   assert.match(copied, /^Class\tArea\tShare of the surface\n.*\t.*cm²\t.* %/);
-  assert.match(copied, /\nAll\t[^\t]+\t[\d.]+ %$/);
+  assert.match(copied, /\nTotal\t[^\t]+\t[\d.]+ %$/);
   const of_areas = await saved(() =>
     areas.getByRole("button", { name: "XLSX: Areas of “pieces”" }).click(),
   );
