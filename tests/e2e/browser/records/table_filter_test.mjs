@@ -337,14 +337,14 @@ test("two layers are set against each other, with names and sums", async () => {
   assert.deepEqual(await findings(page), []);
   await shot("cross-table");
   const crossed = await saved(() =>
-    areas.getByRole("button", { name: /^CSV: .*together/ }).click(),
+    areas.getByRole("button", { name: /^CSV: Overlap of/ }).click(),
   );
   assert.equal(crossed.name, "pieces-units.csv");
   const [head, first] = crossed.bytes.toString().replace("\ufeff", "").split("\r\n");
   assert.equal(head, '"pieces / Units, cm²",SU 2,–,total');
   assert.match(first, /^Sherd 1,/);
   assert.equal(
-    (await saved(() => areas.getByRole("button", { name: /^XLSX: .*together/ }).click())).bytes
+    (await saved(() => areas.getByRole("button", { name: /^XLSX: Overlap of/ }).click())).bytes
       .subarray(0, 2)
       .toString(),
     "PK",
