@@ -23,9 +23,10 @@ configure_file(${debian}/changelog.in ${made}/changelog @ONLY)
 configure_file(${debian}/copyright.in ${made}/copyright @ONLY)
 configure_file(${debian}/strata.1.in ${made}/strata.1 @ONLY)
 install(CODE "
-  file(ARCHIVE_CREATE OUTPUT ${made}/changelog.Debian.gz PATHS ${made}/changelog FORMAT raw COMPRESSION GZip)
-  file(ARCHIVE_CREATE OUTPUT ${made}/changelog.gz PATHS ${PROJECT_SOURCE_DIR}/CHANGELOG.md FORMAT raw COMPRESSION GZip)
-  file(ARCHIVE_CREATE OUTPUT ${made}/strata.1.gz PATHS ${made}/strata.1 FORMAT raw COMPRESSION GZip)
+  # As lintian wants them: compressed as far as it goes, without a time.
+  execute_process(COMMAND gzip -9 --no-name --stdout ${made}/changelog OUTPUT_FILE ${made}/changelog.Debian.gz COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND gzip -9 --no-name --stdout ${PROJECT_SOURCE_DIR}/CHANGELOG.md OUTPUT_FILE ${made}/changelog.gz COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND gzip -9 --no-name --stdout ${made}/strata.1 OUTPUT_FILE ${made}/strata.1.gz COMMAND_ERROR_IS_FATAL ANY)
   " COMPONENT debian EXCLUDE_FROM_ALL)
 install(FILES ${debian}/strata.service DESTINATION /lib/systemd/system COMPONENT debian EXCLUDE_FROM_ALL)
 install(FILES ${debian}/strata.default DESTINATION /etc/default RENAME strata COMPONENT debian EXCLUDE_FROM_ALL)
