@@ -117,7 +117,7 @@ Result<Comments::Page> page_of(Result<PgResult> total, Result<PgResult> rows) {
 }  // namespace
 
 Result<Comments::Page> Comments::of_model(ModelId model_id, Role seen_by, const Query& query) {
-  // Times are told in milliseconds: one that was read counts what was changed then.
+  // Clients get times in milliseconds, so `since` includes changes of that millisecond.
   constexpr auto kAskedComments = sql(
       " FROM comments c JOIN comments first ON first.id = coalesce(c.thread_id, c.id) WHERE c.model_id = $1"
       " AND ($2::text IS NULL OR ($2 = 'resolved') = (first.resolved IS NOT NULL))"

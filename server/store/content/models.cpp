@@ -8,12 +8,13 @@
 #include "store/content/surface_images.h"
 #include "store/pg/blobs.h"
 #include "store/pg/pg_row.h"
+#include "store/pg/sql.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
 namespace {
 
-constexpr const char* kSelectModels =
+constexpr auto kSelectModels = sql(
     "SELECT m.id, m.project_id, m.name, m.slug::text, m.unit, m.unit_assumed, m.scale_verified, m.up, m.north, m.crs, "
     "m.origin, m.bounds_min, m.bounds_max, m.triangles, m.vertices, m.area, m.atlas, m.repairs, m.default_resolution, "
     "m.inventory_number, m.owner, m.creator, m.captured, m.method, m.accuracy, m.processing, m.rights_uri, m.credit, "
@@ -21,7 +22,7 @@ constexpr const char* kSelectModels =
     "coalesce(m.open_edges, 'null'), "
     "(SELECT coalesce(jsonb_agg(jsonb_build_object('name', s.name, 'sha256', encode(s.sha256, 'hex'), 'bytes', b.bytes) "
     "ORDER BY s.position), '[]') FROM model_sources s JOIN blobs b USING (sha256) WHERE s.model_id = m.id) "
-    "FROM models m ";
+    "FROM models m ");
 
 glm::dvec3 vec3_of(const std::vector<double>& v) {
   return v.size() == 3 ? glm::dvec3(v[0], v[1], v[2]) : glm::dvec3(0);
@@ -158,8 +159,7 @@ SurfaceImage surface_image_of(const NewModel::NewSurfaceImage& fresh, std::size_
 }
 
 Result<Model> model_by_id(PgConnection& connection, ModelId id) {
-  static const std::string sql = std::string(kSelectModels) + "WHERE m.id = $1";
-  auto rows = STRATA_TRY(connection.query(sql.c_str(), Params().id(id)));
+  auto rows = STRATA_TRY(connection.query(sql(kSelectModels, "WHERE m.id = $1"), Params().id(id)));
   if (rows.rows() == 0) return no_such("model", to_string(id));
   return read_model(rows, 0);
 }
@@ -231,10 +231,10 @@ Result<Model> Models::create(const NewModel& fresh, const std::function<bool()>&
 }
 
 Result<std::vector<Model>> Models::all(std::optional<ProjectId> project_id) {
-  static const std::string sql =
-      std::string(kSelectModels) + "WHERE $1 IS NULL OR m.project_id = $1 ORDER BY m.id";
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<Model>> {
-    auto rows = STRATA_TRY(connection.query(sql.c_str(), Params().optional_id(project_id)));
+    auto rows = STRATA_TRY(
+        connection.query(sql(kSelectModels, "WHERE $1 IS NULL OR m.project_id = $1 ORDER BY m.id"),
+                         Params().optional_id(project_id)));
     std::vector<Model> models;
     for (int i = 0; i < rows.rows(); ++i) models.push_back(read_model(rows, i));
     return models;
@@ -243,10 +243,10 @@ Result<std::vector<Model>> Models::all(std::optional<ProjectId> project_id) {
 
 Result<Model> Models::find(const std::string& ref) {
   if (!check_text(ref, "model")) return no_such("model", ref);
-  static const std::string by_slug = std::string(kSelectModels) + "WHERE m.slug = $1";
   return pool_.read([&](PgConnection& connection) -> Result<Model> {
     if (const auto id = id_of<ModelId>(ref)) return model_by_id(connection, *id);
-    auto rows = STRATA_TRY(connection.query(by_slug.c_str(), Params().text(ref)));
+    auto rows =
+        STRATA_TRY(connection.query(sql(kSelectModels, "WHERE m.slug = $1"), Params().text(ref)));
     if (rows.rows() == 0) return no_such("model", ref);
     return read_model(rows, 0);
   });

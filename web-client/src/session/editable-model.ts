@@ -15,7 +15,7 @@ export class EditableModel {
     private readonly _api: Api,
     private readonly _id: string,
     private readonly _host: {
-      view: () => ViewControl;
+      view: ViewControl;
       changed(): void;
     },
   ) {}
@@ -46,11 +46,11 @@ export class EditableModel {
   preview(scale: ModelScale | null): void {
     if (!this.value) return;
     this._preview = scale;
-    this._host.view().previewUp(this.value, scale?.up ?? this.value.up);
+    this._host.view.previewUp(this.value, scale?.up ?? this.value.up);
     this._host.changed();
   }
 
-  /** What lengths on the screen are told in. */
+  /** The unit of the lengths on the screen. */
   get shownUnit(): Model["unit"] {
     return this._preview?.unit ?? this.value?.unit ?? "m";
   }
@@ -64,7 +64,7 @@ export class EditableModel {
     const turned = this.value !== null && this.value.up !== model.up;
     this._value = model;
     // What somebody else changes meanwhile does not end the preview.
-    const view = this._host.view();
+    const { view } = this._host;
     if (this._preview) view.setModel({ ...model, up: this._preview.up }, false);
     else view.setModel(model, turned);
     this._host.changed();

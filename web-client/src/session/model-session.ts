@@ -15,6 +15,7 @@ import type { Appearance } from "../features/appearance/appearance";
 import type { Comments } from "../features/comments/comments";
 import type { FacePick } from "../features/figures/face-pick";
 import type { Figures } from "../features/figures/figures";
+import type { ModelScale } from "./editable-model";
 import type { LayerJobs } from "./layer-jobs";
 import type { LayerList } from "../features/layers/layer-list";
 import type { MarkDrawing } from "../features/records/mark-drawing";
@@ -134,7 +135,7 @@ export interface ModelSession {
    * Shows the model as if it had this unit and up direction, without keeping them; null: as it has
    * them.
    */
-  previewScale(scale: Pick<Model, "unit" | "up"> | null): void;
-  /** What lengths on the screen are told in. */
+  previewScale(scale: ModelScale | null): void;
+  /** The unit of the lengths on the screen. */
   readonly shownUnit: Model["unit"];
 }

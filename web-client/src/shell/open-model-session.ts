@@ -110,10 +110,6 @@ export class OpenModelSession implements ModelSession {
     makeSocket?: (url: string, protocol: string) => SocketLike,
   ) {
     this._connection = this.makeConnection(makeSocket);
-    this._model = new EditableModel(api, modelId, {
-      view: () => this.view,
-      changed: () => this.changed(),
-    });
     this._locks = new LockWatch({
       selected: () => this.layers.selected,
       tool: () => this.tools.active,
@@ -142,6 +138,10 @@ export class OpenModelSession implements ModelSession {
       },
       wentOwnWay: () => this.together.stopFollowing(),
       changed: changes("view"),
+    });
+    this._model = new EditableModel(api, modelId, {
+      view: this.view,
+      changed: () => this.changed(),
     });
     this.layers = new LayerList(api, modelId, {
       sendOverrides: (overrides) => this._connection.setLayerOverrides(overrides),

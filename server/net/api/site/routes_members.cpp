@@ -30,13 +30,9 @@ nlohmann::json to_json(const store::Membership& member) {
   return json;
 }
 
-Result<Project> project_of(const RouteContext& context, const Request& request) {
-  return stored_project(context, request);
-}
-
 Result<Response> list_members(const RouteContext& context, const Request& request) {
   const auto page = STRATA_TRY(page_of(request));
-  const auto project = STRATA_TRY(project_of(context, request));
+  const auto project = STRATA_TRY(stored_project(context, request));
   const auto members = STRATA_TRY(context.store.members().of_project(project.id));
   const auto with_role = STRATA_TRY(context.store.groups().of_project(project.id));
   nlohmann::json list = nlohmann::json::array(), groups = nlohmann::json::array();
@@ -57,7 +53,7 @@ Result<Response> list_members(const RouteContext& context, const Request& reques
 // Those who may not sign in see nothing.
 Result<Response> list_people(const RouteContext& context, const Request& request) {
   const auto page = STRATA_TRY(page_of(request));
-  const auto project = STRATA_TRY(project_of(context, request));
+  const auto project = STRATA_TRY(stored_project(context, request));
   const auto roles = STRATA_TRY(context.store.groups().people_with_role(project.id));
   auto people = STRATA_TRY(context.store.accounts().all());
   const std::set<PersonId> with_role(roles.begin(), roles.end());
@@ -81,7 +77,7 @@ Result<Response> list_people(const RouteContext& context, const Request& request
 
 Result<Response> put_member(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::MemberPut>(request));
-  const auto project = STRATA_TRY(project_of(context, request));
+  const auto project = STRATA_TRY(stored_project(context, request));
   const Role role = parse_role(protocol::name(body.role)).value_or(Role::viewer);
   const auto member =
       context.store.members().put(project.id, request.param("user"), role, request.user());
@@ -91,7 +87,7 @@ Result<Response> put_member(const RouteContext& context, const Request& request)
 }
 
 Result<Response> remove_member(const RouteContext& context, const Request& request) {
-  const auto project = STRATA_TRY(project_of(context, request));
+  const auto project = STRATA_TRY(stored_project(context, request));
   const auto person = STRATA_TRY(context.store.accounts().find(request.param("user")));
   STRATA_TRY(context.store.members().remove(project.id, person.name, request.user()));
   roles_changed(context, {person.name});
