@@ -198,7 +198,7 @@ test("one's own deletion asks first", async () => {
 test("the help sheet tells of it", async () => {
   await page.mouse.click((await browser.stage_box()).x + 10, (await browser.stage_box()).y + 10);
   await page.keyboard.press("?");
-  await page.getByText(words.help.brush_rows[1][0], { exact: true }).waitFor();
+  await page.getByRole("term").filter({ hasText: words.help.brush_rows[1][0] }).waitFor();
   await shot("help");
   await page.keyboard.press("Escape");
 });
