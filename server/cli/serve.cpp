@@ -165,7 +165,7 @@ int run(ServeOptions options) {
     if (!options.data.database.empty())
       return report(
           {ErrorCode::malformed, "Not a private database",
-           "With --database, let analysts into that PostgreSQL itself: docs/sql.md has the statements.",
+           "With --database, let analysts into that PostgreSQL itself: docs/how-to/query-with-sql.md has the statements.",
            "--sql-listen"});
     options.data.sql = std::move(*sql);
   }
@@ -252,7 +252,7 @@ Command add_serve(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--sql-listen", options->sql_listen,
-                   "HOST:PORT where analysts read with SQL (docs/sql.md)")
+                   "HOST:PORT where analysts read with SQL (docs/how-to/query-with-sql.md)")
       ->envname("STRATA_SQL_LISTEN")
       ->check([](const std::string& text) { return usage_of(parse_sql_listen, text); });
   command->add_option("--origin", options->origins, "Further web origins that may connect (repeat)")
@@ -260,7 +260,7 @@ Command add_serve(CLI::App& app) {
   auto* tls_cert =
       command
           ->add_option("--tls-cert", options->tls_cert,
-                       "Speak https with this certificate chain (PEM; docs/operation.md)")
+                       "Speak https with this certificate chain (PEM; docs/how-to/operate-a-site.md)")
           ->envname("STRATA_TLS_CERT");
   auto* tls_key = command
                       ->add_option("--tls-key", options->tls_key,

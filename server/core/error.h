@@ -12,7 +12,8 @@
 namespace strata {
 
 // The kind of a failure. Callers decide by it; title and detail are for people and may change at
-// any time. The names are stable: HTTP has them in the `type` of a problem (docs/errors.md).
+// any time. The names are stable: HTTP has them in the `type` of a problem
+// (docs/reference/errors.md).
 enum class ErrorCode {
   // The caller can act on these.
   malformed,            // the request cannot be read: its syntax, its parameters

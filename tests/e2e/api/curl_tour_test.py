@@ -1,4 +1,4 @@
-"""The tour with curl of docs/scripting.md, word for word, and whether its figures agree with one another."""
+"""The tour with curl of docs/how-to/write-scripts.md, word for word, and whether its figures agree with one another."""
 import json
 import os
 import re
@@ -12,7 +12,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.a
 
 
 def tour_of_the_guide():
-    with open(os.path.join(ROOT, "docs", "scripting.md"), encoding="utf-8") as file:
+    with open(os.path.join(ROOT, "docs", "how-to", "write-scripts.md"), encoding="utf-8") as file:
         block = re.search(r"```\n(.*?)```", file.read(), re.S).group(1)
     kept = []
     for line in block.splitlines():

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What somebody who means harm would try, really tried against real servers, with the answers as a table. Fails where an answer is another one, and where docs/security.md tells something
+"""What somebody who means harm would try, really tried against real servers, with the answers as a table. Fails where an answer is another one, and where docs/reference/security.md tells something
 else than the answers; `--update-docs` writes it anew."""
 import concurrent.futures
 import sys

@@ -1,11 +1,11 @@
-"""What was tried against a server and how it answered, as a table: printed, and kept in docs/security.md between two marks.
+"""What was tried against a server and how it answered, as a table: printed, and kept in docs/reference/security.md between two marks.
 
 An answer is what must be the same on every machine; what is measured beside it (seconds, megabytes, how many calls there are) is told, and not compared."""
 import os
 import threading
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
-PAGE = os.path.join(ROOT, "docs", "security.md")
+PAGE = os.path.join(ROOT, "docs", "reference", "security.md")
 BEGIN, END = (
     "<!-- attempts: written by tests/e2e/faults/security_attempts_test.py --update-docs -->",
     "<!-- end of attempts -->",
@@ -68,7 +68,7 @@ class AttemptTable:
             f"+ {row}" for row in now if row not in kept
         ]
         assert kept == now, (
-            "docs/security.md tells something else; write it anew with --update-docs:\n"
+            "docs/reference/security.md tells something else; write it anew with --update-docs:\n"
             + "\n".join(differing or ["the order"])
         )
 

@@ -1,6 +1,6 @@
 // Every scan beside the source tree through all of an import but the database, each in a process of
 // its own, so that what it takes at most is known; against figures measured by a reader that shares
-// no code with this one. Prints a table, which docs/formats.md shows.
+// no code with this one. Prints a table, which docs/reference/formats.md shows.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>

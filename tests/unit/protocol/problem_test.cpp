@@ -41,13 +41,13 @@ TEST(ProtocolProblem, the_contract_and_the_documents_list_every_type) {
   const auto bundle = nlohmann::json::parse(schema_bundle());
   std::set<std::string> listed;
   for (const auto& type : bundle["definitions"]["ProblemType"]["enum"]) listed.insert(type);
-  const std::string page = text_of("docs/errors.md");
+  const std::string page = text_of("docs/reference/errors.md");
   for (const ProblemKind& kind : problem_kinds()) {
     EXPECT_EQ(listed.erase(problem_type(kind.code)), 1u) << name(kind.code);
     const std::string row = "| `" + problem_type(kind.code) + "` | " + std::to_string(kind.status) +
                             " | " + std::string(kind.meaning) + " | " + std::string(kind.remedy) +
                             " |\n";
-    EXPECT_NE(page.find(row), std::string::npos) << "docs/errors.md lacks: " << row;
+    EXPECT_NE(page.find(row), std::string::npos) << "docs/reference/errors.md lacks: " << row;
   }
   EXPECT_TRUE(listed.empty()) << *listed.begin();
 }

@@ -1,4 +1,4 @@
-// Completion of names in an expression (docs/queries.md): what the word before the caret may
+// Completion of names in an expression (docs/reference/conditions.md): what the word before the caret may
 // become.
 
 export interface Suggestion {

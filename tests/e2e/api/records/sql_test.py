@@ -405,4 +405,4 @@ def test_command_line(server):
         text=True,
         check=False,
     )
-    assert done.returncode == 1 and "docs/sql.md" in done.stderr, done.stderr
+    assert done.returncode == 1 and "docs/how-to/query-with-sql.md" in done.stderr, done.stderr
