@@ -1,5 +1,5 @@
 # strata_module(NAME SOURCES… [PUBLIC libs…] [PRIVATE libs…]): one module of the server, a static library `strata_NAME`.
-# What a module links is what it may include: the arrows of ARCHITECTURE.md are these link lines.
+# What a module links is what it may include: the drawing in docs/developer/architecture/overview.md shows these links.
 function(strata_module name)
   cmake_parse_arguments(MODULE "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(strata_${name} STATIC ${MODULE_SOURCES})

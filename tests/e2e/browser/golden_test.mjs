@@ -210,7 +210,7 @@ async function point_at_open_crack(browser) {
   throw new Error("there is no open crack across the pot");
 }
 
-/** docs/demo.png: the page at work, a little nearer. */
+/** docs/public/demo.png: the page at work, a little nearer. */
 async function write_readme_picture(browser) {
   const { page } = browser;
   await page.keyboard.press("Escape");
@@ -221,13 +221,13 @@ async function write_readme_picture(browser) {
   await page.mouse.click(box.x + 20, box.y + 20); // away from the button that opened the dialog
   await page.keyboard.press("+");
   await point_at_open_crack(browser);
-  mkdirSync(join(kRoot, "docs"), { recursive: true });
+  mkdirSync(join(kRoot, "docs", "public"), { recursive: true });
   const picture = decode_png(await browser.settled());
   // a quarter smaller, looks the same
   picture.data.forEach(
     (value, at) => (picture.data[at] = Math.min(254, Math.round(value / 2) * 2)),
   );
-  writeFileSync(join(kRoot, "docs", "demo.png"), encode_png(picture));
+  writeFileSync(join(kRoot, "docs", "public", "demo.png"), encode_png(picture));
 }
 
 /** Distance of a point to a path of straight pieces. */
