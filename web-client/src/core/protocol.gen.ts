@@ -9,28 +9,28 @@ export type Point2 = [number, number];
 /** 4 × 4 matrix. Sixteen numbers, column-major. */
 export type Matrix = number[];
 
-/** Plane in space. [a, b, c, d]: what has a x + b y + c z + d below 0 is cut away. World coordinates. */
+/** Plane in space. [a, b, c, d]: space where a x + b y + c z + d is below 0 is cut away. World coordinates. */
 export type Plane = [number, number, number, number];
 
-/** Planes that cut the model open. A box has six. What is cut away is neither seen, picked nor painted; where the inside of the solid would be seen, the cut is shown closed. */
+/** Planes that cut the model open. A box has six. Parts that are cut away are not visible, cannot be picked and cannot be painted. Where the inside of the solid would be visible, the cut is drawn closed. */
 export type Section = Plane[];
 
-/** Pointer path. Pixels of the camera's window; consecutive points are joined, one point is a dab. */
+/** Pointer path. Pixels of the camera's window. Consecutive points are joined; one point is a dab. */
 export type Path = Point2[];
 
-/** Kind of problem. A stable reference on this server by which programs decide; `/problems` describes each. */
+/** Kind of problem. A stable reference on this server. Let programs decide by it; `/problems` describes each. */
 export type ProblemType = "/problems#malformed" | "/problems#unauthenticated" | "/problems#forbidden" | "/problems#not_found" | "/problems#method_not_allowed" | "/problems#not_acceptable" | "/problems#too_slow" | "/problems#conflict" | "/problems#superseded" | "/problems#gone" | "/problems#stale" | "/problems#too_large" | "/problems#unsupported" | "/problems#range_not_satisfied" | "/problems#misdirected" | "/problems#invalid" | "/problems#upgrade_required" | "/problems#version_required" | "/problems#too_many_requests" | "/problems#head_too_large" | "/problems#cancelled" | "/problems#internal" | "/problems#not_implemented" | "/problems#bad_gateway" | "/problems#busy" | "/problems#unavailable" | "/problems#timed_out" | "/problems#gpu_lost" | "/problems#out_of_memory" | "/problems#storage_full";
 
 /** #rrggbb, sRGB. */
 export type BackgroundColor = string;
 
-/** What a picture has behind the model. A gradient from its top to its bottom. */
+/** Background of a picture. A gradient from top to bottom. */
 export interface Background {
   top: BackgroundColor;
   bottom: BackgroundColor;
 }
 
-/** What share of the radius the brush has at each point. As many as the path has points: a pen's pressure. Absent: the whole radius. */
+/** Share of the brush radius at each point. One for each point of the path: the pressure of a pen. Absent: the whole radius. */
 export type Widths = number[];
 
 /** Table by id or slug. */
@@ -45,15 +45,15 @@ export type Descriptions = Record<string, string>;
 /** Kind of column. */
 export type ColumnKind = "text" | "integer" | "numeric" | "boolean" | "date" | "timestamp" | "period" | "enumeration" | "url" | "term" | "relation" | "picture" | "document" | "line" | "point";
 
-/** Value of a record in a column. Texts, dates (2024-02-29), timestamps (RFC 3339, told in UTC), periods (EDTF: 1560~, 156X, -0043/0100, 1560/..), choices and addresses are strings; a term is a key of its target table, a relation a list of keys; pictures and documents are lists of ids of attachments; lines and points are lists of marks. Null: no value. */
+/** Value of a record in a column. Strings: texts, dates (2024-02-29), timestamps (RFC 3339, returned in UTC), periods (EDTF: 1560~, 156X, -0043/0100, 1560/..), choices and addresses. A term is a key of its target table, and a relation a list of keys. Pictures and documents are lists of ids of attachments. Lines and points are lists of marks. Null: no value. */
 export type CellValue = string | number | boolean | number[] | null | Mark[];
 
-/** Place of a mark. */
+/** Place of a line or point. */
 export type MarkPlace = [number, number, number];
 
-/** Line or point of a record on a model. Of a line two places or more, of a point one. World coordinates in the model's unit; 10 000 places in a cell at most. */
+/** Line or point of a record on a model. A line has two places or more, a point has one. World coordinates in the model's unit. A cell has at most 10 000 places. */
 export interface Mark {
-  /** Its id. */
+  /** Id of the model. */
   model: number;
   coordinates: MarkPlace[];
 }
@@ -61,7 +61,7 @@ export interface Mark {
 /** Values by column. By the slug of the column, or its id. */
 export type CellValues = Record<string, CellValue>;
 
-/** Who sees it, of those who see the project. public: all; team: annotators and above; private: curators and above. To the others it is not there. */
+/** Who can see it, among those who can see the project. public: all; team: annotators and above; private: curators and above. For all others it does not exist. */
 export type Visibility = "public" | "team" | "private";
 
 /** Column of a table. */
@@ -85,89 +85,89 @@ export interface Column {
   visibility: Visibility;
 }
 
-/** Table of a project. What the keys of its database layers stand for. */
+/** Table of a project. Layers of records store the keys of its records. */
 export interface Table {
   id: number;
   /** Id of the project. */
   project: number;
   name: string;
   slug: string;
-  /** A list of terms has `code`, a text that is required and unique, `label`, a text, and `parent`, a term of the table itself. */
+  /** A term list has three columns: `code`, a required and unique text; `label`, a text; and `parent`, a term of the table itself. */
   kind: "records" | "terms";
   labels: Labels;
   description: string;
   columns: Column[];
-  /** Id of the column that says what a record is called: no list of several things and no boolean. Absent: the first text that is required and unique, otherwise one that is either, otherwise any text. */
+  /** Id of the column with the titles of records. It cannot hold a list or a boolean. Absent: the first required and unique text column, otherwise one that is either, otherwise any text column. */
   title_column?: number;
-  /** How many. */
+  /** Number of records. */
   records: number;
-  /** Of the last change of columns or records. */
+  /** Sequence of the last change of columns or records. */
   sequence: number;
 }
 
 /** Record of a table. */
 export interface TableRecord {
-  /** What texels hold. */
+  /** Key of the record, as texels hold it. */
   key: number;
-  /** The table's sequence when it was changed last. */
+  /** The table's sequence at the last change of the record. */
   version: number;
   /** By the slug of the column. */
   values: CellValues;
-  /** Under a layer: the surface that it has there. */
+  /** Under a layer: the area of the record on the layer. */
   area_m2?: number;
-  /** Where the table has columns of lines: how long they are; under a layer, those on its model. */
+  /** If the table has columns of lines: the length of the record's lines; under a layer, of those on its model. */
   length_m?: number;
-  /** Where the table has columns of points: how many; under a layer, those on its model. */
+  /** If the table has columns of points: the number of the record's points; under a layer, of those on its model. */
   point_count?: number;
 }
 
-/** Colour of a person. Of their account, the same everywhere and always; white letters are legible on it. */
+/** Color of a person. Color of the account, the same everywhere and always. White letters are legible on it. */
 export type PersonColor = string;
 
-/** Whether there is still something to do. */
+/** State of a thread. */
 export type CommentState = "open" | "resolved";
 
-/** Who settled a thread. */
+/** Person who resolved a thread. */
 export interface CommentResolution {
   user: string;
-  /** Of `user`; absent: they gave none. */
+  /** Full name of `user`. Absent: the person gave none. */
   full_name?: string;
-  /** Of `user`. */
+  /** Color of `user`. */
   color?: PersonColor;
   /** UTC, RFC 3339. */
   time: string;
 }
 
-/** Comment on a model. The first one of a thread has its place and state, replies have `thread`. */
+/** Comment on a model. The first comment of a thread has place and state; replies have `thread`. */
 export interface Comment {
   id: number;
-  /** Its id. */
+  /** Id of the model. */
   model: number;
-  /** Of a reply: id of the thread's first comment. */
+  /** For a reply: id of the thread's first comment. */
   thread?: number;
   /** On the surface; world coordinates. */
   position?: Point3;
   normal?: Point3;
-  /** Id of the layer that it is about, while there is one. */
+  /** Id of the layer that the comment is about, while the layer exists. */
   layer?: number;
   /** With `record`: id of its table. */
   table?: number;
-  /** Key of the record that it is about, while there is its table. */
+  /** Key of the record that the comment is about, while its table exists. */
   record?: number;
   state?: CommentState;
   resolved?: CommentResolution;
-  /** Plain text; empty where it was deleted. */
+  /** Plain text; empty if the comment was deleted. */
   text: string;
   user: string;
-  /** Of `user`; absent: they gave none. */
+  /** Full name of `user`. Absent: the person gave none. */
   full_name?: string;
-  /** Of `user`. */
+  /** Color of `user`. */
   color?: PersonColor;
   /** UTC, RFC 3339. */
   time: string;
-  /** When its text was changed last. */
+  /** Time of the last change of the text. */
   edited?: string;
-  /** It stands there for its replies. */
+  /** The comment was deleted, and stays for its replies. */
   deleted: boolean;
   version: number;
 }
@@ -178,58 +178,58 @@ export type LayerRef = number | string;
 /** UUID. Canonical text form: 8-4-4-4-12 hexadecimal digits. */
 export type Uuid = string;
 
-/** Camera. OpenGL clip space, world coordinates; perspective or orthographic. Pixels elsewhere are of width × height. */
+/** Camera. OpenGL clip space and world coordinates; perspective or orthographic. Pixels of other members are those of width × height. */
 export interface Camera {
-  /** Eye from world. */
+  /** From world to eye coordinates. */
   view: Matrix;
-  /** Clip from eye. */
+  /** From eye to clip coordinates. */
   projection: Matrix;
   width: number;
   height: number;
   section?: Section;
 }
 
-/** Shape of the brush. `disc`, `square`, or a tool of the site by id or slug. A path sweeps it without steps. */
+/** Brush shape. `disc`, `square`, or a brush shape of the site by id or slug. A path sweeps it without steps. */
 export type ToolShape = number | string;
 
-/** Tool of the site. A shape for the brush: a raster of 256 × 256 cells over the square of side 2 · radius. It never changes. */
+/** Brush shape of the site. A raster of 256 × 256 cells over the square of side 2 · radius. It never changes. */
 export interface Tool {
   id: number;
   name: string;
   slug: string;
-  /** No longer listed; kept because edits may have been made with it. */
+  /** The shape is no longer listed. It is kept because edits may have been made with it. */
   deleted: boolean;
 }
 
-/** Fixed depth bias. How far behind what the camera sees a texel may lie and still be painted, in window depth: 0 at the near plane, 1 at the far one. Left out, it follows the model's size and the slope of the surface. */
+/** Fixed depth bias. How far behind the visible surface a texel can be and still be painted, in window depth: 0 at the near plane, 1 at the far plane. Absent: it follows the model's size and the slope of the surface. */
 export type DepthBias = number;
 
-/** Largest angle at which a surface is painted. Degrees between the direction to the eye and the normal of the surface in the texel's pixel of the camera's window: what is seen at more of a slant is left out. Not with `through`. Left out, there is no limit. */
+/** Largest angle at which a surface is painted. Degrees between the direction to the eye and the normal of the surface, in the texel's pixel of the camera's window. Surfaces at a larger angle are left out. Not with `through`. Absent: no limit. */
 export type SlantLimit = number;
 
-/** Stroke. Sweeps the brush along a path seen through a camera. Needs a value unless it erases. */
+/** Stroke. Sweeps the brush along a path that a camera sees. Needs a value, unless it erases. */
 export interface EditStroke {
   op: "stroke";
-  /** In the layer's type; ignored when erasing. Default: 0. */
+  /** In the layer's type; ignored for erasing. Default: 0. */
   value?: number;
   /** Default: false. */
   erase?: boolean;
   camera: Camera;
   /** Radius in window pixels. */
   radius_px?: number;
-  /** Radius in millimetres on the object. */
+  /** Radius in millimeters on the object. */
   radius_mm?: number;
   /** Default: "disc". */
   shape?: ToolShape;
   path: Path;
   widths?: Widths;
-  /** Paint hidden surface, too. Default: false. */
+  /** Also paint hidden surfaces. Default: false. */
   through?: boolean;
   depth_bias?: DepthBias;
   max_angle_deg?: SlantLimit;
 }
 
-/** Place on the surface. What a pixel of a view shows, or the surface point nearest to a point in space. */
+/** Place on the surface. The surface at a pixel of a view, or the surface point nearest to a point in space. */
 export interface SurfacePlace {
   point?: Point3;
   camera?: Camera;
@@ -237,33 +237,33 @@ export interface SurfacePlace {
   y?: number;
 }
 
-/** Fill. Gives a value to a part of the surface. `where`: every texel where the expression holds; `true` is everywhere. `island`: the connected piece of the model's surface at a place, across all seams of its atlas. `connected`: what holds the same value as that place, or like it none, and is connected with it across the surface. */
+/** Fill. Gives a value to a part of the surface. `where`: every texel where the expression is true; `true` is everywhere. `island`: the connected piece of the model's surface at a place, across all seams of its atlas. `connected`: the surface that is connected with the place and has the same value, or also has no value. */
 export interface EditFill {
   op: "fill";
-  /** In the layer's type; ignored when erasing. Default: 0. */
+  /** In the layer's type; ignored for erasing. Default: 0. */
   value?: number;
   /** Default: false. */
   erase?: boolean;
   mode: "where" | "island" | "connected";
   /** With mode `where`: a condition over the model's layers, such as `moisture > 0.3 and not valid(cracks)`. */
   where?: string;
-  /** With the other modes: where the fill begins. */
+  /** With the other modes: the place where the fill begins. */
   at?: SurfacePlace;
 }
 
-/** Outline of an area. Pixels of the camera's window; the last point is joined to the first. Where the outline crosses itself, what it goes round twice is outside. */
+/** Outline of an area. Pixels of the camera's window; the last point is joined to the first. If the outline crosses itself, areas that it surrounds twice are outside. */
 export type Outline = Point2[];
 
-/** Polygon or lasso. Paints what lies inside an outline seen through a camera. Needs a value unless it erases. */
+/** Polygon or lasso. Paints the area inside an outline that a camera sees. Needs a value, unless it erases. */
 export interface EditPolygon {
   op: "polygon";
-  /** In the layer's type; ignored when erasing. Default: 0. */
+  /** In the layer's type; ignored for erasing. Default: 0. */
   value?: number;
   /** Default: false. */
   erase?: boolean;
   camera: Camera;
   path: Outline;
-  /** Paint hidden surface, too. Default: false. */
+  /** Also paint hidden surfaces. Default: false. */
   through?: boolean;
 }
 
@@ -276,25 +276,25 @@ export interface PalettePoint {
   /** #rrggbb or #rrggbbaa, sRGB. */
   color: string;
   label?: string;
-  /** With a `column` that holds no numbers, in a categorical palette: the value that is meant, as text (of a term, its key). `at` then only orders the points. */
+  /** With a `column` without numbers, in a categorical palette: the value of the point as text; for a term, its key. `at` then only orders the points. */
   value?: string;
-  /** How the colour is laid on; step and categorical palettes only. Default: "solid". */
+  /** How the color is drawn; step and categorical palettes only. Default: "solid". */
   pattern?: "solid" | "hatch" | "dots" | "outline";
-  /** Of hatch and dots, in degrees on the picture: 0 runs to the right, 90 up. Default: 45. */
+  /** For hatch and dots: degrees on the picture; 0 is to the right, 90 is up. Default: 45. */
   angle?: number;
-  /** Between lines or dots, at the distance of the model's middle (exact in an orthographic view). 0: some pixels, as in the legend. Default: 0. */
+  /** Distance between lines or dots, at the distance of the model's middle (exact in an orthographic view). 0: some pixels, as in the legend. Default: 0. */
   spacing_mm?: number;
 }
 
-/** Palette. Turns values into colours. `points` ascend by `at`; a linear or step palette has at least one. `min` and `max` default to the outer points. */
+/** Palette. Turns values into colors. `points` ascend by `at`; a linear or step palette has at least one. `min` and `max` default to the outer points. */
 export interface Palette {
   mode: "linear" | "step" | "categorical";
   min?: number;
   max?: number;
   points?: PalettePoint[];
-  /** Database layers: the column that colours; absent: the key. */
+  /** Layers of records: the column that gives the colors. Absent: the key. */
   column?: string;
-  /** Categorical: colour of what no point lists; absent: one made from the value. With a `column`: of records that have no value there, too; absent: grey. */
+  /** Categorical palettes: the color of values that no point lists. Absent: a color made from the value. With a `column`, also the color of records without a value there. Absent: gray. */
   others?: string;
 }
 
@@ -304,16 +304,16 @@ export type ValueType = "u8" | "u16" | "u32" | "i8" | "i16" | "i32" | "f16" | "f
 /** Kind of layer. */
 export type LayerKind = "numeric" | "database";
 
-/** What a curator makes of edits. accept: they stay; reject: they are taken out, also from below what was painted over them; reopen: what was accepted or rejected waits again. */
+/** Decision of a curator about edits. accept: the edits stay. reject: the edits are removed, also from below later paint. reopen: accepted or rejected edits wait again. */
 export type ReviewDecision = "accept" | "reject" | "reopen";
 
-/** Why, for the authors. */
+/** Reason of a decision, for the authors. */
 export type ReviewReason = string;
 
 /** Texels a side. */
 export type Resolution = 2048 | 4096 | 8192 | 16384;
 
-/** When a computed layer follows its inputs. manual: when it is asked to; automatic: within seconds after something that it reads has changed. */
+/** When a computed layer follows its inputs. manual: on request. automatic: within seconds after a change of something that the layer reads. */
 export type Recompute = "manual" | "automatic";
 
 /** Layer. */
@@ -328,37 +328,37 @@ export interface Layer {
   resolution: Resolution;
   unit: string;
   description: string;
-  /** Its name in other languages. */
+  /** Names of the layer in other languages. */
   labels: Labels;
   descriptions: Descriptions;
   palette: Palette;
   opacity: number;
   visible: boolean;
-  /** Nobody below curator changes its texels: 403. */
+  /** Nobody below curator can change the texels of the layer (403). */
   locked: boolean;
-  /** What annotators change is provisional, and marked in the picture, until a curator accepts or rejects it. */
+  /** Edits of annotators are provisional, and marked in pictures, until a curator accepts or rejects them. */
   review: boolean;
   visibility: Visibility;
-  /** Drawn ascending: higher is on top. */
+  /** Drawn in ascending order: higher is on top. */
   order: number;
-  /** Database layers: id of the project's table whose keys the texels hold. */
+  /** Layers of records: id of the project's table whose keys the texels hold. */
   table?: number;
-  /** What computed its values; absent: they were painted or sent. While it is locked, and not edited by hand, nobody changes its texels: 403. */
+  /** How the server computed the values. Absent: they were painted or sent. While the layer is locked and not edited by hand, nobody can change its texels (403). */
   computed?: "expression" | "shape";
-  /** With `computed`: it was unlocked since, so that its values need not be those that were computed. */
+  /** With `computed`: the layer was unlocked since, so its values may differ from the computed ones. */
   edited_by_hand?: boolean;
-  /** Computed layers: what its values are, over other layers, their records and the surface. */
+  /** Layers computed from an expression: the formula over other layers, their records and the surface. */
   expression?: string;
   recompute?: Recompute;
-  /** Computed layers: slugs of the layers that the expression reads. */
+  /** Layers computed from an expression: slugs of the layers that the expression reads. */
   inputs?: string[];
-  /** Computed layers: something that it reads has changed since it was computed. */
+  /** Layers computed from an expression: something that the layer reads has changed since it was computed. */
   stale?: boolean;
-  /** Of the last edit in the layer. */
+  /** Sequence of the last edit of the layer. */
   sequence: number;
 }
 
-/** Picture of a model's surface. On the model's texture coordinates: the colours of the scan, or others such as UV light or infrared. */
+/** Surface image of a model. A picture in the model's texture coordinates: the colors of the scan, or others such as UV light or infrared. */
 export interface Look {
   id: number;
   name: string;
@@ -370,22 +370,22 @@ export interface Look {
   bytes: number;
   sha256: string;
   opacity: number;
-  /** Whether viewers see it at first. */
+  /** Whether the surface image is visible at first. */
   visible: boolean;
-  /** Blended ascending: higher is on top. */
+  /** Blended in ascending order: higher is on top. */
   order: number;
 }
 
-/** Records that are to be seen before all others. Of a database layer. Their texels keep their colours, those of others turn grey, or with `isolate` are not drawn at all. */
+/** Records that a view highlights. For a layer of records. The texels of these records keep their colors. Those of other records become gray, or with `isolate` are not drawn. */
 export interface Highlight {
   keys?: number[];
-  /** A condition over the columns of the layer's table (OGC CQL2 text); follows the records as they change. */
+  /** A condition over the columns of the layer's table (OGC CQL2 text). It follows changes of the records. */
   filter?: string;
   /** Default: false. */
   isolate?: boolean;
 }
 
-/** A look in a view. */
+/** Surface image in a view. */
 export interface LookShown {
   /** Id or slug. */
   look: LayerRef;
@@ -396,109 +396,109 @@ export interface LookShown {
 /** Kind of light. */
 export type LightMode = "museum" | "headlight" | "raking" | "unlit";
 
-/** Light of a view. museum: soft, from above. headlight: from the eye. raking: from one side, which shows relief. unlit: the colours as they are. */
+/** Light of a view. museum: soft, from above. headlight: from the eye. raking: from one side, which shows relief. unlit: the colors without light. */
 export interface Light {
   mode: LightMode;
-  /** Of raking light: towards the light, in the eye's axes (x right, y up, z towards the viewer). */
+  /** Raking light: the direction to the light, in the axes of the eye (x right, y up, z towards the viewer). */
   direction?: Point3;
 }
 
-/** How a view shows a layer. An absent member is the layer's own default. */
+/** How a view shows a layer. Absent members have the layer's own defaults. */
 export interface LayerOverride {
   layer: LayerRef;
   visible?: boolean;
   opacity?: number;
   palette?: Palette;
-  /** Drawn ascending, as `order` of the layers. */
+  /** Drawn in ascending order, as `order` of the layers. */
   order?: number;
   highlight?: Highlight;
 }
 
-/** How somebody shows the layers of a model. Layers that it does not name are shown as everybody sees them at first. Only of layers that are there for the person. */
+/** How a user shows the layers of a model. Layers that it does not name have their defaults. It contains only layers that the user can see. */
 export interface PersonalView {
   /** Without `highlight`. */
   layers: LayerOverride[];
 }
 
-/** Named view of a model. Where from, and what is shown how. Layers and looks that are gone are left out. */
+/** Saved view of a model. The camera, and how layers, surface images and light are shown. Deleted layers and surface images are left out. */
 export interface View {
   id: number;
-  /** Stays when the view gets another name. */
+  /** Stays the same if the view gets another name. */
   slug: string;
   name: string;
   /** Plain text. */
   text: string;
   camera: Camera;
-  /** By id; layers not listed show their defaults. */
+  /** By id. Layers that are not listed have their defaults. */
   layers: LayerOverride[];
-  /** By id, exactly these, bottom to top; absent: those visible by default. */
+  /** By id. Exactly these, from bottom to top. Absent: the surface images that are visible by default. */
   looks?: LookShown[];
   light: Light;
-  /** Who made it. */
+  /** Creator of the view. */
   user: string;
   /** UTC, RFC 3339. */
   time: string;
   version: number;
 }
 
-/** Language of a tour. BCP 47: a language, and what narrows it down. */
+/** Language of a tour. BCP 47: a language, and subtags that narrow it down. */
 export type TourLanguage = string;
 
-/** How one comes to a stop. */
+/** Transition to a stop. */
 export type TourTransition = "cut" | "move";
 
-/** A few words by language. Keys are languages of the tour. */
+/** Short text by language. Keys are languages of the tour. */
 export type TourWords = Record<string, string>;
 
-/** A text by language. Plain text; keys are languages of the tour. */
+/** Text by language. Plain text; keys are languages of the tour. */
 export type TourText = Record<string, string>;
 
-/** Column that the card of a record shows. */
+/** Column on the card of a record. */
 export interface TourColumn {
-  /** Its slug; in requests its id, too. */
+  /** Its slug; in requests also its id. */
   column: string;
-  /** How it is called on the card; absent, as in the table. */
+  /** Names of the column on the card. Absent: as in the table. */
   labels?: TourWords;
 }
 
-/** Records of a table to show at a stop. */
+/** Records of a table at a stop. */
 export interface TourRecords {
-  /** Its slug; in requests its id, too. */
+  /** Its slug; in requests also its id. */
   table: string;
-  /** In this order; records may be gone meanwhile. */
+  /** In this order. Some records may have been deleted since. */
   keys: number[];
-  /** In this order, of any record of the table that is looked at here. */
+  /** In this order, for any record of the table that visitors open at this stop. */
   columns: TourColumn[];
 }
 
 /** Stop of a tour. */
 export interface TourStop {
-  /** Slug of the named view; absent: it is gone, and the stop is passed over. */
+  /** Slug of the saved view. Absent: the view was deleted, and the tour skips the stop. */
   view?: string;
   title: TourWords;
   text: TourText;
   attract_s: number;
   transition: TourTransition;
   transition_s: number;
-  /** Slugs of those that are offered for swiping, in order. */
+  /** Slugs of the layers to swipe between, in their order. */
   layers: string[];
   records: TourRecords[];
 }
 
-/** Tour of a model. Named views one after the other, with what is said of each. Layers, tables and columns that are gone, or not for who asks, are left out. */
+/** Tour of a model. Saved views in an order, with texts for each. Layers, tables and columns are left out if they were deleted or if the caller cannot see them. */
 export interface Tour {
   id: number;
-  /** Stays when the tour gets another name. */
+  /** Stays the same if the tour gets another name. */
   slug: string;
   name: string;
-  /** Plain text: what it is about, for those who choose one. */
+  /** Plain text: the subject of the tour, for people who choose one. */
   text: string;
-  /** The first one is that of who chooses none. */
+  /** The first one is the default language. */
   languages: TourLanguage[];
-  /** So long after the last touch the tour begins anew and plays by itself. */
+  /** Seconds after the last touch until the tour restarts and plays by itself. */
   idle_s: number;
   stops: TourStop[];
-  /** Who made it; empty for kiosks. */
+  /** Creator of the tour; empty for kiosks. */
   user: string;
   /** UTC, RFC 3339. */
   time: string;
@@ -508,13 +508,13 @@ export interface Tour {
 /** Unit of length. */
 export type Unit = "mm" | "cm" | "m";
 
-/** Why a unit or an up direction is proposed. `given`: who imported it said so. `format`: glTF is in metres with +Y up. `comment`: a comment of the file says so. `coordinates`: they are of a map. `size`: things of this size are what is scanned. `shape`: this is how it would stand. */
+/** Why a unit or an up direction is proposed. `given`: the import request states it. `format`: glTF is in meters with +Y up. `comment`: a comment of the file states it. `coordinates`: they are those of a map. `size`: scanned objects usually have this size. `shape`: the object would stand this way. */
 export type ScaleReason = "given" | "format" | "comment" | "coordinates" | "size" | "shape";
 
 /** Up direction. An axis of the model, or its opposite. */
 export type Axis = "x" | "y" | "z" | "-x" | "-y" | "-z";
 
-/** The unit and the up direction that the file states or lets one guess. Made at import; models of before have none. It does not change when `unit` and `up` do. */
+/** Unit and up direction proposed for a scan. Made at import; models that were imported before proposals existed have none. It does not change with `unit` and `up`. */
 export interface ScaleProposal {
   unit: Unit;
   unit_reason: ScaleReason;
@@ -536,19 +536,19 @@ export interface Bounds {
 
 /** Why part of the texture stays unused. */
 export interface AtlasLimit {
-  /** long_triangles: the longest triangle sets the scale of all; many_charts: the margins around charts take the room; hollow_charts: charts leave their own boxes empty; file_coordinates: the scan's own coordinates were kept. */
+  /** long_triangles: the longest triangle sets the scale of all. many_charts: the gutters around charts need the space. hollow_charts: charts leave their own boxes empty. file_coordinates: the scan's own coordinates were kept. */
   code: "long_triangles" | "many_charts" | "hollow_charts" | "file_coordinates";
   text: string;
 }
 
-/** How much surface a texel holds. */
+/** Surface of a texel. */
 export interface TexelSize {
   resolution: number;
   area_mean_m2: number;
   area_max_m2: number;
 }
 
-/** How the surface lies in the texture. */
+/** How the surface is packed into the texture. */
 export interface Atlas {
   /** Whether the scan's own texture coordinates were kept. */
   source: "file" | "made";
@@ -558,30 +558,30 @@ export interface Atlas {
   overlap: number;
   stretch_mean: number;
   stretch_p99: number;
-  /** Surface in the texel that holds most, at lowest_resolution. */
+  /** Surface of the texel with the largest area, at `lowest_resolution`. */
   texel_area_max_m2: number;
-  /** Precision of layers by their resolution, the lowest first; not known of models imported before it was measured. */
+  /** Precision of layers by their resolution, the lowest first. Unknown for models imported before it was measured. */
   texel_sizes?: TexelSize[];
-  /** Why less than 60 % of the texels are used; empty where more are. */
+  /** Why less than 60 % of the texels are used. Empty if more are used. */
   limits?: AtlasLimit[];
 }
 
-/** What was mended at import. */
+/** Repair at import. */
 export interface Repair {
   what: string;
   count: number;
 }
 
-/** Where the surface ends: loops of edges of one triangle only. The rims of holes and of what was scanned in part. A closed surface has 0 loops. Models imported before they were measured have none of this. */
+/** Open edges: loops of edges of one triangle only. The rims of holes and of objects that were scanned in part. A closed surface has 0 loops. Models imported before the measurement existed do not have this member. */
 export interface OpenEdges {
   loops: number;
-  /** Of all loops together. */
+  /** Length of all loops together. */
   length_m: number;
-  /** Of single loops, longest first. */
+  /** Lengths of single loops, longest first. */
   longest_m: number[];
 }
 
-/** Uploaded file, kept bit for bit. */
+/** Uploaded file, kept unchanged. */
 export interface SourceFile {
   name: string;
   sha256: string;
@@ -596,9 +596,9 @@ export interface Model {
   /** Slug of the project. */
   project: string;
   unit: Unit;
-  /** The file named no unit and nobody has stated one. */
+  /** The file named no unit, and nobody has stated one. */
   unit_assumed: boolean;
-  /** A person has said that the size is right. */
+  /** A person has confirmed the size. */
   scale_verified: boolean;
   up: Axis;
   proposal?: ScaleProposal;
@@ -615,7 +615,7 @@ export interface Model {
   repairs: Repair[];
   open_edges?: OpenEdges;
   source_files: SourceFile[];
-  /** Of new layers. */
+  /** Default resolution of new layers. */
   default_resolution: Resolution;
   inventory_number: string;
   owner: string;
@@ -626,23 +626,23 @@ export interface Model {
   processing: string;
   rights_uri: string;
   credit: string;
-  /** The least role that gets the scan's files, the pictures of its looks and its mesh. */
+  /** Lowest role that can get the scan's files, the pictures of its surface images and its mesh. */
   source_download: "viewer" | "annotator" | "curator";
-  /** Of the last change in the model. */
+  /** Sequence of the last change of the model. */
   sequence: number;
 }
 
-/** What a layer holds at a point. */
+/** Value of a layer at a point. */
 export interface SurfaceValue {
   valid: boolean;
-  /** Absent where the texel is not valid. */
+  /** Absent if the texel is not valid. */
   value?: number;
 }
 
 /** Values by the layers' slugs. */
 export type SurfaceValues = Record<string, SurfaceValue>;
 
-/** Role. Ascending. A guest sees only the projects that they have a role in. */
+/** Role. In ascending order. A guest can see only the projects in which the guest has a role. */
 export type Role = "guest" | "viewer" | "annotator" | "curator" | "administrator" | "owner";
 
 /** First message. */
@@ -650,47 +650,47 @@ export interface Hello {
   op: "hello";
   /** Name and version of the program. Default: "". */
   client?: string;
-  /** Device pixels per CSS pixel. Default: 1. */
+  /** Device pixels for each CSS pixel. Default: 1. */
   dpr?: number;
-  /** Codecs of frames that the client draws, best first: jpeg, png. Absent: jpeg and png; unknown names are passed over. */
+  /** Codecs of frames that the client can draw, best first: jpeg, png. Absent: jpeg and png. Unknown names are ignored. */
   accept?: string[];
 }
 
-/** Newest camera of a view. Only the newest counts; frames echo `seq`. */
+/** Newest camera of a view. Only the newest counts; frames repeat its `seq`. */
 export interface CameraUpdate {
   op: "camera";
   /** Default: 0. */
   view_id?: number;
-  /** Ascending number of the client's choice. */
+  /** Ascending number that the client chooses. */
   seq: number;
   view: Matrix;
   projection: Matrix;
   width: number;
   height: number;
   section?: Section;
-  /** More cameras will follow at once: speed before quality. Default: false. */
+  /** More cameras follow at once: speed is more important than quality. Default: false. */
   moving?: boolean;
 }
 
-/** What a view shows, for this viewer. Replaces all that was said before of the view; layers not listed show their defaults. */
+/** Settings of a view for this participant. Replaces all earlier settings of the view. Layers that are not listed have their defaults. */
 export interface LayersUpdate {
   op: "layers";
   /** Default: 0. */
   view_id?: number;
   layers: LayerOverride[];
-  /** Exactly these, bottom to top, over the colours of the vertices; absent: those visible by default. */
+  /** Exactly these, from bottom to top, over the colors of the vertices. Absent: the surface images that are visible by default. */
   looks?: LookShown[];
   /** Absent: museum. */
   light?: Light;
-  /** Absent: light grey. */
+  /** Absent: light gray. */
   background?: Background;
 }
 
-/** Start of a stroke. Fixes layer, value, camera and brush. Needs a value unless it erases, and one radius. */
+/** Start of a stroke. Sets the layer, the value, the camera and the brush. Needs a value, unless it erases, and one radius. */
 export interface StrokeBegin {
   op: "stroke.begin";
   id: string;
-  /** Names the stroke in what follows. */
+  /** Name of the stroke in the messages that follow. */
   stroke: string;
   layer: LayerRef;
   /** Default: 0. */
@@ -708,7 +708,7 @@ export interface StrokeBegin {
   max_angle_deg?: SlantLimit;
 }
 
-/** Next batch of a stroke's points. The brush is swept from the last point of the batch before. */
+/** Next batch of a stroke's points. The brush is swept from the last point of the previous batch. */
 export interface StrokeExtend {
   op: "stroke.extend";
   id: string;
@@ -734,34 +734,34 @@ export interface EditRequest {
   edit: Edit;
 }
 
-/** Take back the caller's last stroke on the layer. */
+/** Undo the caller's last stroke on the layer. */
 export interface Undo {
   op: "undo";
   id: string;
   layer: LayerRef;
 }
 
-/** Put back what the caller took back last. */
+/** Redo the edit that the caller undid last. */
 export interface Redo {
   op: "redo";
   id: string;
   layer: LayerRef;
 }
 
-/** This person begins or ends to write into a record. So that others see it (`record.editors`), and are not surprised; what protects the data is the record's version. Ends by itself with the connection. Where somebody else has the record nothing changes, unless it is taken over. */
+/** Start or end of editing a record. Shows the other participants that this person edits the record (`record.editors`). The version of the record protects its data. Editing ends with the connection. If somebody else edits the record, nothing changes, unless this message takes it over. */
 export interface RecordEdit {
   op: "record.edit";
-  /** Comes back as `ref` of a problem. */
+  /** Returned as `ref` of a problem. */
   id?: string;
   /** Id of a table of the model's project. */
   table: number;
   key: number;
   editing: boolean;
-  /** From whoever has it. Default: false. */
+  /** Take the record over from the person who edits it. Default: false. */
   take_over?: boolean;
 }
 
-/** A frame was drawn. Sent after a frame's last rectangle is on the screen; gives the server credit for the next. */
+/** A frame was drawn. Sent when the last rectangle of a frame is on the screen. The server may then send another frame. */
 export interface Ack {
   op: "ack";
   /** Default: 0. */
@@ -770,25 +770,25 @@ export interface Ack {
   frame: number;
 }
 
-/** What this viewer shows of themselves. Replaces what was said before: what is absent is no longer so. Refused as a whole. */
+/** Presence of this participant. Replaces the earlier presence: an absent member no longer applies. The server refuses the message as a whole. */
 export interface PresenceUpdate {
   op: "presence";
   /** Default: 0. */
   view_id?: number;
-  /** Pixel of the view's newest camera; null or absent: the pointer is elsewhere. */
+  /** Pixel of the view's newest camera. Null or absent: the pointer is elsewhere. */
   pointer?: Point2 | null;
-  /** Of the brush in hand where the pointer is, in world coordinates; absent: another tool. */
+  /** Radius of the brush at the pointer, in world coordinates. Absent: another tool. */
   radius?: number;
-  /** Asks the others to look with this viewer. Default: false. */
+  /** Invites the others to follow this participant. Default: false. */
   leading?: boolean;
-  /** Session of whom this viewer looks with; its camera then comes with `presence`. 404: it is not here; 409: it follows this one, or somebody who does. */
+  /** Session of the participant that this one follows. Its camera then comes with `presence`. 404: the session is not here. 409: that participant follows this one, directly or through others. */
   follow?: string | null;
 }
 
-/** What is at a pixel. */
+/** Values at a pixel. */
 export interface Pick {
   op: "pick";
-  /** Comes back in `picked`. */
+  /** Returned in `picked`. */
   id?: string;
   /** Default: 0. */
   view_id?: number;
@@ -805,7 +805,7 @@ export interface StrokeProgress {
   n: number;
 }
 
-/** What the server takes. */
+/** Limits of the connection. */
 export interface Limits {
   message_bytes: number;
   /** Points in one message. */
@@ -813,7 +813,7 @@ export interface Limits {
   /** Pixels a side of a picture. */
   view_size: number;
   views: number;
-  /** Frames sent before an ack is awaited. */
+  /** Frames that the server sends before it waits for an ack. */
   frames_in_flight: number;
   messages_per_second: number;
 }
@@ -826,16 +826,16 @@ export interface Welcome {
   role: Role;
   model: Model;
   layers: Layer[];
-  /** By order. */
+  /** In their order. */
   looks: Look[];
-  /** What this person keeps of how they show the layers; absent: nothing, or this is a kiosk. */
+  /** How this user shows the layers, as kept on the server. Absent: nothing is kept, or this is a kiosk. */
   personal_view?: PersonalView;
   limits: Limits;
-  /** Of this user, so that the client resends what is not in them. */
+  /** Unfinished strokes of this user, so that the client sends the missing batches again. */
   strokes: StrokeProgress[];
 }
 
-/** An edit is done and visible, not yet durable. `stroke` and `n` name a stroke's batch, `id` any other message. */
+/** An edit is done and visible, but not durable yet. `stroke` and `n` name a batch of a stroke, `id` any other message. */
 export interface Applied {
   op: "applied";
   id?: string;
@@ -844,11 +844,11 @@ export interface Applied {
   sequence: number;
   texels_changed?: number;
   area_m2?: number;
-  /** true: it waits for review. */
+  /** true: the edit waits for review. */
   provisional?: boolean;
 }
 
-/** An edit is durable. `stroke` and `n` name a stroke's batch, `id` any other message. */
+/** An edit is durable. `stroke` and `n` name a batch of a stroke, `id` any other message. */
 export interface Saved {
   op: "saved";
   id?: string;
@@ -857,7 +857,7 @@ export interface Saved {
   sequence: number;
   texels_changed?: number;
   area_m2?: number;
-  /** true: it waits for review. */
+  /** true: the edit waits for review. */
   provisional?: boolean;
 }
 
@@ -866,19 +866,19 @@ export interface Unsaved {
   op: "unsaved";
   /** Ids of the messages. */
   ids: string[];
-  /** Why. */
+  /** Reason. */
   detail?: string;
 }
 
-/** What a curator has decided about edits. */
+/** Decision of a curator about edits. */
 export interface Reviewed {
   decision: ReviewDecision;
-  /** Whose edits they are. */
+  /** Authors of the edits. */
   authors: string[];
   reason?: ReviewReason;
 }
 
-/** A layer was created, changed, deleted or edited. `layer` is there for created and changed; `sequence` for edited, with `provisional` where the edit waits for review, and `review` where it decides about others. */
+/** A layer was created, changed, deleted or edited. `layer` is present for created and changed. For edited, `sequence` is present, with `provisional` if the edit waits for review, and `review` if it decides about others. */
 export interface LayerEvent {
   op: "layer";
   event: "created" | "changed" | "deleted" | "edited";
@@ -890,7 +890,7 @@ export interface LayerEvent {
   review?: Reviewed;
 }
 
-/** A look was created, changed or deleted. `look` is there for created and changed. */
+/** A surface image was created, changed or deleted. `look` is present for created and changed. */
 export interface LookEvent {
   op: "look";
   event: "created" | "changed" | "deleted";
@@ -898,7 +898,7 @@ export interface LookEvent {
   look?: Look;
 }
 
-/** A tool of the site was created, renamed or deleted. `tool` is there for created and changed. */
+/** A brush shape was created, renamed or deleted. `tool` is present for created and changed. */
 export interface ToolEvent {
   op: "tool";
   event: "created" | "changed" | "deleted";
@@ -906,14 +906,14 @@ export interface ToolEvent {
   tool?: Tool;
 }
 
-/** The model's description changed, or it was deleted. `model` is there for changed. */
+/** The model's metadata changed, or it was deleted. `model` is present for changed. */
 export interface ModelEvent {
   op: "model";
   event: "changed" | "deleted";
   model?: Model;
 }
 
-/** A record was created, changed or deleted. Of a table of the model's project. `record` is there unless it was deleted. */
+/** A record was created, changed or deleted. For tables of the model's project. `record` is present unless the record was deleted. */
 export interface RecordEvent {
   op: "record";
   event: "created" | "changed" | "deleted";
@@ -924,7 +924,7 @@ export interface RecordEvent {
   user?: string;
 }
 
-/** Who writes into a record. `session` and `user` are both absent where nobody does any more. */
+/** Person who edits a record. `session` and `user` are both absent if nobody edits the record now. */
 export interface RecordEditor {
   /** Id of the table. */
   table: number;
@@ -933,13 +933,13 @@ export interface RecordEditor {
   user?: string;
 }
 
-/** Who writes into which records. Of the project's tables: all that there are, to who joins, where there are any; then each that changes. Not stored. */
+/** People who edit records. For the tables of the project. A new participant gets all editors, if there are any. Then all participants get each change. Not stored. */
 export interface RecordEditors {
   op: "record.editors";
   records: RecordEditor[];
 }
 
-/** A table was created, changed or deleted. Of the model's project. Changed: its names or columns, or so many records at once that they should be read anew. `table` is there unless it was deleted. */
+/** A table was created, changed or deleted. For tables of the model's project. Changed: its names or columns, or so many records at once that clients should read them again. `table` is present unless the table was deleted. */
 export interface TableEvent {
   op: "table";
   event: "created" | "changed" | "deleted";
@@ -948,7 +948,7 @@ export interface TableEvent {
   user?: string;
 }
 
-/** A comment was written, changed or deleted. Of the model. `comment` is there unless it was deleted; one that stays for its replies is changed. */
+/** A comment was created, changed or deleted. For comments on the model. `comment` is present unless the comment was deleted. A deleted comment that stays for its replies counts as changed. */
 export interface CommentEvent {
   op: "comment";
   event: "created" | "changed" | "deleted";
@@ -957,45 +957,45 @@ export interface CommentEvent {
   user?: string;
 }
 
-/** A named view was made, changed or deleted. Of the model; who shows views asks for it anew. */
+/** A saved view was created, changed or deleted. For views of the model. Clients that list views read the view again. */
 export interface ViewEvent {
   op: "view";
   event: "created" | "changed" | "deleted";
-  /** Its id. */
+  /** Id of the view. */
   view: number;
   user?: string;
 }
 
-/** Where a pointer touches the surface. World coordinates. */
+/** Place where a pointer touches the surface. World coordinates. */
 export interface PresencePointer {
   position: Point3;
-  /** Of the brush in hand; absent: another tool. */
+  /** Radius of the brush. Absent: another tool. */
   radius?: number;
 }
 
-/** One viewer. A person may be here several times, with the same color. */
+/** One participant. A person can be present several times, with the same color. */
 export interface PresenceUser {
   session: string;
   name: string;
-  /** As it was when they came; absent: they gave none. */
+  /** Full name at the start of the connection. Absent: the person gave none. */
   full_name?: string;
   color: PersonColor;
   pointer?: PresencePointer;
-  /** Asks the others to look with this viewer. Default: false. */
+  /** Invites the others to follow this participant. Default: false. */
   leading?: boolean;
-  /** Session of whom they look with. */
+  /** Session of the participant that this one follows. */
   following?: string;
-  /** Newest of their view 0, without its section: only of whom the receiver follows. */
+  /** Newest camera of view 0, without its section. Present only for the participant that the receiver follows. */
   camera?: Camera;
 }
 
-/** Who is here. Everyone on the model, the receiver too; not stored. Comes the less often the more people are here. */
+/** Participants of the model. Everybody with the model open, including the receiver. Not stored. The more people are present, the less often the server sends it. */
 export interface Presence {
   op: "presence";
   users: PresenceUser[];
 }
 
-/** What is at the pixel. Off the model only `hit` and `id` are there. */
+/** Values at the pixel. Next to the model, only `hit` and `id` are present. */
 export interface Picked {
   op: "picked";
   id?: string;
@@ -1003,12 +1003,12 @@ export interface Picked {
   position?: Point3;
   normal?: Point3;
   uv?: Point2;
-  /** From the camera's near plane. */
+  /** Distance from the camera's near plane. */
   distance?: number;
   values?: SurfaceValues;
 }
 
-/** Something was refused or failed. RFC 9457 members and `ref`, the id of the message. */
+/** Something was refused or failed. The members of RFC 9457, and `ref`, the id of the message. */
 export interface ProblemMessage {
   op: "problem";
   ref?: string;
@@ -1016,36 +1016,36 @@ export interface ProblemMessage {
   title: string;
   status: number;
   detail: string;
-  /** Where in the message: camera.view[3]. */
+  /** Path of the wrong member in the message: camera.view[3]. */
   field?: string;
-  /** Where the member is a text in a language: characters (Unicode code points) before what is wrong. */
+  /** If the member is a condition or formula: the number of characters (Unicode code points) before the mistake. */
   offset?: number;
 }
 
-/** What is wrong with a row. */
+/** Problem of a row. */
 export interface RowProblem {
-  /** Of the text, where the row begins; 0: it has no lines. */
+  /** Line of the text where the row begins. 0: the text has no lines. */
   line: number;
-  /** Of a term. */
+  /** Code of the term, for terms. */
   code?: string;
-  /** As its head calls it. */
+  /** Name of the column in the head of the text. */
   column?: string;
   title: string;
   detail: string;
 }
 
-/** What became of records that were sent in bulk. Where there are problems nothing was written. */
+/** Result of writing many records. If there are problems, nothing was written. */
 export interface RecordsReport {
   rows: number;
   created: number;
   changed: number;
   unchanged: number;
   dry_run: boolean;
-  /** Of the entry in the table's journal; 0: nothing was written. */
+  /** Sequence of the entry in the table's journal. 0: nothing was written. */
   sequence: number;
-  /** Of SKOS: further broader terms and further labels of one language, which a list has no place for. */
+  /** For SKOS: further broader terms, and further labels of the same language, for which a list has no place. */
   left_out?: number;
-  /** Of terms: the list that they are in. */
+  /** For terms: the list with the terms. */
   table?: Table;
   problems: RowProblem[];
 }
@@ -1056,26 +1056,26 @@ export interface Problem {
   /** For people; the words may change. */
   title: string;
   status: number;
-  /** This occurrence, and what to do about it. */
+  /** Describes this case, and what to do. */
   detail: string;
-  /** Path of the offending member: camera.view[3]. */
+  /** Path of the wrong member: camera.view[3]. */
   field?: string;
-  /** Where the member is a text in a language: characters (Unicode code points) before what is wrong. */
+  /** If the member is a condition or formula: the number of characters (Unicode code points) before the mistake. */
   offset?: number;
   instance?: string;
-  /** Of records in bulk: what is wrong with which line. */
+  /** For many records at once: what is wrong with which line. */
   rows?: RecordsReport;
 }
 
-/** Sign-in. By name and password, or by the secret of an owner link. */
+/** Sign-in. By user name and password, or by the secret of an owner link. */
 export interface Login {
-  /** In any case. */
+  /** Upper and lower case count the same. */
   user?: string;
   password?: string;
   token?: string;
 }
 
-/** Who is signed in. */
+/** The signed-in user. */
 export interface Me {
   user: string;
   full_name: string;
@@ -1084,28 +1084,28 @@ export interface Me {
   has_password: boolean;
 }
 
-/** New password. Whoever has one already says it. Ends all other sessions. */
+/** New password. If the user has a password, `current` is required. Ends all other sessions. */
 export interface PasswordChange {
   current?: string;
-  /** Ten characters or more; not the name. */
+  /** At least ten characters, and not the user name. */
   password: string;
 }
 
-/** Changes of oneself. */
+/** Changes of your own account. */
 export interface MePatch {
   full_name: string;
 }
 
-/** A browser in which somebody is signed in. */
+/** A browser in which a user is signed in. */
 export interface SignInSession {
   id: number;
   created: string;
   expires: string;
-  /** To some minutes. */
+  /** Accurate to a few minutes. */
   last_used?: string;
-  /** What the browser calls itself. */
+  /** Name that the browser sends. */
   agent: string;
-  /** It sent this request. */
+  /** This session sent the request. */
   current: boolean;
 }
 
@@ -1115,16 +1115,16 @@ export interface SignInSessionList {
   total: number;
 }
 
-/** A token for scripts. It does what its role and that of its person both allow. */
+/** A token for scripts. It can do what both its role and its user's role allow. */
 export interface ScriptToken {
   id: number;
   name: string;
   role: Role;
   created: string;
   expires?: string;
-  /** To some minutes. */
+  /** Accurate to a few minutes. */
   last_used?: string;
-  /** Slug of the only project that it is good in. */
+  /** Slug of the only project in which the token is valid. */
   project?: string;
 }
 
@@ -1136,26 +1136,26 @@ export interface ScriptTokenList {
 
 /** New token. */
 export interface ScriptTokenCreate {
-  /** What it is for. */
+  /** Purpose of the token. */
   name: string;
   role?: Role;
-  /** Until it expires. Default: 365. */
+  /** Days until the token expires. Default: 365. */
   days?: number;
-  /** Slug or id of the only project that it is good in, as viewer, annotator or curator; absent: wherever its person is. */
+  /** Slug or id of the only project in which the token is valid, as viewer, annotator or curator. Absent: in all projects of its user. */
   project?: string;
 }
 
-/** The token, told this once. */
+/** A new token with its secret, which is shown only now. */
 export interface ScriptTokenMade {
   /** For `Authorization: Bearer`. */
   secret: string;
   token: ScriptToken;
 }
 
-/** Whether a person can sign in. Invited: no password was chosen yet. */
+/** Whether a person can sign in. Invited: the person has not set a password yet. */
 export type PersonState = "invited" | "active" | "disabled";
 
-/** Name of a group. Unique in any case. */
+/** Name of a group. Unique; upper and lower case count the same. */
 export type GroupName = string;
 
 /** A person with an account. */
@@ -1167,9 +1167,9 @@ export interface Person {
   role: Role;
   state: PersonState;
   created: string;
-  /** To some minutes. */
+  /** Accurate to a few minutes. */
   last_seen?: string;
-  /** That they are in, by name. */
+  /** Groups of the person, sorted by name. */
   groups: GroupName[];
 }
 
@@ -1184,11 +1184,11 @@ export type GroupId = number;
 
 /** New account. */
 export interface PersonCreate {
-  /** For signing in, and in the history of what was done. Unique in any case. */
+  /** For signing in, and in the history. Unique; upper and lower case count the same. */
   user: string;
   full_name?: string;
   role?: Role;
-  /** That they are in from the start. */
+  /** Groups of the person from the start. */
   groups?: GroupId[];
 }
 
@@ -1196,49 +1196,49 @@ export interface PersonCreate {
 export interface PersonPatch {
   full_name?: string;
   role?: Role;
-  /** Signs out everywhere, and lets nobody in. */
+  /** Ends all sessions of the user, and prevents signing in. */
   disabled?: boolean;
 }
 
-/** A link that lets a person choose a password. Told this once; good for one use. */
+/** A link with which a person sets a password. The link is shown only now, and works once. */
 export interface Invitation {
-  /** To be put behind the server's address. */
+  /** Path of the link, after the address of the server. */
   path: string;
   expires: string;
   user: Person;
 }
 
-/** An invitation, to see whose it is. */
+/** An invitation, to get its user. */
 export interface InvitationShow {
   invitation: string;
 }
 
-/** An invitation and the password that is chosen. */
+/** An invitation and the new password. */
 export interface InvitationAccept {
   invitation: string;
-  /** Ten characters or more; not the name. */
+  /** At least ten characters, and not the user name. */
   password: string;
   full_name?: string;
 }
 
-/** Project: a site. */
+/** Project: a site or a collection. */
 export interface Project {
   id: number;
   name: string;
   slug: string;
   description: string;
-  /** Changes and deletions in the project of what has a version must name it in If-Match (428). */
+  /** Changes and deletions of resources with a version must name the version in If-Match (428). */
   require_if_match?: boolean;
-  /** Of who asks, there; in lists. */
+  /** In lists: role of the caller in the project. */
   role?: Role;
-  /** That give who asks this role there, in lists; absent: it is their own, or what they may do everywhere. */
+  /** In lists: groups that give the caller this role in the project. Absent: it is the caller's own role there, or the role in all projects. */
   groups?: GroupName[];
 }
 
-/** Role in one project. Beside the one that a person has everywhere; the higher one counts. */
+/** Role in one project. In addition to the role in all projects; the higher one applies. */
 export type ProjectRole = "viewer" | "annotator" | "curator";
 
-/** Somebody with a role in a project. */
+/** A person with a role in a project. */
 export interface Member {
   user: string;
   full_name: string;
@@ -1250,21 +1250,21 @@ export interface Member {
 export interface MemberGroup {
   id: GroupId;
   name: GroupName;
-  /** In it */
+  /** Number of people in the group. */
   people: number;
   role: ProjectRole;
 }
 
-/** Who has a role in the project. `total` counts the people. */
+/** Members of a project. `total` counts the people. */
 export interface MemberList {
   /** People with a role of their own. */
   members: Member[];
-  /** All of them, on every page. */
+  /** All groups, on every page. */
   groups: MemberGroup[];
   total: number;
 }
 
-/** A role in the project. */
+/** Role in a project. */
 export interface MemberPut {
   role: ProjectRole;
 }
@@ -1273,9 +1273,9 @@ export interface MemberPut {
 export interface Group {
   id: GroupId;
   name: GroupName;
-  /** In it */
+  /** Number of people in the group. */
   people: number;
-  /** In which it has a role */
+  /** Number of projects in which the group has a role. */
   projects: number;
 }
 
@@ -1285,7 +1285,7 @@ export interface GroupList {
   total: number;
 }
 
-/** Somebody in a group. */
+/** A person in a group. */
 export interface GroupMember {
   user: string;
   full_name: string;
@@ -1293,25 +1293,25 @@ export interface GroupMember {
 
 /** A project in which a group has a role. */
 export interface GroupProject {
-  /** Slug */
+  /** Slug of the project. */
   project: string;
   name: string;
   role: ProjectRole;
 }
 
-/** A group, who is in it, and what it gives them. */
+/** A group with its people and its roles. */
 export interface GroupDetail {
   id: GroupId;
   name: GroupName;
-  /** By name */
+  /** Sorted by name. */
   members: GroupMember[];
-  /** By name */
+  /** Sorted by name. */
   projects: GroupProject[];
-  /** People who could do less in some project, or see it no more, if the group was deleted */
+  /** Number of people who would lose access to a project or get a lower role there if the group was deleted. */
   losing: number;
 }
 
-/** Name of a person for signing in. */
+/** User name of a person. */
 export type GroupPerson = string;
 
 /** New group. */
@@ -1323,132 +1323,132 @@ export interface GroupCreate {
 /** Changes of a group. */
 export interface GroupPatch {
   name?: GroupName;
-  /** Who is put into it; who is in it stays. */
+  /** People to add to the group. People who are in it already stay. */
   add?: GroupPerson[];
-  /** Who is taken out of it; who is not in it stays out. */
+  /** People to remove from the group. People who are not in it are ignored. */
   remove?: GroupPerson[];
 }
 
-/** Somebody who sees the project. */
+/** A person who can see the project. */
 export interface ProjectPerson {
   user: string;
   full_name: string;
   color: PersonColor;
 }
 
-/** Who sees the project. */
+/** People who can see the project. */
 export interface ProjectPersonList {
   people: ProjectPerson[];
   total: number;
 }
 
-/** What something was done to. */
+/** Kind of the changed thing. */
 export type ActivityKind = "edit" | "layer" | "look" | "view" | "tour" | "model" | "table" | "columns" | "records" | "comment" | "member" | "project";
 
-/** What was changed of something. */
+/** Changed property. */
 export type ChangedProperty = string;
 
-/** What one person did to one thing, each time within ten minutes of the last one. */
+/** Actions of one person on one thing, at most ten minutes apart. */
 export interface Activity {
   id: number;
-  /** The last time */
+  /** Time of the last action. */
   time: string;
-  /** The first time */
+  /** Time of the first action. */
   begun: string;
-  /** Absent: the server itself, by its command line */
+  /** Absent: the server itself, by its command line. */
   user?: string;
-  /** Of `user`; absent: they gave none. */
+  /** Full name of `user`. Absent: the person gave none. */
   full_name?: string;
-  /** Of `user`. */
+  /** Color of `user`. */
   color?: PersonColor;
   kind: ActivityKind;
-  /** Of an edit or of records and columns as in their history; of layers, looks, views, tours, models, tables and the project created, changed, deleted, of layers and models restored; of comments written, replied, resolved, reopened; of members added, changed, removed */
+  /** For edits, records and columns: the operation as in their history. For layers, surface images, views, tours, models, tables and the project: created, changed or deleted; for layers and models also restored. For comments: written, replied, resolved or reopened. For members: added, changed or removed. */
   op: string;
-  /** Of the layer, look, view, tour, model, table or project, as it is called now or was last */
+  /** Current or last name of the layer, surface image, view, tour, model, table or project. */
   name?: string;
-  /** This and the other ids: where it is still there */
+  /** This and the other ids are present while the thing exists. */
   model?: number;
   model_name?: string;
   layer?: number;
   table?: number;
-  /** The key, where all of it was done to this record, which may be deleted */
+  /** Key of the record, if all actions were on this record. The record may be deleted. */
   record?: number;
   comment?: number;
-  /** How the comment begins */
+  /** Beginning of the comment. */
   text?: string;
-  /** Whose role in the project it is; with `group`, who was put into it or taken out of it */
+  /** Person whose role in the project changed. With `group`: person who was added to the group or removed from it. */
   person?: string;
-  /** The group that has the role in the project, as it was called then */
+  /** Group with the role in the project, with its name of that moment. */
   group?: GroupName;
   role?: ProjectRole;
-  /** Strokes and other edits, records or columns written, changes */
+  /** Number of strokes and other edits, of written records or columns, or of changes. */
   count: number;
-  /** That edits changed, one after the other */
+  /** Texels that edits changed, counted once for each edit. */
   texels?: number;
   area_m2?: number;
   changed?: ChangedProperty[];
 }
 
-/** What was done in a project, newest first. */
+/** Activity of a project, newest first. */
 export interface ActivityList {
   activity: Activity[];
-  /** `before` of the page that follows; absent: there is none */
+  /** `before` of the next page. Absent: this is the last page. */
   next?: string;
 }
 
-/** What lies in the Bin. */
+/** Kind of a deleted item. */
 export type BinKind = "layer" | "model" | "record";
 
-/** What was deleted, by kind and id; a record by its table's id and its key. */
+/** Kind and id of a deleted item; for a record, the id of its table and its key. */
 export type BinEntryId = string;
 
-/** Something that was deleted and can be restored. */
+/** A deleted item that can be restored. */
 export interface BinEntry {
   id: BinEntryId;
   kind: BinKind;
-  /** Of the layer or model; what a record's first text says, or its key */
+  /** Name of the layer or model. For a record: its first text, or its key. */
   name: string;
-  /** Of a layer: where it lay */
+  /** For a layer: its model. */
   model?: number;
   model_name?: string;
-  /** Of a record: where it stood */
+  /** For a record: its table. */
   table?: number;
   table_name?: string;
-  /** Who deleted it; absent: the server itself */
+  /** Person who deleted it. Absent: the server itself. */
   user?: string;
-  /** Of `user`; absent: they gave none. */
+  /** Full name of `user`. Absent: the person gave none. */
   full_name?: string;
-  /** Of `user`. */
+  /** Color of `user`. */
   color?: PersonColor;
-  /** When */
+  /** Time of the deletion. */
   deleted: string;
-  /** When it leaves the Bin: a layer or model is erased, what a record said stays in the history of its table */
+  /** Time when the item leaves the trash. A layer or model is then erased. The values of a record stay in the history of its table. */
   erased: string;
-  /** Of its files and history, about; absent: little */
+  /** Approximate bytes of its files and history. Absent: few. */
   bytes?: number;
 }
 
-/** What was deleted in a project and can be restored, newest first. */
+/** Trash of a project, newest first. */
 export interface BinList {
   entries: BinEntry[];
   total: number;
-  /** For how long things stay; 0: they are erased at once */
+  /** Days that items stay in the trash. 0: they are erased at once. */
   days: number;
 }
 
-/** What was restored. */
+/** A restored item. */
 export interface BinRestored {
   kind: BinKind;
-  /** Id of the layer or model, or key of the record, as before */
+  /** Former id of the layer or model, or key of the record. */
   restored: number;
   name: string;
-  /** Of a layer or model */
+  /** Short name of the layer or model. */
   slug?: string;
-  /** What it was, where something else has it meanwhile */
+  /** Former short name, if something else has it now. */
   former_slug?: string;
-  /** Of a layer: where it lies */
+  /** For a layer: its model. */
   model?: number;
-  /** Of a record: where it stands */
+  /** For a record: its table. */
   table?: number;
 }
 
@@ -1461,7 +1461,7 @@ export interface ProjectList {
 /** New project. */
 export interface ProjectCreate {
   name: string;
-  /** Made from the name when absent; never all digits. */
+  /** Absent: made from the name. Never all digits. */
   slug?: string;
   /** Default: "". */
   description?: string;
@@ -1471,7 +1471,7 @@ export interface ProjectCreate {
 export interface ProjectPatch {
   name?: string;
   description?: string;
-  /** As in Project. Curators change it, too. */
+  /** As in Project. Curators can change it, too. */
   require_if_match?: boolean;
 }
 
@@ -1481,7 +1481,7 @@ export interface ModelList {
   total: number;
 }
 
-/** Changes to a model's description. None of them touches paint. Stating the unit clears `unit_assumed`. */
+/** Changes to a model's metadata. No change affects paint. Stating the unit clears `unit_assumed`. */
 export interface ModelPatch {
   name?: string;
   unit?: Unit;
@@ -1500,11 +1500,11 @@ export interface ModelPatch {
   processing?: string;
   rights_uri?: string;
   credit?: string;
-  /** The least role that gets the scan's files, the pictures of its looks and its mesh. */
+  /** Lowest role that can get the scan's files, the pictures of its surface images and its mesh. */
   source_download?: "viewer" | "annotator" | "curator";
 }
 
-/** File that a job made. For who started it, at `/jobs/{job}/file`; only some of the newest are kept. */
+/** File that a job made. For the user who started the job, at `/jobs/{job}/file`. The server keeps only the newest files. */
 export interface JobFile {
   name: string;
   media_type: string;
@@ -1513,61 +1513,61 @@ export interface JobFile {
 
 /** One layer of a transfer. */
 export interface TransferredLayer {
-  /** Id of the layer it comes from. */
+  /** Id of the original layer. */
   from: number;
   /** Id of the new layer. */
   layer: number;
   name?: string;
-  /** Painted surface of the layer it comes from. */
+  /** Painted surface of the original layer. */
   source_m2: number;
   /** Painted surface of the new layer. */
   transferred_m2: number;
-  /** Of `source_m2`, what has no counterpart within the tolerance. */
+  /** The part of `source_m2` that has no counterpart within the tolerance. */
   lost_m2: number;
 }
 
-/** What a transfer of layers brought over. */
+/** Report of a transfer of layers. */
 export interface TransferReport {
-  /** Id of the model that the layers come from. */
+  /** Id of the model with the original layers. */
   from: number;
-  /** Surface of the model they are put on. */
+  /** Surface of the model with the new layers. */
   area_m2: number;
-  /** Of that, what has a counterpart within the tolerance. */
+  /** The part of `area_m2` that has a counterpart within the tolerance. */
   matched_m2: number;
   layers: TransferredLayer[];
-  /** Lines and points that records have on this model now, too. */
+  /** Lines and points of records that are now also on this model. */
   marks?: number;
-  /** Those of the other model that have no counterpart within the tolerance, as a whole or in part. */
+  /** Lines and points of the other model that have no counterpart within the tolerance, completely or in part. */
   lost_marks?: number;
 }
 
-/** Long work. */
+/** Job: work that takes longer than an answer. */
 export interface Job {
   id: number;
   state: "queued" | "running" | "done" | "failed" | "cancelled";
   progress: number;
-  /** The step at work, in plain words. */
+  /** The current step, for people. */
   message: string;
   problem?: Problem;
-  /** Id of the model, once it is done. */
+  /** Id of the model, when the job is finished. */
   model?: number;
-  /** Ids of the layers that it made on the model. */
+  /** Ids of the layers that the job made on the model. */
   layers?: number[];
-  /** Id of the look that it made on the model. */
+  /** Id of the surface image that the job made on the model. */
   look?: number;
   report?: TransferReport;
   file?: JobFile;
 }
 
-/** Layers of another version of the same scan. */
+/** Transfer of layers from another version of the same scan. */
 export interface Transfer {
-  /** Id or slug of the model whose layers are taken. Both models' coordinates must be of one system. */
+  /** Id or slug of the model with the original layers. The coordinates of both models must be of one system. */
   from: string;
-  /** A place with no surface of the other model within this distance stays empty. */
+  /** A place stays empty if the other model has no surface within this distance. */
   tolerance_mm: number;
-  /** Degrees by which the surfaces may differ in direction: keeps the two sides of a thin wall apart. Default: 60. */
+  /** Largest angle between the surfaces in degrees. It keeps the two sides of a thin wall apart. Default: 60. */
   max_angle?: number;
-  /** Ids or slugs; absent: all. */
+  /** Ids or slugs. Absent: all. */
   layers?: string[];
 }
 
@@ -1577,50 +1577,50 @@ export interface JobList {
   total: number;
 }
 
-/** Layers of a model, by order. */
+/** Layers of a model, in their order. */
 export interface LayerList {
   layers: Layer[];
   total: number;
 }
 
-/** Colour that covers a part of a picture. */
+/** Color that covers a part of a picture. */
 export interface MapColor {
   color: string;
   share: number;
-  /** It covers most of the border. */
+  /** The color covers most of the border. */
   background: boolean;
 }
 
 /** Attribute of a map's polygons. */
 export interface MapColumn {
   name: string;
-  /** What every polygon has; mixed: it cannot be painted. */
+  /** Type of the value that every polygon has. mixed: the attribute cannot be painted. */
   type: "number" | "text" | "mixed";
   samples: string[];
 }
 
-/** What a map file holds. */
+/** Contents of a map file. */
 export interface MapContents {
   kind: "polygons" | "picture";
   format: "geojson" | "shapefile" | "picture" | "tiff";
-  /** Where the file names it. */
+  /** Coordinate system, if the file names it. */
   crs?: string;
-  /** In the plane: least x and y, greatest x and y. Absent: it does not say where it lies. */
+  /** In the plane: least x and y, greatest x and y. Absent: the file does not contain its place. */
   bounds?: [number, number, number, number];
   polygons?: number;
   columns?: MapColumn[];
-  /** Pixels. */
+  /** In pixels. */
   width?: number;
   height?: number;
-  /** In the order of a world file's lines. */
+  /** The six numbers, in the order of a world file's lines. */
   world?: number[];
-  /** Whose numbers can be painted. Absent: none. */
+  /** Number of bands whose numbers can be painted. Absent: none. */
   bands?: number;
   type?: ValueType;
   nodata?: number;
-  /** It can be seen as a picture. */
+  /** The file can be used as a picture. */
   has_colors?: boolean;
-  /** Its bands are colours. */
+  /** Its bands are colors. */
   is_rgb?: boolean;
   colors?: MapColor[];
 }
@@ -1628,24 +1628,24 @@ export interface MapContents {
 /** New column. */
 export interface ColumnCreate {
   name: string;
-  /** Made from the name when absent; never all digits. */
+  /** Absent: made from the name. Never all digits. */
   slug?: string;
   labels?: Labels;
   /** Default: "text". */
   kind?: ColumnKind;
-  /** Numbers: what they count. Default: "". */
+  /** Numbers: unit of the values. Default: "". */
   unit?: string;
   /** Default: false. */
   required?: boolean;
   /** Default: false. */
   unique?: boolean;
-  /** What new records have where they say nothing; null: none. */
+  /** Value of new records that give none. Null: no value. */
   default?: CellValue;
   /** Default: "". */
   comment?: string;
-  /** Enumerations: what may be chosen. */
+  /** Enumerations: possible values. */
   choices?: string[];
-  /** Terms and relations: the table of the project whose records they name. */
+  /** Terms and relations: table of the project whose records they name. */
   target?: TableRef;
   minimum?: number | null;
   maximum?: number | null;
@@ -1653,32 +1653,32 @@ export interface ColumnCreate {
   visibility?: Visibility;
 }
 
-/** Changes to a column. Another kind or target makes a new column in its place, which takes over what it can hold. */
+/** Changes to a column. With another kind or target, a new column replaces this one and gets the values that it can hold. */
 export interface ColumnPatch {
   name?: string;
   slug?: string;
   labels?: Labels;
   kind?: ColumnKind;
-  /** Numbers: what they count. */
+  /** Numbers: unit of the values. */
   unit?: string;
   required?: boolean;
   unique?: boolean;
-  /** What new records have where they say nothing; null: none. */
+  /** Value of new records that give none. Null: no value. */
   default?: CellValue;
   comment?: string;
-  /** Enumerations: what may be chosen. */
+  /** Enumerations: possible values. */
   choices?: string[];
-  /** Terms and relations: the table of the project whose records they name. */
+  /** Terms and relations: table of the project whose records they name. */
   target?: TableRef;
   minimum?: number | null;
   maximum?: number | null;
-  /** Ascending from left to right. */
+  /** In ascending order from left to right. */
   order?: number;
-  /** Alone. Counts for the past, too, and is no entry of the table's journal: no undo shows the column again. */
+  /** Only without other members. The change also applies to the past. It is not an entry of the table's journal, so undo cannot show the column again. */
   visibility?: Visibility;
 }
 
-/** Columns of a table, by order. */
+/** Columns of a table, in their order. */
 export interface ColumnList {
   columns: Column[];
   total: number;
@@ -1688,11 +1688,11 @@ export interface ColumnList {
 export interface ColumnChanged {
   column: Column;
   sequence: number;
-  /** Of another kind: values that it could take over. */
+  /** For another kind: number of converted values. */
   converted?: number;
-  /** Values that it could not; undo brings them back. */
+  /** Number of values that could not be converted. Undo brings them back. */
   lost?: number;
-  /** The first of the records that had them. */
+  /** The first records with such values. */
   lost_keys?: number[];
 }
 
@@ -1702,18 +1702,18 @@ export interface Attachment {
   /** Id of the table. */
   table: number;
   name: string;
-  /** By its bytes, whatever the sender calls it. */
+  /** Detected by the bytes of the file, not by the type that the sender states. */
   media_type: string;
   bytes: number;
   sha256: string;
-  /** Of JPEG and PNG pictures, as their rows are stored. */
+  /** Width of JPEG and PNG pictures, as their rows are stored. */
   width?: number;
   height?: number;
   user: string;
   time: string;
-  /** Who attached it sees it whatever this says. */
+  /** The person who attached the file can always see it. */
   visibility: Visibility;
-  /** In a record's list: slug of the column. */
+  /** In the list of a record: slug of the column. */
   column?: string;
 }
 
@@ -1728,32 +1728,32 @@ export interface AttachmentList {
   total: number;
 }
 
-/** Files that were attached. */
+/** Attached files. */
 export interface Attached {
   attachments: Attachment[];
   total: number;
   record: TableRecord;
 }
 
-/** Names of files that say which records they are of. */
+/** Names of files, and how they name their records. */
 export interface AttachmentMatch {
-  /** A {word} stands for one or more characters; the one called like the column says the record. */
+  /** A {word} matches one or more characters. The word with the name of the column names the record. */
   pattern: string;
   /** Slug or id of a column, or `key`. */
   column: string;
   names: string[];
 }
 
-/** Name of a file that was looked at. */
+/** Name of a file, with its record. */
 export interface MatchedName {
   name: string;
   key?: number;
   words?: Record<string, string>;
-  /** It is not of the pattern; no record, or more than one, has the value; the record has a file of that name; the name was sent before. */
+  /** The name does not match the pattern; no record, or more than one, has the value; the record has a file with this name; or the request contains the name twice. */
   reason?: "pattern" | "record" | "several" | "attached" | "twice";
 }
 
-/** Which records files are of. */
+/** Records of files. */
 export interface AttachmentMatches {
   matched: MatchedName[];
   unmatched: MatchedName[];
@@ -1761,7 +1761,7 @@ export interface AttachmentMatches {
   total: number;
 }
 
-/** Tables of a project, by name. */
+/** Tables of a project, sorted by name. */
 export interface TableList {
   tables: Table[];
   total: number;
@@ -1770,7 +1770,7 @@ export interface TableList {
 /** New table. */
 export interface TableCreate {
   name: string;
-  /** Made from the name when absent; never all digits. */
+  /** Absent: made from the name. Never all digits. */
   slug?: string;
   labels?: Labels;
   /** Default: "". */
@@ -1783,7 +1783,7 @@ export interface TablePatch {
   name?: string;
   labels?: Labels;
   description?: string;
-  /** Id or slug of the column that says what a record is called; empty: the best one by rule. */
+  /** Id or slug of the column with the titles of records. Empty: the best one by rule. */
   title_column?: string;
 }
 
@@ -1795,51 +1795,51 @@ export interface RecordList {
 
 /** New record. */
 export interface RecordInput {
-  /** Absent: the next one. A deleted record's key is not given again. */
+  /** Absent: the next free key. The server never gives the key of a deleted record again. */
   key?: number;
   values?: CellValues;
 }
 
-/** One new record, or several. Either `records`, all of which are made or none, or `key` and `values` of one. */
+/** One new record, or several. Either `records`, of which all or none are created, or `key` and `values` of one record. */
 export interface RecordsCreate {
   key?: number;
   values?: CellValues;
   records?: RecordInput[];
 }
 
-/** Changes to a record. Columns that are not named stay. */
+/** Changes to a record. Columns that are not named do not change. */
 export interface RecordPatch {
-  /** Of the record as it was read; as If-Match. */
+  /** Version of the record as it was read, as in If-Match. */
   version?: number;
   values: CellValues;
 }
 
 /** Term in its place in a list. */
 export interface ListedTerm {
-  /** What texels hold. */
+  /** Key of the record, as texels hold it. */
   key: number;
   code: string;
-  /** Key of the term above; absent at the top. */
+  /** Key of the parent term. Absent at the top. */
   parent?: number;
-  /** What it is called in the language that was asked for, as far as that is known. */
+  /** Name in the requested language, if the term has one in it. */
   name: string;
-  /** Of no language in particular. */
+  /** Label without a language. */
   label: string;
   /** By language, in lower case. */
   labels: Record<string, string>;
   depth: number;
-  /** How many terms have it as their parent. */
+  /** Number of terms with this term as their parent. */
   below: number;
-  /** It is what was looked for, and not only above such a term. */
+  /** The term matches the search. Otherwise it is only above such a term. */
   match: boolean;
   definition: string;
   uri: string;
-  /** As it is drawn where a layer takes its colours from the terms: its own, or a shade of the one above. */
+  /** Color in layers that use the colors of the terms: its own, or a shade of the parent's. */
   color: string;
   pattern: string;
 }
 
-/** Terms of a list. */
+/** Terms of a term list. */
 export interface TermTree {
   terms: ListedTerm[];
   total: number;
@@ -1848,7 +1848,7 @@ export interface TermTree {
 /** Term of a template. */
 export interface TemplateTerm {
   code: string;
-  /** Code of the term above. */
+  /** Code of the parent term. */
   parent?: string;
   /** In English. */
   label: string;
@@ -1862,13 +1862,13 @@ export interface TemplateTerm {
 /** Table of a template. It has either terms or columns. */
 export interface TemplateTable {
   name: string;
-  /** How columns and layers of the template name it. */
+  /** Name of the table in columns and layers of the template. */
   slug: string;
   labels?: Labels;
   /** Default: "". */
   description?: string;
   terms?: TemplateTerm[];
-  /** Their targets are tables of the template: those before, or the table itself. */
+  /** Their targets are earlier tables of the template, or the table itself. */
   columns?: ColumnCreate[];
 }
 
@@ -1883,7 +1883,7 @@ export interface TemplateLayer {
 
 /** Template: tables and layers that are made together. */
 export interface Template {
-  /** The name of its file. */
+  /** Name of the template's file. */
   slug?: string;
   name: string;
   labels?: Labels;
@@ -1901,36 +1901,36 @@ export interface TemplateList {
 
 /** Use of a template. */
 export interface TemplateUse {
-  /** Id or slug of a model of the project: its layers are made there. Absent: tables only. */
+  /** Id or slug of a model of the project that gets the layers. Absent: only tables are created. */
   model?: string;
-  /** What things are called, as far as the template has it; English otherwise. */
+  /** Language of the names, if the template has it. Otherwise English. */
   language?: string;
 }
 
-/** What was made of a template. */
+/** Tables and layers made from a template. */
 export interface TemplateMade {
   tables: Table[];
   layers: Layer[];
 }
 
-/** What undo or redo did to a table. */
+/** Changes of a table by undo or redo. */
 export interface TableChanged {
   sequence: number;
-  /** Keys of records that came. */
+  /** Keys of records that were created. */
   created: number[];
   changed: number[];
   deleted: number[];
   columns_changed: boolean;
 }
 
-/** Cells before or after a change. Of a record: `exists`, and values by column id; of a column: `hidden`, and its properties. */
+/** Cells before or after a change. For a record: `exists`, and values by column id. For a column: `hidden`, and its properties. */
 export type ChangedCells = Record<string, string | number | boolean | null | (number | string)[] | Mark[] | Record<string, string>>;
 
-/** What an entry did to one record or column. */
+/** Change of one record or column. */
 export interface TableCellChange {
   /** Key of the record. */
   record?: number;
-  /** Or id of the column. */
+  /** Id of the column, if the change is on a column. */
   column?: number;
   before: ChangedCells;
   after: ChangedCells;
@@ -1943,10 +1943,10 @@ export interface TableEdit {
   /** UTC, RFC 3339. */
   time: string;
   op: "records" | "delete" | "import" | "create-column" | "change-column" | "retype-column" | "drop-column" | "attach" | "detach" | "restore" | "undo" | "redo";
-  /** False while it is taken back. */
+  /** False while the entry is undone. */
   in_force: boolean;
   changes: TableCellChange[];
-  /** The first hundred are told. */
+  /** `changes` contains at most the first hundred. */
   total_changes: number;
 }
 
@@ -1956,84 +1956,84 @@ export interface TableEditList {
   total: number;
 }
 
-/** Surface of one key on one layer. */
+/** Area of one key on one layer. */
 export interface LayerArea {
   layer: number;
   area_m2: number;
   texels: number;
 }
 
-/** Surface of one key on one model. */
+/** Area of one key on one model. */
 export interface ModelArea {
   model: number;
-  /** Summed over its layers. */
+  /** Sum of its layers. */
   area_m2: number;
   layers: LayerArea[];
 }
 
-/** Surface of one key. */
+/** Area of one key. */
 export interface KeyArea {
   key: number;
-  /** On all models. */
+  /** Sum of all models. */
   area_m2: number;
-  /** False: undo or an earlier state brought back paint of a key whose record is gone. */
+  /** False: the record was deleted, and undo or an earlier state brought back paint with its key. */
   has_record: boolean;
   models: ModelArea[];
 }
 
-/** Surface of records, in all and by model and layer. */
+/** Areas of records, in total and by model and layer. */
 export interface TableAreas {
   areas: KeyArea[];
   total: number;
 }
 
-/** How much there is in all. */
+/** Total quantities. */
 export interface QuantitySum {
   /** Connected areas, across the seams of the atlas. */
   pieces: number;
-  /** Where the table has columns of lines: how long they are. */
+  /** If the table has columns of lines: their length. */
   length_m?: number;
-  /** Where the table has columns of points: how many. */
+  /** If the table has columns of points: their number. */
   point_count?: number;
   texels: number;
   area_m2: number;
-  /** Of the model's surface; of layers. */
+  /** For layers: share of the model's surface. */
   share?: number;
 }
 
-/** How much there is of a class. `key` of database layers, `value` where each value is a class, `from` and `to` of ranges, which are open where one is absent. */
+/** Quantities of a class. `key` for layers of records; `value` if each value is a class; `from` and `to` for ranges. A range without one of them is open there. */
 export interface LayerQuantity {
-  /** The record's name or the legend's label; the number or the range where there is none. */
+  /** Name of the record or label in the legend, otherwise the number or the range. */
   class: string;
   key?: number;
-  /** With `key`. */
+  /** With `key`: whether the record exists. */
   has_record?: boolean;
   value?: number;
   from?: number;
   to?: number;
   /** Connected areas, across the seams of the atlas. */
   pieces: number;
-  /** Where the table has columns of lines: how long they are. */
+  /** If the table has columns of lines: their length. */
   length_m?: number;
-  /** Where the table has columns of points: how many. */
+  /** If the table has columns of points: their number. */
   point_count?: number;
   texels: number;
   area_m2: number;
-  /** Of the model's surface. */
+  /** Share of the model's surface. */
   share: number;
 }
 
-/** How much there is of each class of a layer. */
+/** Quantities of each class of a layer. */
 export interface LayerQuantities {
   quantities: LayerQuantity[];
-  /** Classes. */
+  /** Number of classes. */
   total: number;
   sum: QuantitySum;
-  /** Of the whole model. */
+  /** Surface of the whole model. */
   surface_m2: number;
 }
 
-/** How much there is of a record on one layer. */
+/** Quantities of a record on one layer. */
 export interface QuantityOnLayer {
   model: number;
   layer: number;
@@ -2043,58 +2043,58 @@ export interface QuantityOnLayer {
   area_m2: number;
 }
 
-/** How much there is of a record. */
+/** Quantities of a record. */
 export interface TableQuantity {
-  /** The record's name, or its key. */
+  /** Name of the record, or its key. */
   class: string;
   key: number;
   has_record: boolean;
   /** Connected areas, across the seams of the atlas. */
   pieces: number;
-  /** Where the table has columns of lines: how long they are. */
+  /** If the table has columns of lines: their length. */
   length_m?: number;
-  /** Where the table has columns of points: how many. */
+  /** If the table has columns of points: their number. */
   point_count?: number;
   texels: number;
   area_m2: number;
   layers: QuantityOnLayer[];
 }
 
-/** How much there is of each record of a table. */
+/** Quantities of each record of a table. */
 export interface TableQuantities {
   quantities: TableQuantity[];
-  /** Records. */
+  /** Number of records. */
   total: number;
   sum: QuantitySum;
 }
 
-/** Values computed from the model's shape. The answer is a job; the layer is there once it is done. Unit, palette and description follow from the recipe where they are not given. */
+/** Values computed from the model's shape. The answer is a job; the layer exists when the job is finished. If unit, palette or description are absent, they follow from the recipe. */
 export interface ShapeRecipe {
   kind: "height" | "slope" | "azimuth" | "mean_curvature" | "gaussian_curvature" | "max_curvature" | "min_curvature" | "roughness" | "ambient_occlusion" | "boundary_distance" | "model_distance" | "vertex_property";
-  /** Curvatures and roughness: of the neighbourhood; absent: four edges of the mesh. */
+  /** Curvatures and roughness: radius of the neighborhood. Absent: four edges of the mesh. */
   radius_mm?: number;
-  /** Ambient occlusion and model distance: as far as it looks; absent: a quarter or a tenth of the model's diagonal. */
+  /** Ambient occlusion and model distance: largest distance of the search. Absent: a quarter of the model's diagonal for ambient occlusion, a tenth for model distance. */
   distance_mm?: number;
-  /** Ambient occlusion: rays a point; absent: 64. */
+  /** Ambient occlusion: rays for each point. Absent: 64. */
   rays?: number;
-  /** Height: the world's coordinate, not that above the lowest point. Default: false. */
+  /** Height: the world coordinate, instead of the height above the lowest point. Default: false. */
   absolute?: boolean;
   /** Model distance: id or slug of the other model. */
   model?: string;
   /** Vertex property: its name in the PLY, such as quality. */
   property?: string;
-  /** Vertex property: the source file; needed where several have it. */
+  /** Vertex property: the source file. Required if several files have the property. */
   source?: string;
 }
 
 /** New layer. */
 export interface LayerCreate {
   name: string;
-  /** Made from the name when absent; never all digits. */
+  /** Absent: made from the name. Never all digits. */
   slug?: string;
   /** Default: "numeric". */
   kind?: LayerKind;
-  /** Absent: u8; f32 for what is computed, but for a condition. */
+  /** Absent: u8. For computed layers f32, except u8 for a condition. */
   type?: ValueType;
   /** Absent: the model's default. */
   resolution?: Resolution;
@@ -2102,34 +2102,34 @@ export interface LayerCreate {
   unit?: string;
   /** Default: "". */
   description?: string;
-  /** Its name in other languages. */
+  /** Names of the layer in other languages. */
   labels?: Labels;
   descriptions?: Descriptions;
   palette?: Palette;
   /** Default: 1. */
   opacity?: number;
-  /** Absent: true, but for a computed layer, which must not cover what others look at: whoever made it sees it all the same. */
+  /** Absent: true. For computed layers false, because they must not cover the view of others; the creator sees the layer at once. */
   visible?: boolean;
-  /** Nobody below curator changes its texels. Absent: false, but for a computed layer, which is always locked when it is made (false: 422). */
+  /** Nobody below curator can change the texels of the layer. Absent: false. A computed layer is always locked when it is created (422 for false). */
   locked?: boolean;
-  /** What annotators change waits for a curator's review. Default: false. */
+  /** Edits of annotators wait for a review by a curator. Default: false. */
   review?: boolean;
-  /** Absent: public. What it reads and is coloured by must be seen by all who see it. */
+  /** Absent: public. Everybody who can see the layer must be able to see the layers and columns that it reads and that color it. */
   visibility?: Visibility;
-  /** Absent: on top, a computed layer below all others. */
+  /** Absent: on top. A computed layer is below all others. */
   order?: number;
-  /** Database layers: the project's table whose keys the texels hold. Absent: one of the layer's own name. */
+  /** Layers of records: the project's table whose keys the texels hold. Absent: a new table with the layer's name. */
   table?: TableRef;
-  /** Database layers without `table`: those of its own one. Absent: one text, Name. */
+  /** Layers of records without `table`: columns of the new table. Absent: one text column, Name. */
   columns?: ColumnCreate[];
   compute?: ShapeRecipe;
-  /** A computed layer: a number, or a condition (1 where it holds, not painted elsewhere) over layers, their records and the surface (x, y, z, nx, ny, nz, height, slope, curvature, area). */
+  /** For a computed layer: a number, or a condition (1 where it is true, not painted elsewhere). It can use layers, their records and the surface (x, y, z, nx, ny, nz, height, slope, curvature, area). */
   expression?: string;
-  /** With `expression`; absent: manual. */
+  /** With `expression`. Absent: manual. */
   recompute?: Recompute;
 }
 
-/** How a layer's content was computed. A shape recipe with its defaults filled in, or a transfer (`kind` is transfer). */
+/** How the content of a layer was computed. A shape recipe with its defaults filled in, or a transfer (`kind` is transfer). */
 export interface Recipe {
   kind: string;
   radius_mm?: number;
@@ -2144,31 +2144,31 @@ export interface Recipe {
   source?: string;
 }
 
-/** A property and the file that has it. */
+/** A property and its file. */
 export interface VertexPropertyName {
   source: string;
   property: string;
 }
 
-/** Numbers that the source files keep with their vertices. */
+/** Numbers of the source files' vertices. */
 export interface VertexPropertyList {
   properties: VertexPropertyName[];
   total: number;
 }
 
-/** Looks of a model, by order. */
+/** Surface images of a model, in their order. */
 export interface LookList {
   looks: Look[];
   total: number;
 }
 
-/** Comments of a model, by id. */
+/** Comments of a model, in the order of ids. */
 export interface CommentList {
   comments: Comment[];
   total: number;
 }
 
-/** Replies of a thread, by id. */
+/** Replies of a thread, in the order of ids. */
 export interface ReplyList {
   replies: Comment[];
   total: number;
@@ -2178,11 +2178,11 @@ export interface ReplyList {
 export interface CommentCreate {
   /** Plain text. */
   text: string;
-  /** World coordinates; the nearest place of the surface is taken, within 5 % of the model's diagonal. */
+  /** World coordinates. The server uses the nearest place of the surface, within 5 % of the model's diagonal. */
   position: Point3;
-  /** What it is about. */
+  /** The layer that the comment is about. */
   layer?: LayerRef;
-  /** What it is about: a key of the layer, which is of a table. */
+  /** The record that the comment is about: a key of the layer, which must be a layer of records. */
   record?: number;
 }
 
@@ -2192,45 +2192,45 @@ export interface ReplyCreate {
   text: string;
 }
 
-/** Another text, or another state of a thread. */
+/** New text of a comment, or new state of a thread. */
 export interface CommentPatch {
-  /** Of one's own comment. */
+  /** Text of your own comment. */
   text?: string;
-  /** Of the thread's first comment. */
+  /** State of the thread, on its first comment. */
   state?: CommentState;
 }
 
-/** Named views of a model, in the order in which they were made. */
+/** Saved views of a model, in the order of their creation. */
 export interface ViewList {
   views: View[];
   total: number;
 }
 
-/** A view to keep. */
+/** New saved view. */
 export interface ViewCreate {
   name: string;
   /** Plain text. */
   text?: string;
   /** With its section. */
   camera: Camera;
-  /** Layers not listed show their defaults. */
+  /** Layers that are not listed have their defaults. */
   layers?: LayerOverride[];
-  /** Exactly these, bottom to top; absent: those visible by default. */
+  /** Exactly these, from bottom to top. Absent: the surface images that are visible by default. */
   looks?: LookShown[];
   /** Absent: museum. */
   light?: Light;
 }
 
-/** Changes to a view. What is shown is changed as a whole: with `camera`, absent `layers`, `looks` and `light` mean the defaults. */
+/** Changes to a saved view. The content changes as a whole: with `camera`, absent `layers`, `looks` and `light` mean the defaults. */
 export interface ViewPatch {
   name?: string;
   /** Plain text. */
   text?: string;
   /** With its section. */
   camera?: Camera;
-  /** Layers not listed show their defaults. */
+  /** Layers that are not listed have their defaults. */
   layers?: LayerOverride[];
-  /** Exactly these, bottom to top; absent: those visible by default. */
+  /** Exactly these, from bottom to top. Absent: the surface images that are visible by default. */
   looks?: LookShown[];
   /** Absent: museum. */
   light?: Light;
@@ -2241,18 +2241,18 @@ export interface TourEntry {
   id: number;
   slug: string;
   name: string;
-  /** Plain text: what it is about, for those who choose one. */
+  /** Plain text: the subject of the tour, for people who choose one. */
   text: string;
   languages: TourLanguage[];
   stop_count: number;
-  /** Who made it. */
+  /** Creator of the tour. */
   user: string;
   /** UTC, RFC 3339. */
   time: string;
   version: number;
 }
 
-/** Tours of a model, in the order in which they were made. */
+/** Tours of a model, in the order of their creation. */
 export interface TourList {
   tours: TourEntry[];
   total: number;
@@ -2260,128 +2260,128 @@ export interface TourList {
 
 /** Stop of a tour. */
 export interface TourStopCreate {
-  /** A named view of the model: slug or id. */
+  /** Slug or id of a saved view of the model. */
   view: string;
-  /** In the tour's first language at least. */
+  /** At least in the tour's first language. */
   title: TourWords;
   text?: TourText;
-  /** How long it is shown while the tour plays by itself. Default: 10. */
+  /** Seconds that the stop is shown while the tour plays by itself. Default: 10. */
   attract_s?: number;
   /** Absent: `move`. */
   transition?: TourTransition;
-  /** How long a `move` takes. Default: 2. */
+  /** Duration of a `move` in seconds. Default: 2. */
   transition_s?: number;
-  /** Offered for swiping, in this order: slugs or ids. None twice. */
+  /** Slugs or ids of the layers to swipe between, in this order. Each layer once. */
   layers?: string[];
-  /** Each of another table of the project. */
+  /** Each entry has another table of the project. */
   records?: TourRecords[];
 }
 
-/** A tour to keep. */
+/** New tour. */
 export interface TourCreate {
   name: string;
-  /** Plain text: what it is about, for those who choose one. */
+  /** Plain text: the subject of the tour, for people who choose one. */
   text?: string;
-  /** The first one is that of who chooses none; every stop has a title in it. None twice. */
+  /** The first one is the default language; every stop has a title in it. Each language once. */
   languages: TourLanguage[];
-  /** So long after the last touch the tour begins anew and plays by itself. Default: 60. */
+  /** Seconds after the last touch until the tour restarts and plays by itself. Default: 60. */
   idle_s?: number;
   stops: TourStopCreate[];
 }
 
-/** Changes to a tour. Stops are changed as a whole. Those that stay must fit the languages. */
+/** Changes to a tour. Stops change as a whole. Remaining stops must match the languages. */
 export interface TourPatch {
   name?: string;
-  /** Plain text: what it is about, for those who choose one. */
+  /** Plain text: the subject of the tour, for people who choose one. */
   text?: string;
-  /** The first one is that of who chooses none; every stop has a title in it. None twice. */
+  /** The first one is the default language; every stop has a title in it. Each language once. */
   languages?: TourLanguage[];
   idle_s?: number;
   stops?: TourStopCreate[];
 }
 
-/** Link for a screen that shows a tour. */
+/** Kiosk link: a screen that shows a tour. */
 export interface Kiosk {
   id: number;
-  /** Where it stands. */
+  /** Location of the screen. */
   name: string;
-  /** Its slug. */
+  /** Slug of the project. */
   project: string;
-  /** Its slug. */
+  /** Slug of the model. */
   model: string;
   model_name: string;
-  /** Its slug. */
+  /** Slug of the tour. */
   tour: string;
   tour_name: string;
-  /** Who made it. */
+  /** Creator of the link. */
   user: string;
   /** UTC, RFC 3339. */
   created: string;
   /** Absent: never. */
   expires?: string;
-  /** To a minute; absent: never. */
+  /** Accurate to a minute. Absent: never. */
   last_seen?: string;
-  /** Since when it is worthless; absent: it is not. */
+  /** Time when the link was revoked. Absent: the link was not revoked. */
   revoked?: string;
-  /** It was asked to load the page anew, and has not done so yet. */
+  /** A reload of the page was requested, and the kiosk has not reloaded it yet. */
   wants_reload: boolean;
 }
 
-/** Links for kiosks, in the order in which they were made. */
+/** Kiosk links, in the order of their creation. */
 export interface KioskList {
   kiosks: Kiosk[];
   total: number;
 }
 
-/** A link for a kiosk. */
+/** New kiosk link. */
 export interface KioskCreate {
-  /** Where it stands. */
+  /** Location of the screen. */
   name: string;
-  /** Until it expires; absent: never. */
+  /** Days until the link expires. Absent: never. */
   days?: number;
 }
 
-/** The link, told this once. */
+/** A new kiosk link, which is shown only now. */
 export interface KioskMade {
-  /** Of the page, behind the server's address: `/kiosk/{secret}`. */
+  /** Path of the page, after the address of the server: `/kiosk/{secret}`. */
   path: string;
   kiosk: Kiosk;
 }
 
-/** The link of a kiosk. */
+/** Link of a kiosk. */
 export interface KioskLogin {
-  /** Its secret: what stands behind `/kiosk/`. */
+  /** Secret of the link: the part after `/kiosk/`. */
   link: string;
 }
 
-/** What a kiosk is told of itself. */
+/** A kiosk's own data. */
 export interface KioskSelf {
   id: number;
-  /** Where it stands. */
+  /** Location of the screen. */
   name: string;
-  /** Its slug. */
+  /** Slug of the project. */
   project: string;
-  /** Its slug. */
+  /** Slug of the model. */
   model: string;
   tour: Tour;
-  /** UTC, RFC 3339; absent: never. */
+  /** UTC, RFC 3339. Absent: never. */
   expires?: string;
-  /** true: load the page anew, and sign in with the link, which takes it back. */
+  /** true: reload the page and sign in with the link, which clears this member. */
   wants_reload: boolean;
 }
 
-/** Tools of the site, by name. */
+/** Brush shapes of the site, sorted by name. */
 export interface ToolList {
   tools: Tool[];
   total: number;
 }
 
-/** Another name for a tool. */
+/** New name of a brush shape. */
 export interface ToolPatch {
   name: string;
 }
 
-/** Changes to a look's description and defaults. */
+/** Changes to a surface image. */
 export interface LookPatch {
   name?: string;
   description?: string;
@@ -2390,45 +2390,45 @@ export interface LookPatch {
   order?: number;
 }
 
-/** Changes to a layer's description and defaults. */
+/** Changes to a layer. */
 export interface LayerPatch {
   name?: string;
   unit?: string;
   description?: string;
-  /** Its name in other languages, all of them. */
+  /** Names in other languages; replaces all. */
   labels?: Labels;
-  /** In other languages, all of them. */
+  /** Descriptions in other languages; replaces all. */
   descriptions?: Descriptions;
   palette?: Palette;
   opacity?: number;
   visible?: boolean;
-  /** true: from the answer on nobody below curator changes its texels, until it is unlocked. false, on a computed layer: from now on it is edited by hand, which stays known (`edited_by_hand`), and is not computed again by itself. */
+  /** true: from the answer on, nobody below curator can change the texels until the layer is unlocked. false, on a computed layer: from now on it is edited by hand, which stays marked (`edited_by_hand`), and the server does not compute it automatically. */
   locked?: boolean;
-  /** true: what annotators change from now on waits for a curator's review. What waits already keeps waiting when it becomes false. */
+  /** true: later edits of annotators wait for a review by a curator. false: edits that wait already continue to wait. */
   review?: boolean;
-  /** Counts at once, for open pages too. */
+  /** Applies at once, also to open pages. */
   visibility?: Visibility;
   order?: number;
-  /** Alone: a layer of u8 or u16 gets room for larger keys or values (u16, u32), its history too. */
+  /** Only without other members: a layer of u8 or u16, with its history, gets room for larger keys or values (u16, u32). */
   type?: ValueType;
-  /** Of a computed layer, which it has to be computed by anew; empty: the layer keeps its values and is edited by hand from now on. */
+  /** For a computed layer: the new expression; compute the layer again with it. Empty: the layer keeps its values and is edited by hand from now on. */
   expression?: string;
   recompute?: Recompute;
 }
 
-/** What an edit did; it is durable. */
+/** Result of a durable edit. */
 export interface EditResult {
   sequence: number;
   texels_changed: number;
   area_m2: number;
-  /** true: it waits for review. */
+  /** true: the edit waits for review. */
   provisional?: boolean;
 }
 
-/** Where an edit stands that had to wait for review. */
+/** State of an edit that requires a review. */
 export type ReviewState = "pending" | "accepted" | "rejected";
 
-/** Who accepted or rejected an edit. */
+/** Person who accepted or rejected an edit. */
 export interface Reviewer {
   user: string;
   /** UTC, RFC 3339. */
@@ -2438,55 +2438,55 @@ export interface Reviewer {
 
 /** A stroke or another edit that waits for review. */
 export interface WaitingStroke {
-  /** Of its first batch: by this it is reviewed. */
+  /** Sequence of its first batch; name it in a review. */
   sequence: number;
-  /** Of its last batch. */
+  /** Sequence of its last batch. */
   last: number;
   stroke: string;
   user: string;
-  /** Of `user`; absent: they gave none. */
+  /** Full name of `user`. Absent: the person gave none. */
   full_name?: string;
-  /** Of `user`. */
+  /** Color of `user`. */
   color?: PersonColor;
   op: "stroke" | "fill" | "polygon" | "import" | "restore";
   /** UTC, RFC 3339. */
   begun: string;
-  /** Of its last batch. */
+  /** Time of its last batch. */
   time: string;
-  /** Of its batches, one after the other. */
+  /** Texels that its batches changed, counted once for each batch. */
   texels_changed: number;
   area_m2: number;
-  /** From which it was painted, where it was. */
+  /** Camera from which it was painted, if there was one. */
   camera?: Camera;
 }
 
-/** Whose strokes wait. */
+/** Person whose strokes wait. */
 export interface ReviewPerson {
   user: string;
-  /** Of `user`; absent: they gave none. */
+  /** Full name of `user`. Absent: the person gave none. */
   full_name?: string;
-  /** Of `user`. */
+  /** Color of `user`. */
   color?: PersonColor;
   strokes: number;
 }
 
-/** What of a layer waits for review, the oldest first. */
+/** Edits of a layer that wait for review, oldest first. */
 export interface ReviewQueue {
   strokes: WaitingStroke[];
-  /** Strokes, of all pages. */
+  /** Number of strokes on all pages. */
   total: number;
-  /** Everybody whose strokes wait, by name. */
+  /** Everybody whose strokes wait, sorted by name. */
   people: ReviewPerson[];
 }
 
 /** A decision about edits of a layer. */
 export interface Review {
   decision: ReviewDecision;
-  /** Sequences: of a stroke any of its batches stands for all. */
+  /** Sequences. Any batch of a stroke means the whole stroke. */
   edits?: number[];
-  /** All that waits of this person. Not with reopen. */
+  /** All waiting edits of this person. Not with reopen. */
   user?: string;
-  /** All that waits on the layer. Not with reopen. */
+  /** All waiting edits of the layer. Not with reopen. */
   all?: true;
   reason?: ReviewReason;
 }
@@ -2500,16 +2500,16 @@ export interface HistoryEntry {
   /** UTC, RFC 3339. */
   time: string;
   op: "stroke" | "fill" | "polygon" | "import" | "compute" | "undo" | "redo" | "restore" | "accept" | "reject" | "reopen";
-  /** False while it is taken back, or rejected. */
+  /** False while the edit is undone or rejected. */
   in_force?: boolean;
   review?: ReviewState;
   reviewer?: Reviewer;
   texels_changed?: number;
   area_m2?: number;
   recipe?: Recipe;
-  /** Of a computed layer, as it was computed then. */
+  /** For a computed layer: its expression of that moment. */
   expression?: string;
-  /** Of a stroke; a tool by its id. */
+  /** For a stroke: the brush shape; one of the site by its id. */
   shape?: ToolShape;
   max_angle_deg?: SlantLimit;
   depth_bias?: DepthBias;
@@ -2521,22 +2521,22 @@ export interface EditList {
   total: number;
 }
 
-/** Empty object. Undo and redo take no members; no body is the same. */
+/** Empty object. Undo and redo take no members. A request without a body is the same. */
 export type Empty = Record<string, never>;
 
-/** Whole layer back to a revision. */
+/** Restore of a whole layer. */
 export interface Restore {
-  /** The layer becomes as it was after this edit; 0: empty. */
+  /** The layer gets its state after this edit. 0: empty. */
   sequence: number;
 }
 
-/** Point on the surface and the values there. Off the model only `hit` is there. */
+/** Point on the surface, with values. Next to the model, only `hit` is present. */
 export interface SurfacePoint {
   hit: boolean;
   position?: Point3;
   normal?: Point3;
   uv?: Point2;
-  /** From the asked point, or from the camera's near plane. */
+  /** Distance from the requested point, or from the camera's near plane. */
   distance?: number;
   values?: SurfaceValues;
 }
@@ -2552,13 +2552,13 @@ export interface PositionsRequest {
   at?: At;
 }
 
-/** One entry per asked point, in their order. */
+/** One entry for each point, in the order of the request. */
 export interface PositionsResponse {
   positions: SurfacePoint[];
   total: number;
 }
 
-/** What is at a pixel. */
+/** Values at a pixel. */
 export interface PickRequest {
   camera: Camera;
   x: number;
@@ -2566,36 +2566,36 @@ export interface PickRequest {
   at?: At;
 }
 
-/** Part of the surface. Around a place: what lies within `radius_mm` of it (straight) and is connected with it within that distance. Or what is seen inside an outline in a camera's window. */
+/** Part of the surface. Around a place: the surface within `radius_mm` (in a straight line) that is connected with the place within that distance. Or the visible surface inside an outline in a camera's window. */
 export interface Within {
   at?: SurfacePlace;
-  /** Millimetres on the object. */
+  /** Millimeters on the object. */
   radius_mm?: number;
   camera?: Camera;
   path?: Outline;
-  /** What is hidden, too. */
+  /** Also include hidden surfaces. */
   through?: boolean;
 }
 
-/** What takes longer. */
+/** Part of the statistics that takes longer. */
 export type StatisticsPart = "pieces" | "perimeter" | "quantiles";
 
-/** Paints what is selected. */
+/** Paint the selection. */
 export interface SelectInto {
   layer: LayerRef;
-  /** In the layer's type; ignored when erasing. Default: 0. */
+  /** In the layer's type; ignored for erasing. Default: 0. */
   value?: number;
   /** Default: false. */
   erase?: boolean;
 }
 
-/** Where on the surface. Without `where` and `within`: everywhere. */
+/** Selection of surface. Without `where` and `within`: everywhere. */
 export interface SelectRequest {
-  /** A condition over the layers, as a fill takes it. */
+  /** A condition over the layers, as in a fill. */
   where?: string;
   within?: Within;
   at?: At;
-  /** Whose statistics there are asked for. */
+  /** Layers whose statistics in the selection are returned. */
   layers?: LayerRef[];
   include?: StatisticsPart[];
   into?: SelectInto;
@@ -2609,20 +2609,20 @@ export interface HistogramBin {
   area_m2: number;
 }
 
-/** Where one key lies. */
+/** Statistics of one key. */
 export interface KeyStatistics {
   key: number;
   texels: number;
   area_m2: number;
   centroid: Point3;
   bounds: Bounds;
-  /** Where asked for: connected areas of this key. */
+  /** If requested: connected areas of this key. */
   pieces?: number;
-  /** Where asked for: around these areas, along the surface. */
+  /** If requested: length around these areas, along the surface. */
   perimeter_m?: number;
 }
 
-/** The smallest values that the lower 5, 25, 50, 75 and 95 % of the area do not exceed. Where asked for and something has an area. */
+/** The smallest values that the lower 5, 25, 50, 75 and 95 % of the area do not exceed. If requested, and if something has an area. */
 export interface Quantiles {
   p5: number;
   p25: number;
@@ -2631,7 +2631,7 @@ export interface Quantiles {
   p95: number;
 }
 
-/** Statistics of a layer, weighted by surface area. Of valid texels on the surface. `min`, `max`, `mean` and `std` are absent while the layer is empty; `keys` is empty for fractions and for more than 4096 different values. */
+/** Statistics of a layer, weighted by surface area. For valid texels on the surface. `min`, `max`, `mean` and `std` are absent while the layer is empty. `keys` is empty for fractions, and for more than 4096 different values. */
 export interface Statistics {
   texels: number;
   area_m2: number;
@@ -2639,36 +2639,36 @@ export interface Statistics {
   max?: number;
   mean?: number;
   std?: number;
-  /** Where asked for: connected areas, of one value each in layers of whole numbers. */
+  /** If requested: connected areas; in layers of whole numbers, those of one value each. */
   pieces?: number;
-  /** Where asked for: around what is valid, along the surface; an open edge of the mesh counts, a seam of the atlas does not. */
+  /** If requested: length around the valid areas, along the surface. An open edge of the mesh counts, a seam of the atlas does not. */
   perimeter_m?: number;
   quantiles?: Quantiles;
   histogram: HistogramBin[];
   keys: KeyStatistics[];
 }
 
-/** What layers hold in a selection. By slug. */
+/** Contents of layers in a selection. By slug. */
 export type SelectedLayers = Record<string, Statistics>;
 
 /** Texels and area of a selection. */
 export interface SelectResponse {
-  /** Of the texels that are counted. */
+  /** Resolution of the counted texels. */
   resolution: number;
   texels: number;
   area_m2: number;
-  /** Of the whole surface. */
+  /** Share of the whole surface. */
   share: number;
   bounds?: Bounds;
   layers: SelectedLayers;
-  /** Of `into`. */
+  /** Result of `into`. */
   edit?: EditResult;
 }
 
-/** The surface along a line. Through places: of each step the nearest surface point. Or what is seen under a line drawn in a camera's window, at each of its pixels. */
+/** Request for a profile of the surface. Through places: for each step, the nearest surface point. Or the visible surface under a line in a camera's window, at each of its pixels. */
 export interface ProfileRequest {
   places?: Point3[];
-  /** Millimetres on the object. */
+  /** Millimeters on the object. */
   step_mm?: number;
   camera?: Camera;
   /** Pixels of the camera's window. */
@@ -2680,51 +2680,51 @@ export interface ProfileRequest {
 
 /** Place on a profile. */
 export interface ProfileSample {
-  /** On the surface, from the beginning. Where the line leaves the surface nothing is added. */
+  /** Distance on the surface from the start. Where the line leaves the surface, nothing is added. */
   along_mm: number;
   point: SurfacePoint;
 }
 
-/** The surface along a line. */
+/** Profile of the surface along a line. */
 export interface Profile {
   length_mm: number;
   samples: ProfileSample[];
 }
 
-/** Two layers against each other. */
+/** Request to compare two layers. */
 export interface CrossTableRequest {
   rows: LayerRef;
   columns: LayerRef;
-  /** A condition over the layers, as a fill takes it. */
+  /** A condition over the layers, as in a fill. */
   where?: string;
   within?: Within;
   at?: At;
 }
 
-/** Areas of pairs of values. Keys ascend; null, which comes last, stands for where the layer has no value. */
+/** Areas of pairs of values. Keys ascend. Null comes last, for places where the layer has no value. */
 export interface CrossTable {
   rows: (number | null)[];
   columns: (number | null)[];
-  /** A row's columns. */
+  /** One array for each row, with its columns. */
   area_m2: number[][];
   texels: number[][];
 }
 
-/** Where records lie on a model. */
+/** Extent of records on a model. */
 export interface Extent {
-  /** That are meant. */
+  /** Number of requested records. */
   records: number;
-  /** Of them, those that are painted on the layer. */
+  /** Number of these records that are painted on the layer. */
   painted: number;
-  /** Of them, those that have lines or points on the model. */
+  /** Number of these records that have lines or points on the model. */
   marked: number;
   texels: number;
   area_m2: number;
-  /** Of their texels, lines and points; absent where there are none. */
+  /** Bounds of their texels, lines and points. Absent: the records have none of these. */
   bounds?: Bounds;
 }
 
-/** Records of a layer that are to be seen. */
+/** Highlighted records of a layer. */
 export interface LayerHighlight {
   layer: LayerRef;
   highlight: Highlight;
@@ -2734,13 +2734,13 @@ export interface LayerHighlight {
 export interface FrameRequest {
   /** Its width × height is the size of the picture. */
   camera: Camera;
-  /** Exactly these are drawn, bottom to top; absent: those visible by default. */
+  /** Exactly these are drawn, from bottom to top. Absent: the layers that are visible by default. */
   layers?: LayerRef[];
-  /** Exactly these, bottom to top; absent: those visible by default. */
+  /** Exactly these, from bottom to top. Absent: the surface images that are visible by default. */
   looks?: LookShown[];
   /** Absent: museum. */
   light?: Light;
-  /** Absent: light grey. */
+  /** Absent: light gray. */
   background?: Background;
   highlights?: LayerHighlight[];
   at?: At;
@@ -2748,68 +2748,68 @@ export interface FrameRequest {
   format?: "jpeg" | "png";
 }
 
-/** Kind of file. In SVG and PDF words, legend, scale bar and arrow can be edited. */
+/** Kind of file. In SVG and PDF, texts, legend, scale bar and arrow can be edited. */
 export type FigureFormat = "png" | "tiff" | "svg" | "pdf";
 
-/** From where, by the model's up. From the top the front is below, and on a map of z up it is the plan: y runs up. */
+/** Direction of a figure, relative to the model's up. From the top, the front is at the bottom. On a map with z up, this is the plan: y points up. */
 export type FigureDirection = "top" | "bottom" | "front" | "back" | "left" | "right";
 
-/** Words of records at their places. Where the layer shows a record: what it has in the column. What would lie over another is left out, the smaller area first. */
+/** Values of records at their places. Where the layer shows a record: its value in the column. If labels overlap, the label of the smaller area is left out first. */
 export interface FigureLabels {
-  /** A database layer. */
+  /** A layer of records. */
   layer: LayerRef;
-  /** Of its table: slug or id. */
+  /** Slug or id of a column of its table. */
   column: string;
 }
 
-/** A measured figure. A drawing without perspective, to scale, on a sheet with scale bar, legend and caption. What is shown, and where nothing else says so the direction, come from a named view or from camera, layers, looks and light; without any it is what the model shows by default, from the top. */
+/** A figure to scale. A drawing without perspective, to scale, on a sheet with scale bar, legend and caption. The content comes from a saved view, or from camera, layers, surface images and light. The direction comes from there, too, if nothing else sets it. Without any of them, the figure shows the default layers of the model from the top. */
 export interface FigureRequest {
-  /** A named view: slug or id. */
+  /** A saved view: slug or id. */
   view?: string;
-  /** In place of a view: its direction and its section count, and what lies in the middle. */
+  /** Instead of a view: its direction, its section and its middle are used. */
   camera?: Camera;
-  /** Layers not listed show their defaults. */
+  /** Layers that are not listed have their defaults. */
   layers?: LayerOverride[];
-  /** Exactly these, bottom to top; absent: those visible by default. */
+  /** Exactly these, from bottom to top. Absent: the surface images that are visible by default. */
   looks?: LookShown[];
   /** Absent: museum. */
   light?: Light;
   at?: At;
-  /** In place of the camera's or view's. */
+  /** Instead of the direction of the camera or view. */
   direction?: FigureDirection;
-  /** In place of a direction: surface that faces this way (world) is seen square. */
+  /** Instead of a direction: a surface that faces this way (world) is drawn without foreshortening. */
   normal?: Point3;
-  /** In the middle of the drawing (world). Absent: of the direction of a camera or view what lies in its middle, otherwise the middle of what is seen. */
+  /** Middle of the drawing (world). Absent: with the direction of a camera or view, the middle of that view, otherwise the middle of the visible surface. */
   center?: Point3;
-  /** 50 is 1 : 50. Absent: the largest of 1, 2, 2.5, 5, 10, 20, 25, 50 … at which all of it is on the sheet. */
+  /** 50 is 1 : 50. Absent: the largest of 1, 2, 2.5, 5, 10, 20, 25, 50 … with which the whole drawing is on the sheet. */
   scale?: number;
   /** Default: "a4". */
   paper?: "a5" | "a4" | "a3";
-  /** Absent: the one with room for the larger scale. */
+  /** Absent: the one with space for the larger scale. */
   orientation?: "portrait" | "landscape";
-  /** Pixels an inch; of SVG and PDF of the drawing in them. Default: 300. */
+  /** Pixels for each inch. In SVG and PDF: of the drawing in them. Default: 300. */
   dpi?: number;
   /** Absent: pdf. */
   format?: FigureFormat;
-  /** Absent: the model's name. */
+  /** Absent: the name of the model. */
   title?: string;
   caption?: string;
-  /** Absent: the model's. */
+  /** Absent: that of the model. */
   credit?: string;
-  /** Of the layers and classes that the drawing shows: not of what an opaque layer above covers wholly, or of what is not in the drawing. Default: true. */
+  /** For the layers and classes that the drawing shows. Classes outside of the drawing, and those completely below an opaque layer, are left out. Default: true. */
   legend?: boolean;
-  /** What the legend calls what waits for review, which is hatched. Default: "Provisional". */
+  /** Text in the legend for edits that wait for review, which are hatched. Default: "Provisional". */
   provisional?: string;
-  /** What the legend puts behind the title of a list that goes on in another column. Default: "(continued)". */
+  /** Text in the legend after the title of a list that continues in another column. Default: "(continued)". */
   continued?: string;
   labels?: FigureLabels;
 }
 
-/** Class of a column's values. Of numbers from `from` (included) to `to`, which only the last class includes; of others `value`. */
+/** Class of a column's values. For numbers: from `from` (included) to `to`, which only the last class includes. Otherwise `value`. */
 export interface ColumnClass {
   from?: number;
   to?: number;
-  /** As text: of a number as JSON, of a term its key. */
+  /** As text. For a number: as JSON. For a term: its key. */
   value?: string;
   records: number;
 }
@@ -2818,22 +2818,22 @@ export interface ColumnClass {
 export interface ColumnClasses {
   classes: ColumnClass[];
   total: number;
-  /** Of the table. */
+  /** Number of records of the table. */
   records: number;
-  /** Whose values are rarer than those of the classes. */
+  /** Number of records whose values are rarer than those of the classes. */
   unclassified: number;
-  /** That have no value in this column. */
+  /** Number of records without a value in this column. */
   without: number;
 }
 
-/** Whether the server can work. */
+/** Readiness of the server. */
 export interface Readiness {
   ready: boolean;
-  /** What is missing. */
+  /** Parts that do not work. */
   reasons: string[];
 }
 
-/** Which release of Strata runs. */
+/** Release of Strata. */
 export interface ServerVersion {
   /** Semantic version of the release. */
   version: string;

@@ -11,15 +11,15 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** The file, bit for bit, or a small picture of it */
+        /** Get an attached file */
         get: operations["get_attachment"];
         put?: never;
         post?: never;
-        /** Takes a file out of all records that have it */
+        /** Remove a file from all records */
         delete: operations["delete_attachment"];
         options?: never;
         head?: never;
-        /** Says who sees a file */
+        /** Change who can see a file */
         patch: operations["change_attachment"];
         trace?: never;
     };
@@ -32,7 +32,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Opens a kiosk by the secret of its link */
+        /** Open a kiosk by its link */
         post: operations["login_kiosk"];
         delete?: never;
         options?: never;
@@ -49,15 +49,15 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** One comment */
+        /** Get a comment */
         get: operations["get_comment"];
         put?: never;
         post?: never;
-        /** Deletes a comment */
+        /** Delete a comment */
         delete: operations["delete_comment"];
         options?: never;
         head?: never;
-        /** Changes a comment's text, resolves or reopens its thread */
+        /** Change a comment */
         patch: operations["change_comment"];
         trace?: never;
     };
@@ -70,10 +70,10 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Replies in a thread, by id */
+        /** List the replies of a thread */
         get: operations["list_replies"];
         put?: never;
-        /** Replies in a thread */
+        /** Reply to a comment */
         post: operations["create_reply"];
         delete?: never;
         options?: never;
@@ -88,10 +88,10 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Groups of people */
+        /** List the groups of the site */
         get: operations["list_groups"];
         put?: never;
-        /** New group */
+        /** Create a group of users */
         post: operations["create_group"];
         delete?: never;
         options?: never;
@@ -108,15 +108,15 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** A group, who is in it, and what it gives them */
+        /** Get a group with people and roles */
         get: operations["get_group"];
         put?: never;
         post?: never;
-        /** Deletes a group */
+        /** Delete a group of users */
         delete: operations["delete_group"];
         options?: never;
         head?: never;
-        /** Renames it, puts people into it and takes others out */
+        /** Change a group of users */
         patch: operations["change_group"];
         trace?: never;
     };
@@ -129,7 +129,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Chooses the password, and opens a session */
+        /** Accept an invitation */
         post: operations["accept_invitation"];
         delete?: never;
         options?: never;
@@ -146,7 +146,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Whose invitation this is */
+        /** Get the user of an invitation */
         post: operations["show_invitation"];
         delete?: never;
         options?: never;
@@ -161,7 +161,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Jobs, newest first */
+        /** List the jobs */
         get: operations["list_jobs"];
         put?: never;
         post?: never;
@@ -180,11 +180,11 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** How far a job is */
+        /** Get the progress of a job */
         get: operations["get_job"];
         put?: never;
         post?: never;
-        /** Asks a job to stop */
+        /** Cancel a job */
         delete: operations["cancel_job"];
         options?: never;
         head?: never;
@@ -200,7 +200,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** The file that a job made */
+        /** Get the file of a job */
         get: operations["get_job_file"];
         put?: never;
         post?: never;
@@ -217,7 +217,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** What a kiosk shows */
+        /** Get what a kiosk shows */
         get: operations["kiosk_self"];
         put?: never;
         post?: never;
@@ -234,7 +234,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Links for kiosks of the projects in which who asks is curator, in the order in which they were made */
+        /** List the kiosk links */
         get: operations["list_kiosks"];
         put?: never;
         post?: never;
@@ -256,7 +256,7 @@ export interface paths {
         get?: never;
         put?: never;
         post?: never;
-        /** Makes the link of a kiosk worthless */
+        /** Revoke a kiosk link */
         delete: operations["revoke_kiosk"];
         options?: never;
         head?: never;
@@ -274,7 +274,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Asks a kiosk to load its page anew */
+        /** Request that a kiosk reloads its page */
         post: operations["reload_kiosk"];
         delete?: never;
         options?: never;
@@ -291,7 +291,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Opens a session by name and password, or by the secret of a sign-in link */
+        /** Sign in */
         post: operations["login"];
         delete?: never;
         options?: never;
@@ -308,7 +308,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Ends the session */
+        /** Sign out */
         post: operations["logout"];
         delete?: never;
         options?: never;
@@ -323,14 +323,14 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Who is signed in */
+        /** Get the signed-in user */
         get: operations["me"];
         put?: never;
         post?: never;
         delete?: never;
         options?: never;
         head?: never;
-        /** How one is called */
+        /** Change your own full name */
         patch: operations["change_me"];
         trace?: never;
     };
@@ -343,12 +343,12 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** How one shows the layers of a model oneself */
+        /** Get your own view of a model */
         get: operations["get_personal_view"];
-        /** Keeps how one shows the layers of a model */
+        /** Save your own view of a model */
         put: operations["put_personal_view"];
         post?: never;
-        /** Shows the layers of a model as everybody sees them at first */
+        /** Delete your own view of a model */
         delete: operations["delete_personal_view"];
         options?: never;
         head?: never;
@@ -364,7 +364,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** New password */
+        /** Change your own password */
         post: operations["change_password"];
         delete?: never;
         options?: never;
@@ -379,11 +379,11 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Where one is signed in */
+        /** List your own sessions */
         get: operations["list_sessions"];
         put?: never;
         post?: never;
-        /** Signs out everywhere else */
+        /** Sign out everywhere else */
         delete: operations["end_other_sessions"];
         options?: never;
         head?: never;
@@ -402,7 +402,7 @@ export interface paths {
         get?: never;
         put?: never;
         post?: never;
-        /** Signs out there */
+        /** End one of your own sessions */
         delete: operations["end_session"];
         options?: never;
         head?: never;
@@ -416,10 +416,10 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** One's tokens for scripts */
+        /** List your own tokens for scripts */
         get: operations["list_tokens"];
         put?: never;
-        /** New token for scripts */
+        /** Create a token for scripts */
         post: operations["create_token"];
         delete?: never;
         options?: never;
@@ -439,7 +439,7 @@ export interface paths {
         get?: never;
         put?: never;
         post?: never;
-        /** Makes a token worthless */
+        /** Revoke a token for scripts */
         delete: operations["revoke_token"];
         options?: never;
         head?: never;
@@ -453,10 +453,10 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Models */
+        /** List the models */
         get: operations["list_models"];
         put?: never;
-        /** Imports a scan */
+        /** Import a scan */
         post: operations["import_model"];
         delete?: never;
         options?: never;
@@ -473,15 +473,15 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** One model */
+        /** Get a model */
         get: operations["get_model"];
         put?: never;
         post?: never;
-        /** Moves the model with its layers and files to the Bin */
+        /** Move a model to the trash */
         delete: operations["delete_model"];
         options?: never;
         head?: never;
-        /** Changes the description, unit or up direction */
+        /** Change the metadata of a model */
         patch: operations["change_model"];
         trace?: never;
     };
@@ -494,10 +494,10 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Comments of the model and their replies, by id */
+        /** List the comments of a model */
         get: operations["list_comments"];
         put?: never;
-        /** Begins a thread at a place of the surface */
+        /** Start a thread of comments */
         post: operations["create_comment"];
         delete?: never;
         options?: never;
@@ -516,7 +516,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Areas where two layers meet */
+        /** Get the areas where two layers overlap */
         post: operations["cross_table"];
         delete?: never;
         options?: never;
@@ -533,7 +533,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** What happens to a model, as it happens */
+        /** Follow the events of a model */
         get: operations["model_events"];
         put?: never;
         post?: never;
@@ -554,7 +554,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** A measured figure */
+        /** Make a figure to scale */
         post: operations["make_figure"];
         delete?: never;
         options?: never;
@@ -573,7 +573,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** One rendered picture */
+        /** Render a picture of a model */
         post: operations["frame"];
         delete?: never;
         options?: never;
@@ -590,10 +590,10 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Layers of a model, by order */
+        /** List the layers of a model */
         get: operations["list_layers"];
         put?: never;
-        /** New layer */
+        /** Create a layer */
         post: operations["create_layer"];
         delete?: never;
         options?: never;
@@ -611,15 +611,15 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** One layer */
+        /** Get a layer */
         get: operations["get_layer"];
         put?: never;
         post?: never;
-        /** Moves the layer with its history to the Bin */
+        /** Move a layer to the trash */
         delete: operations["delete_layer"];
         options?: never;
         head?: never;
-        /** Changes name, palette and the defaults that viewers start with, says who sees the layer, locks it or unlocks it, and has its edits reviewed */
+        /** Change a layer */
         patch: operations["change_layer"];
         trace?: never;
     };
@@ -635,7 +635,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Compute a computed layer anew */
+        /** Compute a computed layer again */
         post: operations["compute_layer"];
         delete?: never;
         options?: never;
@@ -653,10 +653,10 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** History of the layer, newest first */
+        /** List the edits of a layer */
         get: operations["list_edits"];
         put?: never;
-        /** Applies an edit */
+        /** Edit a layer */
         post: operations["edit_layer"];
         delete?: never;
         options?: never;
@@ -676,7 +676,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Where some records of a database layer lie, and how much surface they have */
+        /** Get the extent of records */
         post: operations["record_extent"];
         delete?: never;
         options?: never;
@@ -694,7 +694,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Outlines of the layer's classes, and lines and points of its records, for maps */
+        /** Get the map features of a layer */
         get: operations["get_features"];
         put?: never;
         post?: never;
@@ -716,7 +716,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Paints an orthophoto, raster of numbers or scanned map, as one edit */
+        /** Paint a map picture on a layer */
         post: operations["paint_picture"];
         delete?: never;
         options?: never;
@@ -736,7 +736,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Paints the polygons of a flat map, as one edit */
+        /** Paint the polygons of a map */
         post: operations["paint_polygons"];
         delete?: never;
         options?: never;
@@ -754,7 +754,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** How much there is of each class, for a report */
+        /** Get the quantities of a layer's classes */
         get: operations["layer_quantities"];
         put?: never;
         post?: never;
@@ -776,7 +776,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Paints measured values around their places, as one edit */
+        /** Paint point measurements on a layer */
         post: operations["paint_readings"];
         delete?: never;
         options?: never;
@@ -794,10 +794,10 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Records of the layer's table, with their surface on the layer */
+        /** List the records of a layer's table */
         get: operations["list_layer_records"];
         put?: never;
-        /** New records, or many as CSV */
+        /** Create records in a layer's table */
         post: operations["create_layer_records"];
         delete?: never;
         options?: never;
@@ -816,15 +816,15 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** One record */
+        /** Get a record with its area */
         get: operations["get_layer_record"];
         put?: never;
         post?: never;
-        /** Deletes a record */
+        /** Delete a record of a layer's table */
         delete: operations["delete_layer_record"];
         options?: never;
         head?: never;
-        /** Changes values of a record */
+        /** Change a record of a layer's table */
         patch: operations["change_layer_record"];
         trace?: never;
     };
@@ -839,10 +839,10 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Files of a record */
+        /** List the files of a layer's record */
         get: operations["list_layer_attachments"];
         put?: never;
-        /** Attaches files to a record */
+        /** Attach files to a layer's record */
         post: operations["create_layer_attachments"];
         delete?: never;
         options?: never;
@@ -862,7 +862,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Puts back what the caller took back last */
+        /** Redo the edit that you undid last */
         post: operations["redo"];
         delete?: never;
         options?: never;
@@ -882,7 +882,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Whole layer back to a revision, as a new edit */
+        /** Restore a layer to an earlier state */
         post: operations["restore_layer"];
         delete?: never;
         options?: never;
@@ -900,10 +900,10 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** What waits for review on the layer, the oldest first */
+        /** List the edits that wait for review */
         get: operations["list_review"];
         put?: never;
-        /** Accepts or rejects what annotators changed, or takes such a decision back */
+        /** Review edits */
         post: operations["review_edits"];
         delete?: never;
         options?: never;
@@ -921,7 +921,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Statistics weighted by surface area */
+        /** Get the statistics of a layer */
         get: operations["layer_statistics"];
         put?: never;
         post?: never;
@@ -942,9 +942,9 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** The layer as a raster with its valid plane */
+        /** Get a layer as a raster */
         get: operations["get_texels"];
-        /** Imports a raster as one edit */
+        /** Import a raster into a layer */
         put: operations["put_texels"];
         post?: never;
         delete?: never;
@@ -963,7 +963,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** The layer's texels as lines of text */
+        /** Get the texels of a layer as CSV */
         get: operations["get_texel_lines"];
         put?: never;
         post?: never;
@@ -985,7 +985,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Takes back the caller's last stroke on the layer */
+        /** Undo your last stroke on a layer */
         post: operations["undo"];
         delete?: never;
         options?: never;
@@ -1006,7 +1006,7 @@ export interface paths {
             cookie?: never;
         };
         get?: never;
-        /** Values of the scan's vertices, as an edit */
+        /** Paint the values of the scan's vertices */
         put: operations["import_vertex_values"];
         post?: never;
         delete?: never;
@@ -1024,7 +1024,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** WebSocket, subprotocol strata.v1 */
+        /** Open the live connection of a model */
         get: operations["live"];
         put?: never;
         post?: never;
@@ -1043,10 +1043,10 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Pictures of the surface, by order */
+        /** List the surface images of a model */
         get: operations["list_looks"];
         put?: never;
-        /** Adds a picture on the model's texture coordinates */
+        /** Add a surface image */
         post: operations["create_look"];
         delete?: never;
         options?: never;
@@ -1064,15 +1064,15 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** One look */
+        /** Get a surface image */
         get: operations["get_look"];
         put?: never;
         post?: never;
-        /** Deletes the look */
+        /** Delete a surface image */
         delete: operations["delete_look"];
         options?: never;
         head?: never;
-        /** Changes name, order and what viewers start with */
+        /** Change a surface image */
         patch: operations["change_look"];
         trace?: never;
     };
@@ -1086,7 +1086,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** The picture, bit for bit, or small */
+        /** Get the picture of a surface image */
         get: operations["get_look_picture"];
         put?: never;
         post?: never;
@@ -1107,7 +1107,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** What a map file holds, before it is painted */
+        /** Get the contents of a map file */
         post: operations["map_contents"];
         delete?: never;
         options?: never;
@@ -1126,7 +1126,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Makes a look of an orthophoto */
+        /** Make a surface image of an orthophoto */
         post: operations["add_orthophoto"];
         delete?: never;
         options?: never;
@@ -1145,7 +1145,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Values at a pixel of a view */
+        /** Get the values at a pixel */
         post: operations["pick"];
         delete?: never;
         options?: never;
@@ -1162,7 +1162,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Values at the surface point nearest to a position */
+        /** Get the values at a position */
         get: operations["position"];
         put?: never;
         post?: never;
@@ -1183,7 +1183,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** The same at up to 100 000 points */
+        /** Get the values at many positions */
         post: operations["positions"];
         delete?: never;
         options?: never;
@@ -1202,7 +1202,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** The surface and its values along a line */
+        /** Get a profile of the surface */
         post: operations["profile"];
         delete?: never;
         options?: never;
@@ -1221,7 +1221,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Area where a condition holds, around a place or inside an outline */
+        /** Select a part of the surface */
         post: operations["select"];
         delete?: never;
         options?: never;
@@ -1238,7 +1238,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** An uploaded file, bit for bit */
+        /** Get an uploaded file of a model */
         get: operations["get_source_file"];
         put?: never;
         post?: never;
@@ -1257,10 +1257,10 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Tours of the model, in the order in which they were made */
+        /** List the tours of a model */
         get: operations["list_tours"];
         put?: never;
-        /** Makes a tour of named views */
+        /** Create a tour */
         post: operations["create_tour"];
         delete?: never;
         options?: never;
@@ -1278,15 +1278,15 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** One tour, with its stops */
+        /** Get a tour with its stops */
         get: operations["get_tour"];
         put?: never;
         post?: never;
-        /** Deletes a tour, and all links of kiosks that show it */
+        /** Delete a tour */
         delete: operations["delete_tour"];
         options?: never;
         head?: never;
-        /** Changes a tour */
+        /** Change a tour */
         patch: operations["change_tour"];
         trace?: never;
     };
@@ -1302,7 +1302,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Makes a link for a screen that shows the tour */
+        /** Create a kiosk link for a tour */
         post: operations["create_kiosk"];
         delete?: never;
         options?: never;
@@ -1321,7 +1321,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Bring over the layers of another version of the scan */
+        /** Transfer the layers of another scan version */
         post: operations["transfer_layers"];
         delete?: never;
         options?: never;
@@ -1338,7 +1338,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Numbers that the scan's files keep with their vertices */
+        /** List the numbers of a scan's vertices */
         get: operations["list_vertex_properties"];
         put?: never;
         post?: never;
@@ -1357,7 +1357,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** The mesh as a PLY with what layers hold at its vertices */
+        /** Get the mesh with values at vertices */
         get: operations["get_vertices"];
         put?: never;
         post?: never;
@@ -1376,10 +1376,10 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Named views of the model, in the order in which they were made */
+        /** List the saved views of a model */
         get: operations["list_views"];
         put?: never;
-        /** Keeps a view under a name */
+        /** Save a view of a model */
         post: operations["create_view"];
         delete?: never;
         options?: never;
@@ -1397,15 +1397,15 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** One named view */
+        /** Get a saved view */
         get: operations["get_view"];
         put?: never;
         post?: never;
-        /** Deletes a named view */
+        /** Delete a saved view */
         delete: operations["delete_view"];
         options?: never;
         head?: never;
-        /** Names a view differently, describes it, or shows something else under its name */
+        /** Change a saved view */
         patch: operations["change_view"];
         trace?: never;
     };
@@ -1419,7 +1419,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** What a named view shows now */
+        /** Render the picture of a saved view */
         get: operations["view_picture"];
         put?: never;
         post?: never;
@@ -1436,7 +1436,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** This document */
+        /** Get this document */
         get: operations["openapi"];
         put?: never;
         post?: never;
@@ -1453,10 +1453,10 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Projects */
+        /** List the projects */
         get: operations["list_projects"];
         put?: never;
-        /** New project */
+        /** Create a project */
         post: operations["create_project"];
         delete?: never;
         options?: never;
@@ -1473,15 +1473,15 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** One project */
+        /** Get a project */
         get: operations["get_project"];
         put?: never;
         post?: never;
-        /** Deletes an empty project */
+        /** Delete an empty project */
         delete: operations["delete_project"];
         options?: never;
         head?: never;
-        /** Changes name or description, and whether changes in it must name a version */
+        /** Change a project */
         patch: operations["change_project"];
         trace?: never;
     };
@@ -1494,7 +1494,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** What was done in the project, newest first */
+        /** List the activity of a project */
         get: operations["list_activity"];
         put?: never;
         post?: never;
@@ -1513,7 +1513,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** What was deleted and can be restored, newest first */
+        /** List the trash of a project */
         get: operations["list_bin"];
         put?: never;
         post?: never;
@@ -1536,7 +1536,7 @@ export interface paths {
         get?: never;
         put?: never;
         post?: never;
-        /** Erases a layer or model for ever */
+        /** Delete a layer or model permanently */
         delete: operations["erase_from_bin"];
         options?: never;
         head?: never;
@@ -1555,7 +1555,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Brings back what was deleted, as it was */
+        /** Restore a deleted item */
         post: operations["restore_from_bin"];
         delete?: never;
         options?: never;
@@ -1574,10 +1574,10 @@ export interface paths {
             cookie?: never;
         };
         get?: never;
-        /** Gives a group a role in the project */
+        /** Give a group a role in a project */
         put: operations["put_project_group"];
         post?: never;
-        /** Takes a group's role in the project away */
+        /** Remove a group's role in a project */
         delete: operations["remove_project_group"];
         options?: never;
         head?: never;
@@ -1593,7 +1593,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Who has a role in the project */
+        /** List the members of a project */
         get: operations["list_members"];
         put?: never;
         post?: never;
@@ -1614,10 +1614,10 @@ export interface paths {
             cookie?: never;
         };
         get?: never;
-        /** Gives somebody a role in the project */
+        /** Give a user a role in a project */
         put: operations["put_member"];
         post?: never;
-        /** Takes somebody's role in the project away */
+        /** Remove a user's role in a project */
         delete: operations["remove_member"];
         options?: never;
         head?: never;
@@ -1633,7 +1633,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Who sees the project */
+        /** List the people of a project */
         get: operations["list_project_people"];
         put?: never;
         post?: never;
@@ -1652,10 +1652,10 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Tables of the project, by name */
+        /** List the tables of a project */
         get: operations["list_tables"];
         put?: never;
-        /** A new table with its columns */
+        /** Create a table */
         post: operations["create_table"];
         delete?: never;
         options?: never;
@@ -1675,7 +1675,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Makes the tables of a template, and its layers on a model */
+        /** Use a template */
         post: operations["use_template"];
         delete?: never;
         options?: never;
@@ -1694,7 +1694,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** A new list of terms of CSV or SKOS */
+        /** Create a term list from a file */
         post: operations["create_terms"];
         delete?: never;
         options?: never;
@@ -1711,15 +1711,15 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** One table with its columns */
+        /** Get a table with its columns */
         get: operations["get_table"];
         put?: never;
         post?: never;
-        /** Deletes the table with its records and history */
+        /** Delete a table with its records */
         delete: operations["delete_table"];
         options?: never;
         head?: never;
-        /** Changes name, labels and description */
+        /** Change a table */
         patch: operations["change_table"];
         trace?: never;
     };
@@ -1732,7 +1732,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Surface of each key, by layer, by model and in total */
+        /** List the areas of a table's keys */
         get: operations["list_table_areas"];
         put?: never;
         post?: never;
@@ -1753,7 +1753,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Which records the files of a folder are of, by their names */
+        /** Match file names with records */
         post: operations["match_attachments"];
         delete?: never;
         options?: never;
@@ -1770,10 +1770,10 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Columns of the table, by order */
+        /** List the columns of a table */
         get: operations["list_columns"];
         put?: never;
-        /** A new column */
+        /** Add a column to a table */
         post: operations["create_column"];
         delete?: never;
         options?: never;
@@ -1794,11 +1794,11 @@ export interface paths {
         get?: never;
         put?: never;
         post?: never;
-        /** Hides a column */
+        /** Delete a column */
         delete: operations["drop_column"];
         options?: never;
         head?: never;
-        /** Renames, restricts or retypes a column */
+        /** Change a column */
         patch: operations["change_column"];
         trace?: never;
     };
@@ -1812,7 +1812,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** The column's values in classes, for a palette that colours by it */
+        /** Classify the values of a column */
         get: operations["list_classes"];
         put?: never;
         post?: never;
@@ -1832,7 +1832,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Records that lie above themselves */
+        /** Find records that are above themselves */
         get: operations["list_cycles"];
         put?: never;
         post?: never;
@@ -1851,7 +1851,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** History of the table, newest first */
+        /** List the edits of a table */
         get: operations["list_table_edits"];
         put?: never;
         post?: never;
@@ -1870,7 +1870,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** How much there is of each record, over all models */
+        /** Get the quantities of a table's records */
         get: operations["table_quantities"];
         put?: never;
         post?: never;
@@ -1889,10 +1889,10 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Records of the table */
+        /** List the records of a table */
         get: operations["list_records"];
         put?: never;
-        /** New records, or many as CSV */
+        /** Create records in a table */
         post: operations["create_records"];
         delete?: never;
         options?: never;
@@ -1910,15 +1910,15 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** One record */
+        /** Get a record */
         get: operations["get_record"];
         put?: never;
         post?: never;
-        /** Deletes a record */
+        /** Delete a record */
         delete: operations["delete_record"];
         options?: never;
         head?: never;
-        /** Changes values of a record */
+        /** Change a record */
         patch: operations["change_record"];
         trace?: never;
     };
@@ -1932,10 +1932,10 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** Files of a record */
+        /** List the files of a record */
         get: operations["list_attachments"];
         put?: never;
-        /** Attaches files to a record */
+        /** Attach files to a record */
         post: operations["create_attachments"];
         delete?: never;
         options?: never;
@@ -1954,7 +1954,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Brings back what the caller undid last */
+        /** Redo your last undone table change */
         post: operations["redo_table"];
         delete?: never;
         options?: never;
@@ -1971,10 +1971,10 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** The terms of a list as a tree, or as a file */
+        /** List the terms of a term list */
         get: operations["list_terms"];
         put?: never;
-        /** Terms of CSV or SKOS into a list */
+        /** Import terms into a term list */
         post: operations["import_terms"];
         delete?: never;
         options?: never;
@@ -1993,7 +1993,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Takes back the caller's last change of columns or records */
+        /** Undo your last change of a table */
         post: operations["undo_table"];
         delete?: never;
         options?: never;
@@ -2008,7 +2008,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Templates for tables and layers, by name */
+        /** List the templates */
         get: operations["list_templates"];
         put?: never;
         post?: never;
@@ -2025,10 +2025,10 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Shapes for the brush, by name */
+        /** List the brush shapes */
         get: operations["list_tools"];
         put?: never;
-        /** Makes a tool of a picture */
+        /** Create a brush shape */
         post: operations["create_tool"];
         delete?: never;
         options?: never;
@@ -2045,15 +2045,15 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** One tool */
+        /** Get a brush shape */
         get: operations["get_tool"];
         put?: never;
         post?: never;
-        /** Takes the tool off the list */
+        /** Delete a brush shape */
         delete: operations["delete_tool"];
         options?: never;
         head?: never;
-        /** Gives the tool another name */
+        /** Rename a brush shape */
         patch: operations["rename_tool"];
         trace?: never;
     };
@@ -2066,7 +2066,7 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** The shape as a picture of 256 × 256 pixels, opaque where the tool is */
+        /** Get the picture of a brush shape */
         get: operations["get_tool_picture"];
         put?: never;
         post?: never;
@@ -2083,10 +2083,10 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** People with accounts */
+        /** List the users of the site */
         get: operations["list_users"];
         put?: never;
-        /** New account, with a link by which its person chooses a password */
+        /** Invite a user */
         post: operations["invite_user"];
         delete?: never;
         options?: never;
@@ -2103,15 +2103,15 @@ export interface paths {
             };
             cookie?: never;
         };
-        /** A person */
+        /** Get a user */
         get: operations["get_user"];
         put?: never;
         post?: never;
-        /** Deletes a person */
+        /** Delete a user */
         delete: operations["delete_user"];
         options?: never;
         head?: never;
-        /** Name, role, whether they may sign in */
+        /** Change an account */
         patch: operations["change_user"];
         trace?: never;
     };
@@ -2126,7 +2126,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** A new link by which the person chooses a password */
+        /** Create a new link for a user */
         post: operations["invite_again"];
         delete?: never;
         options?: never;
@@ -2141,7 +2141,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** The release that runs */
+        /** Get the release that runs */
         get: operations["version"];
         put?: never;
         post?: never;
@@ -2155,30 +2155,30 @@ export interface paths {
 export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
-        /** What one person did to one thing, each time within ten minutes of the last one */
+        /** Actions of one person on one thing, at most ten minutes apart */
         Activity: wire.Activity;
         /**
-         * What something was done to
+         * Kind of the changed thing
          * @enum {string}
          */
         ActivityKind: wire.ActivityKind;
-        /** What was done in a project, newest first */
+        /** Activity of a project, newest first */
         ActivityList: wire.ActivityList;
         /** Sequence or time */
         At: wire.At;
-        /** How the surface lies in the texture */
+        /** How the surface is packed into the texture */
         Atlas: wire.Atlas;
         /** Why part of the texture stays unused */
         AtlasLimit: wire.AtlasLimit;
-        /** Files that were attached */
+        /** Attached files */
         Attached: wire.Attached;
         /** File of a record */
         Attachment: wire.Attachment;
         /** Files of a record, column by column */
         AttachmentList: wire.AttachmentList;
-        /** Names of files that say which records they are of */
+        /** Names of files, and how they name their records */
         AttachmentMatch: wire.AttachmentMatch;
-        /** Which records files are of */
+        /** Records of files */
         AttachmentMatches: wire.AttachmentMatches;
         /** Changes to a file of a record */
         AttachmentPatch: wire.AttachmentPatch;
@@ -2187,22 +2187,22 @@ export interface components {
          * @enum {string}
          */
         Axis: wire.Axis;
-        /** What a picture has behind the model */
+        /** Background of a picture */
         Background: wire.Background;
         /** #rrggbb, sRGB */
         BackgroundColor: wire.BackgroundColor;
-        /** Something that was deleted and can be restored */
+        /** A deleted item that can be restored */
         BinEntry: wire.BinEntry;
-        /** What was deleted, by kind and id; a record by its table's id and its key */
+        /** Kind and id of a deleted item; for a record, the id of its table and its key */
         BinEntryId: wire.BinEntryId;
         /**
-         * What lies in the Bin
+         * Kind of a deleted item
          * @enum {string}
          */
         BinKind: wire.BinKind;
-        /** What was deleted in a project and can be restored, newest first */
+        /** Trash of a project, newest first */
         BinList: wire.BinList;
-        /** What was restored */
+        /** A restored item */
         BinRestored: wire.BinRestored;
         /** Box */
         Bounds: wire.Bounds;
@@ -2214,7 +2214,7 @@ export interface components {
         CellValues: wire.CellValues;
         /** Cells before or after a change */
         ChangedCells: wire.ChangedCells;
-        /** What was changed of something */
+        /** Changed property */
         ChangedProperty: wire.ChangedProperty;
         /** Column of a table */
         Column: wire.Column;
@@ -2231,7 +2231,7 @@ export interface components {
          * @enum {string}
          */
         ColumnKind: wire.ColumnKind;
-        /** Columns of a table, by order */
+        /** Columns of a table, in their order */
         ColumnList: wire.ColumnList;
         /** Changes to a column */
         ColumnPatch: wire.ColumnPatch;
@@ -2239,20 +2239,20 @@ export interface components {
         Comment: wire.Comment;
         /** First comment of a thread */
         CommentCreate: wire.CommentCreate;
-        /** Comments of a model, by id */
+        /** Comments of a model, in the order of ids */
         CommentList: wire.CommentList;
-        /** Another text, or another state of a thread */
+        /** New text of a comment, or new state of a thread */
         CommentPatch: wire.CommentPatch;
-        /** Who settled a thread */
+        /** Person who resolved a thread */
         CommentResolution: wire.CommentResolution;
         /**
-         * Whether there is still something to do
+         * State of a thread
          * @enum {string}
          */
         CommentState: wire.CommentState;
         /** Areas of pairs of values */
         CrossTable: wire.CrossTable;
-        /** Two layers against each other */
+        /** Request to compare two layers */
         CrossTableRequest: wire.CrossTableRequest;
         /** Fixed depth bias */
         DepthBias: wire.DepthBias;
@@ -2266,16 +2266,16 @@ export interface components {
         EditList: wire.EditList;
         /** Polygon or lasso */
         EditPolygon: wire.EditPolygon;
-        /** What an edit did; it is durable */
+        /** Result of a durable edit */
         EditResult: wire.EditResult;
         /** Stroke */
         EditStroke: wire.EditStroke;
         /** Empty object */
         Empty: wire.Empty;
-        /** Where records lie on a model */
+        /** Extent of records on a model */
         Extent: wire.Extent;
         /**
-         * From where, by the model's up
+         * Direction of a figure, relative to the model's up
          * @enum {string}
          */
         FigureDirection: wire.FigureDirection;
@@ -2284,9 +2284,9 @@ export interface components {
          * @enum {string}
          */
         FigureFormat: wire.FigureFormat;
-        /** Words of records at their places */
+        /** Values of records at their places */
         FigureLabels: wire.FigureLabels;
-        /** A measured figure */
+        /** A figure to scale */
         FigureRequest: wire.FigureRequest;
         /** One rendered picture */
         FrameRequest: wire.FrameRequest;
@@ -2294,80 +2294,80 @@ export interface components {
         Group: wire.Group;
         /** New group */
         GroupCreate: wire.GroupCreate;
-        /** A group, who is in it, and what it gives them */
+        /** A group with its people and its roles */
         GroupDetail: wire.GroupDetail;
         /** Id of a group */
         GroupId: wire.GroupId;
         /** Groups */
         GroupList: wire.GroupList;
-        /** Somebody in a group */
+        /** A person in a group */
         GroupMember: wire.GroupMember;
         /** Name of a group */
         GroupName: wire.GroupName;
         /** Changes of a group */
         GroupPatch: wire.GroupPatch;
-        /** Name of a person for signing in */
+        /** User name of a person */
         GroupPerson: wire.GroupPerson;
         /** A project in which a group has a role */
         GroupProject: wire.GroupProject;
-        /** Records that are to be seen before all others */
+        /** Records that a view highlights */
         Highlight: wire.Highlight;
         /** Bar of a histogram */
         HistogramBin: wire.HistogramBin;
         /** One edit in a layer's history */
         HistoryEntry: wire.HistoryEntry;
-        /** A link that lets a person choose a password */
+        /** A link with which a person sets a password */
         Invitation: wire.Invitation;
-        /** An invitation and the password that is chosen */
+        /** An invitation and the new password */
         InvitationAccept: wire.InvitationAccept;
-        /** An invitation, to see whose it is */
+        /** An invitation, to get its user */
         InvitationShow: wire.InvitationShow;
-        /** Long work */
+        /** Job: work that takes longer than an answer */
         Job: wire.Job;
         /** File that a job made */
         JobFile: wire.JobFile;
         /** Jobs, newest first */
         JobList: wire.JobList;
-        /** Surface of one key */
+        /** Area of one key */
         KeyArea: wire.KeyArea;
-        /** Where one key lies */
+        /** Statistics of one key */
         KeyStatistics: wire.KeyStatistics;
-        /** Link for a screen that shows a tour */
+        /** Kiosk link: a screen that shows a tour */
         Kiosk: wire.Kiosk;
-        /** A link for a kiosk */
+        /** New kiosk link */
         KioskCreate: wire.KioskCreate;
-        /** Links for kiosks, in the order in which they were made */
+        /** Kiosk links, in the order of their creation */
         KioskList: wire.KioskList;
-        /** The link of a kiosk */
+        /** Link of a kiosk */
         KioskLogin: wire.KioskLogin;
-        /** The link, told this once */
+        /** A new kiosk link, which is shown only now */
         KioskMade: wire.KioskMade;
-        /** What a kiosk is told of itself */
+        /** A kiosk's own data */
         KioskSelf: wire.KioskSelf;
         /** Names by language */
         Labels: wire.Labels;
         /** Layer */
         Layer: wire.Layer;
-        /** Surface of one key on one layer */
+        /** Area of one key on one layer */
         LayerArea: wire.LayerArea;
         /** New layer */
         LayerCreate: wire.LayerCreate;
-        /** Records of a layer that are to be seen */
+        /** Highlighted records of a layer */
         LayerHighlight: wire.LayerHighlight;
         /**
          * Kind of layer
          * @enum {string}
          */
         LayerKind: wire.LayerKind;
-        /** Layers of a model, by order */
+        /** Layers of a model, in their order */
         LayerList: wire.LayerList;
         /** How a view shows a layer */
         LayerOverride: wire.LayerOverride;
-        /** Changes to a layer's description and defaults */
+        /** Changes to a layer */
         LayerPatch: wire.LayerPatch;
-        /** How much there is of each class of a layer */
+        /** Quantities of each class of a layer */
         LayerQuantities: wire.LayerQuantities;
-        /** How much there is of a class */
+        /** Quantities of a class */
         LayerQuantity: wire.LayerQuantity;
         /** Layer by id or slug */
         LayerRef: wire.LayerRef;
@@ -2382,49 +2382,49 @@ export interface components {
         ListedTerm: wire.ListedTerm;
         /** Sign-in */
         Login: wire.Login;
-        /** Picture of a model's surface */
+        /** Surface image of a model */
         Look: wire.Look;
-        /** Looks of a model, by order */
+        /** Surface images of a model, in their order */
         LookList: wire.LookList;
-        /** Changes to a look's description and defaults */
+        /** Changes to a surface image */
         LookPatch: wire.LookPatch;
-        /** A look in a view */
+        /** Surface image in a view */
         LookShown: wire.LookShown;
-        /** Colour that covers a part of a picture */
+        /** Color that covers a part of a picture */
         MapColor: wire.MapColor;
         /** Attribute of a map's polygons */
         MapColumn: wire.MapColumn;
-        /** What a map file holds */
+        /** Contents of a map file */
         MapContents: wire.MapContents;
         /** Line or point of a record on a model */
         Mark: wire.Mark;
-        /** Place of a mark */
+        /** Place of a line or point */
         MarkPlace: wire.MarkPlace;
-        /** Name of a file that was looked at */
+        /** Name of a file, with its record */
         MatchedName: wire.MatchedName;
         /** 4 × 4 matrix */
         Matrix: wire.Matrix;
-        /** Who is signed in */
+        /** The signed-in user */
         Me: wire.Me;
-        /** Somebody with a role in a project */
+        /** A person with a role in a project */
         Member: wire.Member;
         /** A group with a role in a project */
         MemberGroup: wire.MemberGroup;
-        /** Who has a role in the project */
+        /** Members of a project */
         MemberList: wire.MemberList;
-        /** A role in the project */
+        /** Role in a project */
         MemberPut: wire.MemberPut;
-        /** Changes of oneself */
+        /** Changes of your own account */
         MePatch: wire.MePatch;
         /** Model */
         Model: wire.Model;
-        /** Surface of one key on one model */
+        /** Area of one key on one model */
         ModelArea: wire.ModelArea;
         /** Models */
         ModelList: wire.ModelList;
-        /** Changes to a model's description */
+        /** Changes to a model's metadata */
         ModelPatch: wire.ModelPatch;
-        /** Where the surface ends: loops of edges of one triangle only */
+        /** Open edges: loops of edges of one triangle only */
         OpenEdges: wire.OpenEdges;
         /** Outline of an area */
         Outline: wire.Outline;
@@ -2438,9 +2438,9 @@ export interface components {
         Path: wire.Path;
         /** A person with an account */
         Person: wire.Person;
-        /** How somebody shows the layers of a model */
+        /** How a user shows the layers of a model */
         PersonalView: wire.PersonalView;
-        /** Colour of a person */
+        /** Color of a person */
         PersonColor: wire.PersonColor;
         /** New account */
         PersonCreate: wire.PersonCreate;
@@ -2453,7 +2453,7 @@ export interface components {
          * @enum {string}
          */
         PersonState: wire.PersonState;
-        /** What is at a pixel */
+        /** Values at a pixel */
         PickRequest: wire.PickRequest;
         /** Plane in space */
         Plane: wire.Plane;
@@ -2463,7 +2463,7 @@ export interface components {
         Point3: wire.Point3;
         /** Values at many points */
         PositionsRequest: wire.PositionsRequest;
-        /** One entry per asked point, in their order */
+        /** One entry for each point, in the order of the request */
         PositionsResponse: wire.PositionsResponse;
         /** Problem (RFC 9457) */
         Problem: wire.Problem;
@@ -2472,13 +2472,13 @@ export interface components {
          * @enum {string}
          */
         ProblemType: wire.ProblemType;
-        /** The surface along a line */
+        /** Profile of the surface along a line */
         Profile: wire.Profile;
-        /** The surface along a line */
+        /** Request for a profile of the surface */
         ProfileRequest: wire.ProfileRequest;
         /** Place on a profile */
         ProfileSample: wire.ProfileSample;
-        /** Project: a site */
+        /** Project: a site or a collection */
         Project: wire.Project;
         /** New project */
         ProjectCreate: wire.ProjectCreate;
@@ -2486,9 +2486,9 @@ export interface components {
         ProjectList: wire.ProjectList;
         /** Changes to a project */
         ProjectPatch: wire.ProjectPatch;
-        /** Somebody who sees the project */
+        /** A person who can see the project */
         ProjectPerson: wire.ProjectPerson;
-        /** Who sees the project */
+        /** People who can see the project */
         ProjectPersonList: wire.ProjectPersonList;
         /**
          * Role in one project
@@ -2497,13 +2497,13 @@ export interface components {
         ProjectRole: wire.ProjectRole;
         /** The smallest values that the lower 5, 25, 50, 75 and 95 % of the area do not exceed */
         Quantiles: wire.Quantiles;
-        /** How much there is of a record on one layer */
+        /** Quantities of a record on one layer */
         QuantityOnLayer: wire.QuantityOnLayer;
-        /** How much there is in all */
+        /** Total quantities */
         QuantitySum: wire.QuantitySum;
-        /** Whether the server can work */
+        /** Readiness of the server */
         Readiness: wire.Readiness;
-        /** How a layer's content was computed */
+        /** How the content of a layer was computed */
         Recipe: wire.Recipe;
         /**
          * When a computed layer follows its inputs
@@ -2518,38 +2518,38 @@ export interface components {
         RecordPatch: wire.RecordPatch;
         /** One new record, or several */
         RecordsCreate: wire.RecordsCreate;
-        /** What became of records that were sent in bulk */
+        /** Result of writing many records */
         RecordsReport: wire.RecordsReport;
-        /** What was mended at import */
+        /** Repair at import */
         Repair: wire.Repair;
         /** Reply in a thread */
         ReplyCreate: wire.ReplyCreate;
-        /** Replies of a thread, by id */
+        /** Replies of a thread, in the order of ids */
         ReplyList: wire.ReplyList;
         /**
          * Texels a side
          * @enum {integer}
          */
         Resolution: wire.Resolution;
-        /** Whole layer back to a revision */
+        /** Restore of a whole layer */
         Restore: wire.Restore;
         /** A decision about edits of a layer */
         Review: wire.Review;
         /**
-         * What a curator makes of edits
+         * Decision of a curator about edits
          * @enum {string}
          */
         ReviewDecision: wire.ReviewDecision;
-        /** Who accepted or rejected an edit */
+        /** Person who accepted or rejected an edit */
         Reviewer: wire.Reviewer;
-        /** Whose strokes wait */
+        /** Person whose strokes wait */
         ReviewPerson: wire.ReviewPerson;
-        /** What of a layer waits for review, the oldest first */
+        /** Edits of a layer that wait for review, oldest first */
         ReviewQueue: wire.ReviewQueue;
-        /** Why, for the authors */
+        /** Reason of a decision, for the authors */
         ReviewReason: wire.ReviewReason;
         /**
-         * Where an edit stands that had to wait for review
+         * State of an edit that requires a review
          * @enum {string}
          */
         ReviewState: wire.ReviewState;
@@ -2558,9 +2558,9 @@ export interface components {
          * @enum {string}
          */
         Role: wire.Role;
-        /** What is wrong with a row */
+        /** Problem of a row */
         RowProblem: wire.RowProblem;
-        /** The unit and the up direction that the file states or lets one guess */
+        /** Unit and up direction proposed for a scan */
         ScaleProposal: wire.ScaleProposal;
         /**
          * Why a unit or an up direction is proposed
@@ -2573,52 +2573,52 @@ export interface components {
         ScriptTokenCreate: wire.ScriptTokenCreate;
         /** Tokens */
         ScriptTokenList: wire.ScriptTokenList;
-        /** The token, told this once */
+        /** A new token with its secret, which is shown only now */
         ScriptTokenMade: wire.ScriptTokenMade;
         /** Planes that cut the model open */
         Section: wire.Section;
-        /** What layers hold in a selection */
+        /** Contents of layers in a selection */
         SelectedLayers: wire.SelectedLayers;
-        /** Paints what is selected */
+        /** Paint the selection */
         SelectInto: wire.SelectInto;
-        /** Where on the surface */
+        /** Selection of surface */
         SelectRequest: wire.SelectRequest;
         /** Texels and area of a selection */
         SelectResponse: wire.SelectResponse;
-        /** Which release of Strata runs */
+        /** Release of Strata */
         ServerVersion: wire.ServerVersion;
         /** Values computed from the model's shape */
         ShapeRecipe: wire.ShapeRecipe;
-        /** A browser in which somebody is signed in */
+        /** A browser in which a user is signed in */
         SignInSession: wire.SignInSession;
         /** Sessions */
         SignInSessionList: wire.SignInSessionList;
         /** Largest angle at which a surface is painted */
         SlantLimit: wire.SlantLimit;
-        /** Uploaded file, kept bit for bit */
+        /** Uploaded file, kept unchanged */
         SourceFile: wire.SourceFile;
         /** Statistics of a layer, weighted by surface area */
         Statistics: wire.Statistics;
         /**
-         * What takes longer
+         * Part of the statistics that takes longer
          * @enum {string}
          */
         StatisticsPart: wire.StatisticsPart;
         /** Place on the surface */
         SurfacePlace: wire.SurfacePlace;
-        /** Point on the surface and the values there */
+        /** Point on the surface, with values */
         SurfacePoint: wire.SurfacePoint;
-        /** What a layer holds at a point */
+        /** Value of a layer at a point */
         SurfaceValue: wire.SurfaceValue;
         /** Values by the layers' slugs */
         SurfaceValues: wire.SurfaceValues;
         /** Table of a project */
         Table: wire.Table;
-        /** Surface of records, in all and by model and layer */
+        /** Areas of records, in total and by model and layer */
         TableAreas: wire.TableAreas;
-        /** What an entry did to one record or column */
+        /** Change of one record or column */
         TableCellChange: wire.TableCellChange;
-        /** What undo or redo did to a table */
+        /** Changes of a table by undo or redo */
         TableChanged: wire.TableChanged;
         /** New table */
         TableCreate: wire.TableCreate;
@@ -2626,13 +2626,13 @@ export interface components {
         TableEdit: wire.TableEdit;
         /** History of a table, newest first */
         TableEditList: wire.TableEditList;
-        /** Tables of a project, by name */
+        /** Tables of a project, sorted by name */
         TableList: wire.TableList;
         /** Changes to a table */
         TablePatch: wire.TablePatch;
-        /** How much there is of each record of a table */
+        /** Quantities of each record of a table */
         TableQuantities: wire.TableQuantities;
-        /** How much there is of a record */
+        /** Quantities of a record */
         TableQuantity: wire.TableQuantity;
         /** Record of a table */
         TableRecord: wire.TableRecord;
@@ -2644,7 +2644,7 @@ export interface components {
         TemplateLayer: wire.TemplateLayer;
         /** Templates */
         TemplateList: wire.TemplateList;
-        /** What was made of a template */
+        /** Tables and layers made from a template */
         TemplateMade: wire.TemplateMade;
         /** Table of a template */
         TemplateTable: wire.TemplateTable;
@@ -2652,52 +2652,52 @@ export interface components {
         TemplateTerm: wire.TemplateTerm;
         /** Use of a template */
         TemplateUse: wire.TemplateUse;
-        /** Terms of a list */
+        /** Terms of a term list */
         TermTree: wire.TermTree;
-        /** How much surface a texel holds */
+        /** Surface of a texel */
         TexelSize: wire.TexelSize;
-        /** Tool of the site */
+        /** Brush shape of the site */
         Tool: wire.Tool;
-        /** Tools of the site, by name */
+        /** Brush shapes of the site, sorted by name */
         ToolList: wire.ToolList;
-        /** Another name for a tool */
+        /** New name of a brush shape */
         ToolPatch: wire.ToolPatch;
-        /** Shape of the brush */
+        /** Brush shape */
         ToolShape: wire.ToolShape;
         /** Tour of a model */
         Tour: wire.Tour;
-        /** Column that the card of a record shows */
+        /** Column on the card of a record */
         TourColumn: wire.TourColumn;
-        /** A tour to keep */
+        /** New tour */
         TourCreate: wire.TourCreate;
         /** Tour in a list */
         TourEntry: wire.TourEntry;
         /** Language of a tour */
         TourLanguage: wire.TourLanguage;
-        /** Tours of a model, in the order in which they were made */
+        /** Tours of a model, in the order of their creation */
         TourList: wire.TourList;
         /** Changes to a tour */
         TourPatch: wire.TourPatch;
-        /** Records of a table to show at a stop */
+        /** Records of a table at a stop */
         TourRecords: wire.TourRecords;
         /** Stop of a tour */
         TourStop: wire.TourStop;
         /** Stop of a tour */
         TourStopCreate: wire.TourStopCreate;
-        /** A text by language */
+        /** Text by language */
         TourText: wire.TourText;
         /**
-         * How one comes to a stop
+         * Transition to a stop
          * @enum {string}
          */
         TourTransition: wire.TourTransition;
-        /** A few words by language */
+        /** Short text by language */
         TourWords: wire.TourWords;
-        /** Layers of another version of the same scan */
+        /** Transfer of layers from another version of the same scan */
         Transfer: wire.Transfer;
         /** One layer of a transfer */
         TransferredLayer: wire.TransferredLayer;
-        /** What a transfer of layers brought over */
+        /** Report of a transfer of layers */
         TransferReport: wire.TransferReport;
         /**
          * Unit of length
@@ -2714,26 +2714,26 @@ export interface components {
          * @enum {string}
          */
         ValueType: wire.ValueType;
-        /** Numbers that the source files keep with their vertices */
+        /** Numbers of the source files' vertices */
         VertexPropertyList: wire.VertexPropertyList;
-        /** A property and the file that has it */
+        /** A property and its file */
         VertexPropertyName: wire.VertexPropertyName;
-        /** Named view of a model */
+        /** Saved view of a model */
         View: wire.View;
-        /** A view to keep */
+        /** New saved view */
         ViewCreate: wire.ViewCreate;
-        /** Named views of a model, in the order in which they were made */
+        /** Saved views of a model, in the order of their creation */
         ViewList: wire.ViewList;
-        /** Changes to a view */
+        /** Changes to a saved view */
         ViewPatch: wire.ViewPatch;
         /**
-         * Who sees it, of those who see the project
+         * Who can see it, among those who can see the project
          * @enum {string}
          */
         Visibility: wire.Visibility;
         /** A stroke or another edit that waits for review */
         WaitingStroke: wire.WaitingStroke;
-        /** What share of the radius the brush has at each point */
+        /** Share of the brush radius at each point */
         Widths: wire.Widths;
         /** Part of the surface */
         Within: wire.Within;

@@ -324,10 +324,10 @@ std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
 template <class T>
 extern const Schema kSchemaOf;
 
-// Pointer path. Pixels of the camera's window; consecutive points are joined, one point is a dab.
+// Pointer path. Pixels of the camera's window. Consecutive points are joined; one point is a dab.
 using Path = std::vector<glm::dvec2>;
 
-// What a picture has behind the model. A gradient from its top to its bottom.
+// Background of a picture. A gradient from top to bottom.
 struct Background {
   std::string top;
   std::string bottom;
@@ -338,7 +338,7 @@ nlohmann::json to_json(const Background& value);
 template <>
 inline constexpr Schema kSchemaOf<Background> = Schema::Background;
 
-// What share of the radius the brush has at each point. As many as the path has points: a pen's pressure. Absent: the whole radius.
+// Share of the brush radius at each point. One for each point of the path: the pressure of a pen. Absent: the whole radius.
 using Widths = std::vector<double>;
 
 // Table by id or slug.
@@ -356,12 +356,12 @@ std::string_view name(ColumnKind value);
 void read(const nlohmann::json& json, ColumnKind& value);
 nlohmann::json to_json(const ColumnKind& value);
 
-// Place of a mark.
+// Place of a line or point.
 using MarkPlace = std::array<double, 3>;
 
 using Visibility = strata::Visibility;
 
-// Whether there is still something to do.
+// State of a thread.
 enum class CommentState { open, resolved };
 std::string_view name(CommentState value);
 void read(const nlohmann::json& json, CommentState& value);
@@ -372,21 +372,21 @@ using LayerRef = std::variant<std::int64_t, std::string>;
 
 using Camera = strata::Camera;
 
-// Shape of the brush. `disc`, `square`, or a tool of the site by id or slug. A path sweeps it without steps.
+// Brush shape. `disc`, `square`, or a brush shape of the site by id or slug. A path sweeps it without steps.
 using ToolShape = std::variant<std::int64_t, std::string>;
 
-// Stroke. Sweeps the brush along a path seen through a camera. Needs a value unless it erases.
+// Stroke. Sweeps the brush along a path that a camera sees. Needs a value, unless it erases.
 struct EditStroke {
   static constexpr std::string_view kOp = "stroke";
-  double value = 0;  // In the layer's type; ignored when erasing.
+  double value = 0;  // In the layer's type; ignored for erasing.
   bool erase = false;
   strata::Camera camera;
   std::optional<double> radius_px;  // Radius in window pixels.
-  std::optional<double> radius_mm;  // Radius in millimetres on the object.
+  std::optional<double> radius_mm;  // Radius in millimeters on the object.
   ToolShape shape = "disc";
   Path path;
   std::optional<Widths> widths;
-  bool through = false;  // Paint hidden surface, too.
+  bool through = false;  // Also paint hidden surfaces.
   std::optional<double> depth_bias;
   std::optional<double> max_angle_deg;
   bool operator==(const EditStroke&) const = default;
@@ -397,7 +397,7 @@ Result<void> check(const EditStroke& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<EditStroke> = Schema::EditStroke;
 
-// Place on the surface. What a pixel of a view shows, or the surface point nearest to a point in space.
+// Place on the surface. The surface at a pixel of a view, or the surface point nearest to a point in space.
 struct SurfacePlace {
   std::optional<glm::dvec3> point;
   std::optional<strata::Camera> camera;
@@ -416,16 +416,16 @@ std::string_view name(EditFillMode value);
 void read(const nlohmann::json& json, EditFillMode& value);
 nlohmann::json to_json(const EditFillMode& value);
 
-// Fill. Gives a value to a part of the surface. `where`: every texel where the expression holds; `true` is everywhere. `island`: the connected piece of the model's surface at a place, across all seams of its atlas. `connected`: what holds the same value as that place, or like it none, and is connected with it across the surface.
+// Fill. Gives a value to a part of the surface. `where`: every texel where the expression is true; `true` is everywhere. `island`: the connected piece of the model's surface at a place, across all seams of its atlas. `connected`: the surface that is connected with the place and has the same value, or also has no value.
 struct EditFill {
   static constexpr std::string_view kOp = "fill";
-  double value = 0;  // In the layer's type; ignored when erasing.
+  double value = 0;  // In the layer's type; ignored for erasing.
   bool erase = false;
   EditFillMode mode{};
   // With mode `where`: a condition over the model's layers, such as `moisture > 0.3 and not
   // valid(cracks)`.
   std::optional<std::string> where;
-  std::optional<SurfacePlace> at;  // With the other modes: where the fill begins.
+  std::optional<SurfacePlace> at;  // With the other modes: the place where the fill begins.
   bool operator==(const EditFill&) const = default;
 };
 void read(const nlohmann::json& json, EditFill& value);
@@ -434,17 +434,17 @@ Result<void> check(const EditFill& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<EditFill> = Schema::EditFill;
 
-// Outline of an area. Pixels of the camera's window; the last point is joined to the first. Where the outline crosses itself, what it goes round twice is outside.
+// Outline of an area. Pixels of the camera's window; the last point is joined to the first. If the outline crosses itself, areas that it surrounds twice are outside.
 using Outline = std::vector<glm::dvec2>;
 
-// Polygon or lasso. Paints what lies inside an outline seen through a camera. Needs a value unless it erases.
+// Polygon or lasso. Paints the area inside an outline that a camera sees. Needs a value, unless it erases.
 struct EditPolygon {
   static constexpr std::string_view kOp = "polygon";
-  double value = 0;  // In the layer's type; ignored when erasing.
+  double value = 0;  // In the layer's type; ignored for erasing.
   bool erase = false;
   strata::Camera camera;
   Outline path;
-  bool through = false;  // Paint hidden surface, too.
+  bool through = false;  // Also paint hidden surfaces.
   bool operator==(const EditPolygon&) const = default;
 };
 void read(const nlohmann::json& json, EditPolygon& value);
@@ -471,14 +471,14 @@ struct PalettePoint {
   double at = 0;
   std::string color;  // #rrggbb or #rrggbbaa, sRGB.
   std::optional<std::string> label;
-  // With a `column` that holds no numbers, in a categorical palette: the value that is meant, as
-  // text (of a term, its key). `at` then only orders the points.
+  // With a `column` without numbers, in a categorical palette: the value of the point as text; for
+  // a term, its key. `at` then only orders the points.
   std::optional<std::string> value;
-  // How the colour is laid on; step and categorical palettes only.
+  // How the color is drawn; step and categorical palettes only.
   PalettePointPattern pattern = PalettePointPattern::solid;
-  double angle = 45;  // Of hatch and dots, in degrees on the picture: 0 runs to the right, 90 up.
-  // Between lines or dots, at the distance of the model's middle (exact in an orthographic view).
-  // 0: some pixels, as in the legend.
+  double angle = 45;  // For hatch and dots: degrees on the picture; 0 is to the right, 90 is up.
+  // Distance between lines or dots, at the distance of the model's middle (exact in an orthographic
+  // view). 0: some pixels, as in the legend.
   double spacing_mm = 0;
   bool operator==(const PalettePoint&) const = default;
 };
@@ -491,23 +491,23 @@ using ValueType = strata::ValueType;
 
 using LayerKind = strata::LayerKind;
 
-// What a curator makes of edits. accept: they stay; reject: they are taken out, also from below what was painted over them; reopen: what was accepted or rejected waits again.
+// Decision of a curator about edits. accept: the edits stay. reject: the edits are removed, also from below later paint. reopen: accepted or rejected edits wait again.
 enum class ReviewDecision { accept, reject, reopen };
 std::string_view name(ReviewDecision value);
 void read(const nlohmann::json& json, ReviewDecision& value);
 nlohmann::json to_json(const ReviewDecision& value);
 
-// When a computed layer follows its inputs. manual: when it is asked to; automatic: within seconds after something that it reads has changed.
+// When a computed layer follows its inputs. manual: on request. automatic: within seconds after a change of something that the layer reads.
 enum class Recompute { manual, automatic };
 std::string_view name(Recompute value);
 void read(const nlohmann::json& json, Recompute& value);
 nlohmann::json to_json(const Recompute& value);
 
-// Records that are to be seen before all others. Of a database layer. Their texels keep their colours, those of others turn grey, or with `isolate` are not drawn at all.
+// Records that a view highlights. For a layer of records. The texels of these records keep their colors. Those of other records become gray, or with `isolate` are not drawn.
 struct Highlight {
   std::optional<std::vector<std::int64_t>> keys;
-  // A condition over the columns of the layer's table (OGC CQL2 text); follows the records as they
-  // change.
+  // A condition over the columns of the layer's table (OGC CQL2 text). It follows changes of the
+  // records.
   std::optional<std::string> filter;
   bool isolate = false;
   bool operator==(const Highlight&) const = default;
@@ -517,7 +517,7 @@ nlohmann::json to_json(const Highlight& value);
 template <>
 inline constexpr Schema kSchemaOf<Highlight> = Schema::Highlight;
 
-// A look in a view.
+// Surface image in a view.
 struct LookShown {
   LayerRef look;  // Id or slug.
   double opacity = 1;
@@ -532,13 +532,13 @@ using LightMode = strata::LightMode;
 
 using Light = strata::Light;
 
-// How a view shows a layer. An absent member is the layer's own default.
+// How a view shows a layer. Absent members have the layer's own defaults.
 struct LayerOverride {
   LayerRef layer;
   std::optional<bool> visible;
   std::optional<double> opacity;
   std::optional<nlohmann::json> palette;
-  std::optional<int> order;  // Drawn ascending, as `order` of the layers.
+  std::optional<int> order;  // Drawn in ascending order, as `order` of the layers.
   std::optional<Highlight> highlight;
   bool operator==(const LayerOverride&) const = default;
 };
@@ -547,7 +547,7 @@ nlohmann::json to_json(const LayerOverride& value);
 template <>
 inline constexpr Schema kSchemaOf<LayerOverride> = Schema::LayerOverride;
 
-// How somebody shows the layers of a model. Layers that it does not name are shown as everybody sees them at first. Only of layers that are there for the person.
+// How a user shows the layers of a model. Layers that it does not name have their defaults. It contains only layers that the user can see.
 struct PersonalView {
   std::vector<LayerOverride> layers;  // Without `highlight`.
   bool operator==(const PersonalView&) const = default;
@@ -557,22 +557,22 @@ nlohmann::json to_json(const PersonalView& value);
 template <>
 inline constexpr Schema kSchemaOf<PersonalView> = Schema::PersonalView;
 
-// How one comes to a stop.
+// Transition to a stop.
 enum class TourTransition { cut, move };
 std::string_view name(TourTransition value);
 void read(const nlohmann::json& json, TourTransition& value);
 nlohmann::json to_json(const TourTransition& value);
 
-// A few words by language. Keys are languages of the tour.
+// Short text by language. Keys are languages of the tour.
 using TourWords = std::map<std::string, std::string>;
 
-// A text by language. Plain text; keys are languages of the tour.
+// Text by language. Plain text; keys are languages of the tour.
 using TourText = std::map<std::string, std::string>;
 
-// Column that the card of a record shows.
+// Column on the card of a record.
 struct TourColumn {
-  std::string column;  // Its slug; in requests its id, too.
-  std::optional<TourWords> labels;  // How it is called on the card; absent, as in the table.
+  std::string column;  // Its slug; in requests also its id.
+  std::optional<TourWords> labels;  // Names of the column on the card. Absent: as in the table.
   bool operator==(const TourColumn&) const = default;
 };
 void read(const nlohmann::json& json, TourColumn& value);
@@ -580,11 +580,11 @@ nlohmann::json to_json(const TourColumn& value);
 template <>
 inline constexpr Schema kSchemaOf<TourColumn> = Schema::TourColumn;
 
-// Records of a table to show at a stop.
+// Records of a table at a stop.
 struct TourRecords {
-  std::string table;  // Its slug; in requests its id, too.
-  std::vector<std::int64_t> keys;  // In this order; records may be gone meanwhile.
-  // In this order, of any record of the table that is looked at here.
+  std::string table;  // Its slug; in requests also its id.
+  std::vector<std::int64_t> keys;  // In this order. Some records may have been deleted since.
+  // In this order, for any record of the table that visitors open at this stop.
   std::vector<TourColumn> columns;
   bool operator==(const TourRecords&) const = default;
 };
@@ -595,7 +595,7 @@ inline constexpr Schema kSchemaOf<TourRecords> = Schema::TourRecords;
 
 using Unit = strata::Unit;
 
-// Why a unit or an up direction is proposed. `given`: who imported it said so. `format`: glTF is in metres with +Y up. `comment`: a comment of the file says so. `coordinates`: they are of a map. `size`: things of this size are what is scanned. `shape`: this is how it would stand.
+// Why a unit or an up direction is proposed. `given`: the import request states it. `format`: glTF is in meters with +Y up. `comment`: a comment of the file states it. `coordinates`: they are those of a map. `size`: scanned objects usually have this size. `shape`: the object would stand this way.
 enum class ScaleReason { given, format, comment, coordinates, size, shape };
 std::string_view name(ScaleReason value);
 void read(const nlohmann::json& json, ScaleReason& value);
@@ -607,7 +607,7 @@ std::string_view name(Axis value);
 void read(const nlohmann::json& json, Axis& value);
 nlohmann::json to_json(const Axis& value);
 
-// The unit and the up direction that the file states or lets one guess. Made at import; models of before have none. It does not change when `unit` and `up` do.
+// Unit and up direction proposed for a scan. Made at import; models that were imported before proposals existed have none. It does not change with `unit` and `up`.
 struct ScaleProposal {
   strata::Unit unit{};
   ScaleReason unit_reason{};
@@ -642,8 +642,8 @@ nlohmann::json to_json(const AtlasLimitCode& value);
 
 // Why part of the texture stays unused.
 struct AtlasLimit {
-  // long_triangles: the longest triangle sets the scale of all; many_charts: the margins around
-  // charts take the room; hollow_charts: charts leave their own boxes empty; file_coordinates: the
+  // long_triangles: the longest triangle sets the scale of all. many_charts: the gutters around
+  // charts need the space. hollow_charts: charts leave their own boxes empty. file_coordinates: the
   // scan's own coordinates were kept.
   AtlasLimitCode code{};
   std::string text;
@@ -654,7 +654,7 @@ nlohmann::json to_json(const AtlasLimit& value);
 template <>
 inline constexpr Schema kSchemaOf<AtlasLimit> = Schema::AtlasLimit;
 
-// How much surface a texel holds.
+// Surface of a texel.
 struct TexelSize {
   int resolution = 0;
   double area_mean_m2 = 0;
@@ -671,7 +671,7 @@ std::string_view name(AtlasSource value);
 void read(const nlohmann::json& json, AtlasSource& value);
 nlohmann::json to_json(const AtlasSource& value);
 
-// How the surface lies in the texture.
+// How the surface is packed into the texture.
 struct Atlas {
   AtlasSource source{};  // Whether the scan's own texture coordinates were kept.
   int lowest_resolution = 0;
@@ -680,11 +680,12 @@ struct Atlas {
   double overlap = 0;
   double stretch_mean = 0;
   double stretch_p99 = 0;
-  double texel_area_max_m2 = 0;  // Surface in the texel that holds most, at lowest_resolution.
-  // Precision of layers by their resolution, the lowest first; not known of models imported before
+  // Surface of the texel with the largest area, at `lowest_resolution`.
+  double texel_area_max_m2 = 0;
+  // Precision of layers by their resolution, the lowest first. Unknown for models imported before
   // it was measured.
   std::optional<std::vector<TexelSize>> texel_sizes;
-  // Why less than 60 % of the texels are used; empty where more are.
+  // Why less than 60 % of the texels are used. Empty if more are used.
   std::optional<std::vector<AtlasLimit>> limits;
   bool operator==(const Atlas&) const = default;
 };
@@ -693,7 +694,7 @@ nlohmann::json to_json(const Atlas& value);
 template <>
 inline constexpr Schema kSchemaOf<Atlas> = Schema::Atlas;
 
-// What was mended at import.
+// Repair at import.
 struct Repair {
   std::string what;
   std::int64_t count = 0;
@@ -704,11 +705,11 @@ nlohmann::json to_json(const Repair& value);
 template <>
 inline constexpr Schema kSchemaOf<Repair> = Schema::Repair;
 
-// Where the surface ends: loops of edges of one triangle only. The rims of holes and of what was scanned in part. A closed surface has 0 loops. Models imported before they were measured have none of this.
+// Open edges: loops of edges of one triangle only. The rims of holes and of objects that were scanned in part. A closed surface has 0 loops. Models imported before the measurement existed do not have this member.
 struct OpenEdges {
   std::int64_t loops = 0;
-  double length_m = 0;  // Of all loops together.
-  std::vector<double> longest_m;  // Of single loops, longest first.
+  double length_m = 0;  // Length of all loops together.
+  std::vector<double> longest_m;  // Lengths of single loops, longest first.
   bool operator==(const OpenEdges&) const = default;
 };
 void read(const nlohmann::json& json, OpenEdges& value);
@@ -716,7 +717,7 @@ nlohmann::json to_json(const OpenEdges& value);
 template <>
 inline constexpr Schema kSchemaOf<OpenEdges> = Schema::OpenEdges;
 
-// Uploaded file, kept bit for bit.
+// Uploaded file, kept unchanged.
 struct SourceFile {
   std::string name;
   std::string sha256;
@@ -728,10 +729,10 @@ nlohmann::json to_json(const SourceFile& value);
 template <>
 inline constexpr Schema kSchemaOf<SourceFile> = Schema::SourceFile;
 
-// What a layer holds at a point.
+// Value of a layer at a point.
 struct SurfaceValue {
   bool valid = false;
-  std::optional<double> value;  // Absent where the texel is not valid.
+  std::optional<double> value;  // Absent if the texel is not valid.
   bool operator==(const SurfaceValue&) const = default;
 };
 void read(const nlohmann::json& json, SurfaceValue& value);
@@ -742,7 +743,7 @@ inline constexpr Schema kSchemaOf<SurfaceValue> = Schema::SurfaceValue;
 // Values by the layers' slugs.
 using SurfaceValues = std::map<std::string, SurfaceValue>;
 
-// Role. Ascending. A guest sees only the projects that they have a role in.
+// Role. In ascending order. A guest can see only the projects in which the guest has a role.
 enum class Role { guest, viewer, annotator, curator, administrator, owner };
 std::string_view name(Role value);
 void read(const nlohmann::json& json, Role& value);
@@ -752,9 +753,9 @@ nlohmann::json to_json(const Role& value);
 struct Hello {
   static constexpr std::string_view kOp = "hello";
   std::string client;  // Name and version of the program.
-  double dpr = 1;  // Device pixels per CSS pixel.
-  // Codecs of frames that the client draws, best first: jpeg, png. Absent: jpeg and png; unknown
-  // names are passed over.
+  double dpr = 1;  // Device pixels for each CSS pixel.
+  // Codecs of frames that the client can draw, best first: jpeg, png. Absent: jpeg and png. Unknown
+  // names are ignored.
   std::optional<std::vector<std::string>> accept;
   bool operator==(const Hello&) const = default;
 };
@@ -763,17 +764,17 @@ nlohmann::json to_json(const Hello& value);
 template <>
 inline constexpr Schema kSchemaOf<Hello> = Schema::Hello;
 
-// Newest camera of a view. Only the newest counts; frames echo `seq`.
+// Newest camera of a view. Only the newest counts; frames repeat its `seq`.
 struct CameraUpdate {
   static constexpr std::string_view kOp = "camera";
   int view_id = 0;
-  std::int64_t seq = 0;  // Ascending number of the client's choice.
+  std::int64_t seq = 0;  // Ascending number that the client chooses.
   glm::dmat4 view{1};
   glm::dmat4 projection{1};
   int width = 0;
   int height = 0;
   std::optional<std::vector<glm::dvec4>> section;
-  bool moving = false;  // More cameras will follow at once: speed before quality.
+  bool moving = false;  // More cameras follow at once: speed is more important than quality.
   bool operator==(const CameraUpdate&) const = default;
 };
 void read(const nlohmann::json& json, CameraUpdate& value);
@@ -783,16 +784,16 @@ Result<void> check(const CameraUpdate& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<CameraUpdate> = Schema::CameraUpdate;
 
-// What a view shows, for this viewer. Replaces all that was said before of the view; layers not listed show their defaults.
+// Settings of a view for this participant. Replaces all earlier settings of the view. Layers that are not listed have their defaults.
 struct LayersUpdate {
   static constexpr std::string_view kOp = "layers";
   int view_id = 0;
   std::vector<LayerOverride> layers;
-  // Exactly these, bottom to top, over the colours of the vertices; absent: those visible by
-  // default.
+  // Exactly these, from bottom to top, over the colors of the vertices. Absent: the surface images
+  // that are visible by default.
   std::optional<std::vector<LookShown>> looks;
   std::optional<strata::Light> light;  // Absent: museum.
-  std::optional<Background> background;  // Absent: light grey.
+  std::optional<Background> background;  // Absent: light gray.
   bool operator==(const LayersUpdate&) const = default;
 };
 void read(const nlohmann::json& json, LayersUpdate& value);
@@ -800,11 +801,11 @@ nlohmann::json to_json(const LayersUpdate& value);
 template <>
 inline constexpr Schema kSchemaOf<LayersUpdate> = Schema::LayersUpdate;
 
-// Start of a stroke. Fixes layer, value, camera and brush. Needs a value unless it erases, and one radius.
+// Start of a stroke. Sets the layer, the value, the camera and the brush. Needs a value, unless it erases, and one radius.
 struct StrokeBegin {
   static constexpr std::string_view kOp = "stroke.begin";
   Uuid id;
-  Uuid stroke;  // Names the stroke in what follows.
+  Uuid stroke;  // Name of the stroke in the messages that follow.
   LayerRef layer;
   double value = 0;
   bool erase = false;
@@ -823,7 +824,7 @@ Result<void> check(const StrokeBegin& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<StrokeBegin> = Schema::StrokeBegin;
 
-// Next batch of a stroke's points. The brush is swept from the last point of the batch before.
+// Next batch of a stroke's points. The brush is swept from the last point of the previous batch.
 struct StrokeExtend {
   static constexpr std::string_view kOp = "stroke.extend";
   Uuid id;
@@ -864,7 +865,7 @@ Result<void> check(const EditRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<EditRequest> = Schema::EditRequest;
 
-// Take back the caller's last stroke on the layer.
+// Undo the caller's last stroke on the layer.
 struct Undo {
   static constexpr std::string_view kOp = "undo";
   Uuid id;
@@ -876,7 +877,7 @@ nlohmann::json to_json(const Undo& value);
 template <>
 inline constexpr Schema kSchemaOf<Undo> = Schema::Undo;
 
-// Put back what the caller took back last.
+// Redo the edit that the caller undid last.
 struct Redo {
   static constexpr std::string_view kOp = "redo";
   Uuid id;
@@ -888,14 +889,14 @@ nlohmann::json to_json(const Redo& value);
 template <>
 inline constexpr Schema kSchemaOf<Redo> = Schema::Redo;
 
-// This person begins or ends to write into a record. So that others see it (`record.editors`), and are not surprised; what protects the data is the record's version. Ends by itself with the connection. Where somebody else has the record nothing changes, unless it is taken over.
+// Start or end of editing a record. Shows the other participants that this person edits the record (`record.editors`). The version of the record protects its data. Editing ends with the connection. If somebody else edits the record, nothing changes, unless this message takes it over.
 struct RecordEdit {
   static constexpr std::string_view kOp = "record.edit";
-  std::optional<std::string> id;  // Comes back as `ref` of a problem.
+  std::optional<std::string> id;  // Returned as `ref` of a problem.
   std::int64_t table = 0;  // Id of a table of the model's project.
   std::int64_t key = 0;
   bool editing = false;
-  bool take_over = false;  // From whoever has it.
+  bool take_over = false;  // Take the record over from the person who edits it.
   bool operator==(const RecordEdit&) const = default;
 };
 void read(const nlohmann::json& json, RecordEdit& value);
@@ -903,7 +904,7 @@ nlohmann::json to_json(const RecordEdit& value);
 template <>
 inline constexpr Schema kSchemaOf<RecordEdit> = Schema::RecordEdit;
 
-// A frame was drawn. Sent after a frame's last rectangle is on the screen; gives the server credit for the next.
+// A frame was drawn. Sent when the last rectangle of a frame is on the screen. The server may then send another frame.
 struct Ack {
   static constexpr std::string_view kOp = "ack";
   int view_id = 0;
@@ -915,17 +916,17 @@ nlohmann::json to_json(const Ack& value);
 template <>
 inline constexpr Schema kSchemaOf<Ack> = Schema::Ack;
 
-// What this viewer shows of themselves. Replaces what was said before: what is absent is no longer so. Refused as a whole.
+// Presence of this participant. Replaces the earlier presence: an absent member no longer applies. The server refuses the message as a whole.
 struct PresenceUpdate {
   static constexpr std::string_view kOp = "presence";
   int view_id = 0;
-  // Pixel of the view's newest camera; null or absent: the pointer is elsewhere.
+  // Pixel of the view's newest camera. Null or absent: the pointer is elsewhere.
   std::optional<glm::dvec2> pointer;
-  // Of the brush in hand where the pointer is, in world coordinates; absent: another tool.
+  // Radius of the brush at the pointer, in world coordinates. Absent: another tool.
   std::optional<double> radius;
-  bool leading = false;  // Asks the others to look with this viewer.
-  // Session of whom this viewer looks with; its camera then comes with `presence`. 404: it is not
-  // here; 409: it follows this one, or somebody who does.
+  bool leading = false;  // Invites the others to follow this participant.
+  // Session of the participant that this one follows. Its camera then comes with `presence`. 404:
+  // the session is not here. 409: that participant follows this one, directly or through others.
   std::optional<Uuid> follow;
   bool operator==(const PresenceUpdate&) const = default;
 };
@@ -934,10 +935,10 @@ nlohmann::json to_json(const PresenceUpdate& value);
 template <>
 inline constexpr Schema kSchemaOf<PresenceUpdate> = Schema::PresenceUpdate;
 
-// What is at a pixel.
+// Values at a pixel.
 struct Pick {
   static constexpr std::string_view kOp = "pick";
-  std::optional<std::string> id;  // Comes back in `picked`.
+  std::optional<std::string> id;  // Returned in `picked`.
   int view_id = 0;
   std::optional<strata::Camera> camera;  // Absent: the view's newest camera.
   double x = 0;
@@ -961,13 +962,13 @@ nlohmann::json to_json(const StrokeProgress& value);
 template <>
 inline constexpr Schema kSchemaOf<StrokeProgress> = Schema::StrokeProgress;
 
-// What the server takes.
+// Limits of the connection.
 struct Limits {
   int message_bytes = 0;
   int path_points = 0;  // Points in one message.
   int view_size = 0;  // Pixels a side of a picture.
   int views = 0;
-  int frames_in_flight = 0;  // Frames sent before an ack is awaited.
+  int frames_in_flight = 0;  // Frames that the server sends before it waits for an ack.
   int messages_per_second = 0;
   bool operator==(const Limits&) const = default;
 };
@@ -984,11 +985,12 @@ struct Welcome {
   Role role{};
   nlohmann::json model;
   std::vector<nlohmann::json> layers;
-  std::vector<nlohmann::json> looks;  // By order.
-  // What this person keeps of how they show the layers; absent: nothing, or this is a kiosk.
+  std::vector<nlohmann::json> looks;  // In their order.
+  // How this user shows the layers, as kept on the server. Absent: nothing is kept, or this is a
+  // kiosk.
   std::optional<PersonalView> personal_view;
   Limits limits;
-  // Of this user, so that the client resends what is not in them.
+  // Unfinished strokes of this user, so that the client sends the missing batches again.
   std::vector<StrokeProgress> strokes;
   bool operator==(const Welcome&) const = default;
 };
@@ -997,7 +999,7 @@ nlohmann::json to_json(const Welcome& value);
 template <>
 inline constexpr Schema kSchemaOf<Welcome> = Schema::Welcome;
 
-// An edit is done and visible, not yet durable. `stroke` and `n` name a stroke's batch, `id` any other message.
+// An edit is done and visible, but not durable yet. `stroke` and `n` name a batch of a stroke, `id` any other message.
 struct Applied {
   static constexpr std::string_view kOp = "applied";
   std::optional<Uuid> id;
@@ -1006,7 +1008,7 @@ struct Applied {
   std::int64_t sequence = 0;
   std::optional<std::int64_t> texels_changed;
   std::optional<double> area_m2;
-  std::optional<bool> provisional;  // true: it waits for review.
+  std::optional<bool> provisional;  // true: the edit waits for review.
   bool operator==(const Applied&) const = default;
 };
 void read(const nlohmann::json& json, Applied& value);
@@ -1014,7 +1016,7 @@ nlohmann::json to_json(const Applied& value);
 template <>
 inline constexpr Schema kSchemaOf<Applied> = Schema::Applied;
 
-// An edit is durable. `stroke` and `n` name a stroke's batch, `id` any other message.
+// An edit is durable. `stroke` and `n` name a batch of a stroke, `id` any other message.
 struct Saved {
   static constexpr std::string_view kOp = "saved";
   std::optional<Uuid> id;
@@ -1023,7 +1025,7 @@ struct Saved {
   std::int64_t sequence = 0;
   std::optional<std::int64_t> texels_changed;
   std::optional<double> area_m2;
-  std::optional<bool> provisional;  // true: it waits for review.
+  std::optional<bool> provisional;  // true: the edit waits for review.
   bool operator==(const Saved&) const = default;
 };
 void read(const nlohmann::json& json, Saved& value);
@@ -1035,7 +1037,7 @@ inline constexpr Schema kSchemaOf<Saved> = Schema::Saved;
 struct Unsaved {
   static constexpr std::string_view kOp = "unsaved";
   std::vector<Uuid> ids;  // Ids of the messages.
-  std::optional<std::string> detail;  // Why.
+  std::optional<std::string> detail;  // Reason.
   bool operator==(const Unsaved&) const = default;
 };
 void read(const nlohmann::json& json, Unsaved& value);
@@ -1043,10 +1045,10 @@ nlohmann::json to_json(const Unsaved& value);
 template <>
 inline constexpr Schema kSchemaOf<Unsaved> = Schema::Unsaved;
 
-// What a curator has decided about edits.
+// Decision of a curator about edits.
 struct Reviewed {
   ReviewDecision decision{};
-  std::vector<std::string> authors;  // Whose edits they are.
+  std::vector<std::string> authors;  // Authors of the edits.
   std::optional<std::string> reason;
   bool operator==(const Reviewed&) const = default;
 };
@@ -1060,7 +1062,7 @@ std::string_view name(LayerEventEvent value);
 void read(const nlohmann::json& json, LayerEventEvent& value);
 nlohmann::json to_json(const LayerEventEvent& value);
 
-// A layer was created, changed, deleted or edited. `layer` is there for created and changed; `sequence` for edited, with `provisional` where the edit waits for review, and `review` where it decides about others.
+// A layer was created, changed, deleted or edited. `layer` is present for created and changed. For edited, `sequence` is present, with `provisional` if the edit waits for review, and `review` if it decides about others.
 struct LayerEvent {
   static constexpr std::string_view kOp = "layer";
   LayerEventEvent event{};
@@ -1082,7 +1084,7 @@ std::string_view name(LookEventEvent value);
 void read(const nlohmann::json& json, LookEventEvent& value);
 nlohmann::json to_json(const LookEventEvent& value);
 
-// A look was created, changed or deleted. `look` is there for created and changed.
+// A surface image was created, changed or deleted. `look` is present for created and changed.
 struct LookEvent {
   static constexpr std::string_view kOp = "look";
   LookEventEvent event{};
@@ -1100,7 +1102,7 @@ std::string_view name(ToolEventEvent value);
 void read(const nlohmann::json& json, ToolEventEvent& value);
 nlohmann::json to_json(const ToolEventEvent& value);
 
-// A tool of the site was created, renamed or deleted. `tool` is there for created and changed.
+// A brush shape was created, renamed or deleted. `tool` is present for created and changed.
 struct ToolEvent {
   static constexpr std::string_view kOp = "tool";
   ToolEventEvent event{};
@@ -1118,7 +1120,7 @@ std::string_view name(ModelEventEvent value);
 void read(const nlohmann::json& json, ModelEventEvent& value);
 nlohmann::json to_json(const ModelEventEvent& value);
 
-// The model's description changed, or it was deleted. `model` is there for changed.
+// The model's metadata changed, or it was deleted. `model` is present for changed.
 struct ModelEvent {
   static constexpr std::string_view kOp = "model";
   ModelEventEvent event{};
@@ -1135,7 +1137,7 @@ std::string_view name(RecordEventEvent value);
 void read(const nlohmann::json& json, RecordEventEvent& value);
 nlohmann::json to_json(const RecordEventEvent& value);
 
-// A record was created, changed or deleted. Of a table of the model's project. `record` is there unless it was deleted.
+// A record was created, changed or deleted. For tables of the model's project. `record` is present unless the record was deleted.
 struct RecordEvent {
   static constexpr std::string_view kOp = "record";
   RecordEventEvent event{};
@@ -1150,7 +1152,7 @@ nlohmann::json to_json(const RecordEvent& value);
 template <>
 inline constexpr Schema kSchemaOf<RecordEvent> = Schema::RecordEvent;
 
-// Who writes into a record. `session` and `user` are both absent where nobody does any more.
+// Person who edits a record. `session` and `user` are both absent if nobody edits the record now.
 struct RecordEditor {
   std::int64_t table = 0;  // Id of the table.
   std::int64_t key = 0;
@@ -1163,7 +1165,7 @@ nlohmann::json to_json(const RecordEditor& value);
 template <>
 inline constexpr Schema kSchemaOf<RecordEditor> = Schema::RecordEditor;
 
-// Who writes into which records. Of the project's tables: all that there are, to who joins, where there are any; then each that changes. Not stored.
+// People who edit records. For the tables of the project. A new participant gets all editors, if there are any. Then all participants get each change. Not stored.
 struct RecordEditors {
   static constexpr std::string_view kOp = "record.editors";
   std::vector<RecordEditor> records;
@@ -1179,7 +1181,7 @@ std::string_view name(TableEventEvent value);
 void read(const nlohmann::json& json, TableEventEvent& value);
 nlohmann::json to_json(const TableEventEvent& value);
 
-// A table was created, changed or deleted. Of the model's project. Changed: its names or columns, or so many records at once that they should be read anew. `table` is there unless it was deleted.
+// A table was created, changed or deleted. For tables of the model's project. Changed: its names or columns, or so many records at once that clients should read them again. `table` is present unless the table was deleted.
 struct TableEvent {
   static constexpr std::string_view kOp = "table";
   TableEventEvent event{};
@@ -1198,7 +1200,7 @@ std::string_view name(CommentEventEvent value);
 void read(const nlohmann::json& json, CommentEventEvent& value);
 nlohmann::json to_json(const CommentEventEvent& value);
 
-// A comment was written, changed or deleted. Of the model. `comment` is there unless it was deleted; one that stays for its replies is changed.
+// A comment was created, changed or deleted. For comments on the model. `comment` is present unless the comment was deleted. A deleted comment that stays for its replies counts as changed.
 struct CommentEvent {
   static constexpr std::string_view kOp = "comment";
   CommentEventEvent event{};
@@ -1217,11 +1219,11 @@ std::string_view name(ViewEventEvent value);
 void read(const nlohmann::json& json, ViewEventEvent& value);
 nlohmann::json to_json(const ViewEventEvent& value);
 
-// A named view was made, changed or deleted. Of the model; who shows views asks for it anew.
+// A saved view was created, changed or deleted. For views of the model. Clients that list views read the view again.
 struct ViewEvent {
   static constexpr std::string_view kOp = "view";
   ViewEventEvent event{};
-  std::int64_t view = 0;  // Its id.
+  std::int64_t view = 0;  // Id of the view.
   std::optional<std::string> user;
   bool operator==(const ViewEvent&) const = default;
 };
@@ -1230,10 +1232,10 @@ nlohmann::json to_json(const ViewEvent& value);
 template <>
 inline constexpr Schema kSchemaOf<ViewEvent> = Schema::ViewEvent;
 
-// Where a pointer touches the surface. World coordinates.
+// Place where a pointer touches the surface. World coordinates.
 struct PresencePointer {
   glm::dvec3 position{0};
-  std::optional<double> radius;  // Of the brush in hand; absent: another tool.
+  std::optional<double> radius;  // Radius of the brush. Absent: another tool.
   bool operator==(const PresencePointer&) const = default;
 };
 void read(const nlohmann::json& json, PresencePointer& value);
@@ -1241,16 +1243,18 @@ nlohmann::json to_json(const PresencePointer& value);
 template <>
 inline constexpr Schema kSchemaOf<PresencePointer> = Schema::PresencePointer;
 
-// One viewer. A person may be here several times, with the same color.
+// One participant. A person can be present several times, with the same color.
 struct PresenceUser {
   Uuid session;
   std::string name;
-  std::optional<std::string> full_name;  // As it was when they came; absent: they gave none.
+  // Full name at the start of the connection. Absent: the person gave none.
+  std::optional<std::string> full_name;
   std::string color;
   std::optional<PresencePointer> pointer;
-  bool leading = false;  // Asks the others to look with this viewer.
-  std::optional<Uuid> following;  // Session of whom they look with.
-  // Newest of their view 0, without its section: only of whom the receiver follows.
+  bool leading = false;  // Invites the others to follow this participant.
+  std::optional<Uuid> following;  // Session of the participant that this one follows.
+  // Newest camera of view 0, without its section. Present only for the participant that the
+  // receiver follows.
   std::optional<strata::Camera> camera;
   bool operator==(const PresenceUser&) const = default;
 };
@@ -1260,7 +1264,7 @@ Result<void> check(const PresenceUser& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<PresenceUser> = Schema::PresenceUser;
 
-// Who is here. Everyone on the model, the receiver too; not stored. Comes the less often the more people are here.
+// Participants of the model. Everybody with the model open, including the receiver. Not stored. The more people are present, the less often the server sends it.
 struct Presence {
   static constexpr std::string_view kOp = "presence";
   std::vector<PresenceUser> users;
@@ -1272,7 +1276,7 @@ Result<void> check(const Presence& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<Presence> = Schema::Presence;
 
-// What is at the pixel. Off the model only `hit` and `id` are there.
+// Values at the pixel. Next to the model, only `hit` and `id` are present.
 struct Picked {
   static constexpr std::string_view kOp = "picked";
   std::optional<std::string> id;
@@ -1280,7 +1284,7 @@ struct Picked {
   std::optional<glm::dvec3> position;
   std::optional<glm::dvec3> normal;
   std::optional<glm::dvec2> uv;
-  std::optional<double> distance;  // From the camera's near plane.
+  std::optional<double> distance;  // Distance from the camera's near plane.
   std::optional<SurfaceValues> values;
   bool operator==(const Picked&) const = default;
 };
@@ -1289,7 +1293,7 @@ nlohmann::json to_json(const Picked& value);
 template <>
 inline constexpr Schema kSchemaOf<Picked> = Schema::Picked;
 
-// Something was refused or failed. RFC 9457 members and `ref`, the id of the message.
+// Something was refused or failed. The members of RFC 9457, and `ref`, the id of the message.
 struct ProblemMessage {
   static constexpr std::string_view kOp = "problem";
   std::optional<std::string> ref;
@@ -1297,9 +1301,9 @@ struct ProblemMessage {
   std::string title;
   int status = 0;
   std::string detail;
-  std::optional<std::string> field;  // Where in the message: camera.view[3].
-  // Where the member is a text in a language: characters (Unicode code points) before what is
-  // wrong.
+  std::optional<std::string> field;  // Path of the wrong member in the message: camera.view[3].
+  // If the member is a condition or formula: the number of characters (Unicode code points) before
+  // the mistake.
   std::optional<int> offset;
   bool operator==(const ProblemMessage&) const = default;
 };
@@ -1308,9 +1312,9 @@ nlohmann::json to_json(const ProblemMessage& value);
 template <>
 inline constexpr Schema kSchemaOf<ProblemMessage> = Schema::ProblemMessage;
 
-// Sign-in. By name and password, or by the secret of an owner link.
+// Sign-in. By user name and password, or by the secret of an owner link.
 struct Login {
-  std::optional<std::string> user;  // In any case.
+  std::optional<std::string> user;  // Upper and lower case count the same.
   std::optional<std::string> password;
   std::optional<std::string> token;
   bool operator==(const Login&) const = default;
@@ -1320,10 +1324,10 @@ nlohmann::json to_json(const Login& value);
 template <>
 inline constexpr Schema kSchemaOf<Login> = Schema::Login;
 
-// New password. Whoever has one already says it. Ends all other sessions.
+// New password. If the user has a password, `current` is required. Ends all other sessions.
 struct PasswordChange {
   std::optional<std::string> current;
-  std::string password;  // Ten characters or more; not the name.
+  std::string password;  // At least ten characters, and not the user name.
   bool operator==(const PasswordChange&) const = default;
 };
 void read(const nlohmann::json& json, PasswordChange& value);
@@ -1331,7 +1335,7 @@ nlohmann::json to_json(const PasswordChange& value);
 template <>
 inline constexpr Schema kSchemaOf<PasswordChange> = Schema::PasswordChange;
 
-// Changes of oneself.
+// Changes of your own account.
 struct MePatch {
   std::string full_name;
   bool operator==(const MePatch&) const = default;
@@ -1343,11 +1347,11 @@ inline constexpr Schema kSchemaOf<MePatch> = Schema::MePatch;
 
 // New token.
 struct ScriptTokenCreate {
-  std::string name;  // What it is for.
+  std::string name;  // Purpose of the token.
   std::optional<Role> role;
-  int days = 365;  // Until it expires.
-  // Slug or id of the only project that it is good in, as viewer, annotator or curator; absent:
-  // wherever its person is.
+  int days = 365;  // Days until the token expires.
+  // Slug or id of the only project in which the token is valid, as viewer, annotator or curator.
+  // Absent: in all projects of its user.
   std::optional<std::string> project;
   bool operator==(const ScriptTokenCreate&) const = default;
 };
@@ -1356,7 +1360,7 @@ nlohmann::json to_json(const ScriptTokenCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<ScriptTokenCreate> = Schema::ScriptTokenCreate;
 
-// Whether a person can sign in. Invited: no password was chosen yet.
+// Whether a person can sign in. Invited: the person has not set a password yet.
 enum class PersonState { invited, active, disabled };
 std::string_view name(PersonState value);
 void read(const nlohmann::json& json, PersonState& value);
@@ -1364,10 +1368,11 @@ nlohmann::json to_json(const PersonState& value);
 
 // New account.
 struct PersonCreate {
-  std::string user;  // For signing in, and in the history of what was done. Unique in any case.
+  // For signing in, and in the history. Unique; upper and lower case count the same.
+  std::string user;
   std::optional<std::string> full_name;
   std::optional<Role> role;
-  std::optional<std::vector<std::int64_t>> groups;  // That they are in from the start.
+  std::optional<std::vector<std::int64_t>> groups;  // Groups of the person from the start.
   bool operator==(const PersonCreate&) const = default;
 };
 void read(const nlohmann::json& json, PersonCreate& value);
@@ -1379,7 +1384,7 @@ inline constexpr Schema kSchemaOf<PersonCreate> = Schema::PersonCreate;
 struct PersonPatch {
   std::optional<std::string> full_name;
   std::optional<Role> role;
-  std::optional<bool> disabled;  // Signs out everywhere, and lets nobody in.
+  std::optional<bool> disabled;  // Ends all sessions of the user, and prevents signing in.
   bool operator==(const PersonPatch&) const = default;
 };
 void read(const nlohmann::json& json, PersonPatch& value);
@@ -1387,7 +1392,7 @@ nlohmann::json to_json(const PersonPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<PersonPatch> = Schema::PersonPatch;
 
-// An invitation, to see whose it is.
+// An invitation, to get its user.
 struct InvitationShow {
   std::string invitation;
   bool operator==(const InvitationShow&) const = default;
@@ -1397,10 +1402,10 @@ nlohmann::json to_json(const InvitationShow& value);
 template <>
 inline constexpr Schema kSchemaOf<InvitationShow> = Schema::InvitationShow;
 
-// An invitation and the password that is chosen.
+// An invitation and the new password.
 struct InvitationAccept {
   std::string invitation;
-  std::string password;  // Ten characters or more; not the name.
+  std::string password;  // At least ten characters, and not the user name.
   std::optional<std::string> full_name;
   bool operator==(const InvitationAccept&) const = default;
 };
@@ -1409,13 +1414,13 @@ nlohmann::json to_json(const InvitationAccept& value);
 template <>
 inline constexpr Schema kSchemaOf<InvitationAccept> = Schema::InvitationAccept;
 
-// Role in one project. Beside the one that a person has everywhere; the higher one counts.
+// Role in one project. In addition to the role in all projects; the higher one applies.
 enum class ProjectRole { viewer, annotator, curator };
 std::string_view name(ProjectRole value);
 void read(const nlohmann::json& json, ProjectRole& value);
 nlohmann::json to_json(const ProjectRole& value);
 
-// A role in the project.
+// Role in a project.
 struct MemberPut {
   ProjectRole role{};
   bool operator==(const MemberPut&) const = default;
@@ -1439,8 +1444,9 @@ inline constexpr Schema kSchemaOf<GroupCreate> = Schema::GroupCreate;
 // Changes of a group.
 struct GroupPatch {
   std::optional<std::string> name;
-  std::optional<std::vector<std::string>> add;  // Who is put into it; who is in it stays.
-  // Who is taken out of it; who is not in it stays out.
+  // People to add to the group. People who are in it already stay.
+  std::optional<std::vector<std::string>> add;
+  // People to remove from the group. People who are not in it are ignored.
   std::optional<std::vector<std::string>> remove;
   bool operator==(const GroupPatch&) const = default;
 };
@@ -1449,13 +1455,13 @@ nlohmann::json to_json(const GroupPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<GroupPatch> = Schema::GroupPatch;
 
-// What something was done to.
+// Kind of the changed thing.
 enum class ActivityKind { edit, layer, look, view, tour, model, table, columns, records, comment, member, project };
 std::string_view name(ActivityKind value);
 void read(const nlohmann::json& json, ActivityKind& value);
 nlohmann::json to_json(const ActivityKind& value);
 
-// What lies in the Bin.
+// Kind of a deleted item.
 enum class BinKind { layer, model, record };
 std::string_view name(BinKind value);
 void read(const nlohmann::json& json, BinKind& value);
@@ -1464,7 +1470,7 @@ nlohmann::json to_json(const BinKind& value);
 // New project.
 struct ProjectCreate {
   std::string name;
-  std::optional<std::string> slug;  // Made from the name when absent; never all digits.
+  std::optional<std::string> slug;  // Absent: made from the name. Never all digits.
   std::string description;
   bool operator==(const ProjectCreate&) const = default;
 };
@@ -1477,7 +1483,7 @@ inline constexpr Schema kSchemaOf<ProjectCreate> = Schema::ProjectCreate;
 struct ProjectPatch {
   std::optional<std::string> name;
   std::optional<std::string> description;
-  std::optional<bool> require_if_match;  // As in Project. Curators change it, too.
+  std::optional<bool> require_if_match;  // As in Project. Curators can change it, too.
   bool operator==(const ProjectPatch&) const = default;
 };
 void read(const nlohmann::json& json, ProjectPatch& value);
@@ -1490,7 +1496,7 @@ std::string_view name(ModelPatchSourceDownload value);
 void read(const nlohmann::json& json, ModelPatchSourceDownload& value);
 nlohmann::json to_json(const ModelPatchSourceDownload& value);
 
-// Changes to a model's description. None of them touches paint. Stating the unit clears `unit_assumed`.
+// Changes to a model's metadata. No change affects paint. Stating the unit clears `unit_assumed`.
 struct ModelPatch {
   std::optional<std::string> name;
   std::optional<strata::Unit> unit;
@@ -1508,7 +1514,7 @@ struct ModelPatch {
   std::optional<std::string> processing;
   std::optional<std::string> rights_uri;
   std::optional<std::string> credit;
-  // The least role that gets the scan's files, the pictures of its looks and its mesh.
+  // Lowest role that can get the scan's files, the pictures of its surface images and its mesh.
   std::optional<ModelPatchSourceDownload> source_download;
   bool operator==(const ModelPatch&) const = default;
 };
@@ -1517,7 +1523,7 @@ nlohmann::json to_json(const ModelPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<ModelPatch> = Schema::ModelPatch;
 
-// File that a job made. For who started it, at `/jobs/{job}/file`; only some of the newest are kept.
+// File that a job made. For the user who started the job, at `/jobs/{job}/file`. The server keeps only the newest files.
 struct JobFile {
   std::string name;
   std::string media_type;
@@ -1531,12 +1537,12 @@ inline constexpr Schema kSchemaOf<JobFile> = Schema::JobFile;
 
 // One layer of a transfer.
 struct TransferredLayer {
-  std::int64_t from = 0;  // Id of the layer it comes from.
+  std::int64_t from = 0;  // Id of the original layer.
   std::int64_t layer = 0;  // Id of the new layer.
   std::optional<std::string> name;
-  double source_m2 = 0;  // Painted surface of the layer it comes from.
+  double source_m2 = 0;  // Painted surface of the original layer.
   double transferred_m2 = 0;  // Painted surface of the new layer.
-  double lost_m2 = 0;  // Of `source_m2`, what has no counterpart within the tolerance.
+  double lost_m2 = 0;  // The part of `source_m2` that has no counterpart within the tolerance.
   bool operator==(const TransferredLayer&) const = default;
 };
 void read(const nlohmann::json& json, TransferredLayer& value);
@@ -1544,14 +1550,16 @@ nlohmann::json to_json(const TransferredLayer& value);
 template <>
 inline constexpr Schema kSchemaOf<TransferredLayer> = Schema::TransferredLayer;
 
-// What a transfer of layers brought over.
+// Report of a transfer of layers.
 struct TransferReport {
-  std::int64_t from = 0;  // Id of the model that the layers come from.
-  double area_m2 = 0;  // Surface of the model they are put on.
-  double matched_m2 = 0;  // Of that, what has a counterpart within the tolerance.
+  std::int64_t from = 0;  // Id of the model with the original layers.
+  double area_m2 = 0;  // Surface of the model with the new layers.
+  double matched_m2 = 0;  // The part of `area_m2` that has a counterpart within the tolerance.
   std::vector<TransferredLayer> layers;
-  std::optional<std::int64_t> marks;  // Lines and points that records have on this model now, too.
-  // Those of the other model that have no counterpart within the tolerance, as a whole or in part.
+  // Lines and points of records that are now also on this model.
+  std::optional<std::int64_t> marks;
+  // Lines and points of the other model that have no counterpart within the tolerance, completely
+  // or in part.
   std::optional<std::int64_t> lost_marks;
   bool operator==(const TransferReport&) const = default;
 };
@@ -1565,16 +1573,17 @@ std::string_view name(JobState value);
 void read(const nlohmann::json& json, JobState& value);
 nlohmann::json to_json(const JobState& value);
 
-// Long work.
+// Job: work that takes longer than an answer.
 struct Job {
   std::int64_t id = 0;
   JobState state{};
   double progress = 0;
-  std::string message;  // The step at work, in plain words.
+  std::string message;  // The current step, for people.
   std::optional<nlohmann::json> problem;
-  std::optional<std::int64_t> model;  // Id of the model, once it is done.
-  std::optional<std::vector<std::int64_t>> layers;  // Ids of the layers that it made on the model.
-  std::optional<std::int64_t> look;  // Id of the look that it made on the model.
+  std::optional<std::int64_t> model;  // Id of the model, when the job is finished.
+  // Ids of the layers that the job made on the model.
+  std::optional<std::vector<std::int64_t>> layers;
+  std::optional<std::int64_t> look;  // Id of the surface image that the job made on the model.
   std::optional<TransferReport> report;
   std::optional<JobFile> file;
   bool operator==(const Job&) const = default;
@@ -1584,16 +1593,16 @@ nlohmann::json to_json(const Job& value);
 template <>
 inline constexpr Schema kSchemaOf<Job> = Schema::Job;
 
-// Layers of another version of the same scan.
+// Transfer of layers from another version of the same scan.
 struct Transfer {
-  // Id or slug of the model whose layers are taken. Both models' coordinates must be of one system.
+  // Id or slug of the model with the original layers. The coordinates of both models must be of one
+  // system.
   std::string from;
-  // A place with no surface of the other model within this distance stays empty.
+  // A place stays empty if the other model has no surface within this distance.
   double tolerance_mm = 0;
-  // Degrees by which the surfaces may differ in direction: keeps the two sides of a thin wall
-  // apart.
+  // Largest angle between the surfaces in degrees. It keeps the two sides of a thin wall apart.
   double max_angle = 60;
-  std::optional<std::vector<std::string>> layers;  // Ids or slugs; absent: all.
+  std::optional<std::vector<std::string>> layers;  // Ids or slugs. Absent: all.
   bool operator==(const Transfer&) const = default;
 };
 void read(const nlohmann::json& json, Transfer& value);
@@ -1615,17 +1624,17 @@ inline constexpr Schema kSchemaOf<JobList> = Schema::JobList;
 // New column.
 struct ColumnCreate {
   std::string name;
-  std::optional<std::string> slug;  // Made from the name when absent; never all digits.
+  std::optional<std::string> slug;  // Absent: made from the name. Never all digits.
   std::optional<Labels> labels;
   ColumnKind kind = ColumnKind::text;
-  std::string unit;  // Numbers: what they count.
+  std::string unit;  // Numbers: unit of the values.
   bool required = false;
   bool unique = false;
-  // What new records have where they say nothing; null: none.
+  // Value of new records that give none. Null: no value.
   std::optional<nlohmann::json> default_value;
   std::string comment;
-  std::optional<std::vector<std::string>> choices;  // Enumerations: what may be chosen.
-  // Terms and relations: the table of the project whose records they name.
+  std::optional<std::vector<std::string>> choices;  // Enumerations: possible values.
+  // Terms and relations: table of the project whose records they name.
   std::optional<TableRef> target;
   std::optional<double> minimum;
   std::optional<double> maximum;
@@ -1637,26 +1646,26 @@ nlohmann::json to_json(const ColumnCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<ColumnCreate> = Schema::ColumnCreate;
 
-// Changes to a column. Another kind or target makes a new column in its place, which takes over what it can hold.
+// Changes to a column. With another kind or target, a new column replaces this one and gets the values that it can hold.
 struct ColumnPatch {
   std::optional<std::string> name;
   std::optional<std::string> slug;
   std::optional<Labels> labels;
   std::optional<ColumnKind> kind;
-  std::optional<std::string> unit;  // Numbers: what they count.
+  std::optional<std::string> unit;  // Numbers: unit of the values.
   std::optional<bool> required;
   std::optional<bool> unique;
-  // What new records have where they say nothing; null: none.
+  // Value of new records that give none. Null: no value.
   std::optional<nlohmann::json> default_value;
   std::optional<std::string> comment;
-  std::optional<std::vector<std::string>> choices;  // Enumerations: what may be chosen.
-  // Terms and relations: the table of the project whose records they name.
+  std::optional<std::vector<std::string>> choices;  // Enumerations: possible values.
+  // Terms and relations: table of the project whose records they name.
   std::optional<TableRef> target;
   std::optional<double> minimum;
   std::optional<double> maximum;
-  std::optional<int> order;  // Ascending from left to right.
-  // Alone. Counts for the past, too, and is no entry of the table's journal: no undo shows the
-  // column again.
+  std::optional<int> order;  // In ascending order from left to right.
+  // Only without other members. The change also applies to the past. It is not an entry of the
+  // table's journal, so undo cannot show the column again.
   std::optional<strata::Visibility> visibility;
   bool operator==(const ColumnPatch&) const = default;
 };
@@ -1675,9 +1684,9 @@ nlohmann::json to_json(const AttachmentPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<AttachmentPatch> = Schema::AttachmentPatch;
 
-// Names of files that say which records they are of.
+// Names of files, and how they name their records.
 struct AttachmentMatch {
-  // A {word} stands for one or more characters; the one called like the column says the record.
+  // A {word} matches one or more characters. The word with the name of the column names the record.
   std::string pattern;
   std::string column;  // Slug or id of a column, or `key`.
   std::vector<std::string> names;
@@ -1691,7 +1700,7 @@ inline constexpr Schema kSchemaOf<AttachmentMatch> = Schema::AttachmentMatch;
 // New table.
 struct TableCreate {
   std::string name;
-  std::optional<std::string> slug;  // Made from the name when absent; never all digits.
+  std::optional<std::string> slug;  // Absent: made from the name. Never all digits.
   std::optional<Labels> labels;
   std::string description;
   std::optional<std::vector<ColumnCreate>> columns;
@@ -1707,7 +1716,7 @@ struct TablePatch {
   std::optional<std::string> name;
   std::optional<Labels> labels;
   std::optional<std::string> description;
-  // Id or slug of the column that says what a record is called; empty: the best one by rule.
+  // Id or slug of the column with the titles of records. Empty: the best one by rule.
   std::optional<std::string> title_column;
   bool operator==(const TablePatch&) const = default;
 };
@@ -1718,7 +1727,7 @@ inline constexpr Schema kSchemaOf<TablePatch> = Schema::TablePatch;
 
 // New record.
 struct RecordInput {
-  // Absent: the next one. A deleted record's key is not given again.
+  // Absent: the next free key. The server never gives the key of a deleted record again.
   std::optional<std::int64_t> key;
   std::optional<nlohmann::json> values;
   bool operator==(const RecordInput&) const = default;
@@ -1728,7 +1737,7 @@ nlohmann::json to_json(const RecordInput& value);
 template <>
 inline constexpr Schema kSchemaOf<RecordInput> = Schema::RecordInput;
 
-// One new record, or several. Either `records`, all of which are made or none, or `key` and `values` of one.
+// One new record, or several. Either `records`, of which all or none are created, or `key` and `values` of one record.
 struct RecordsCreate {
   std::optional<std::int64_t> key;
   std::optional<nlohmann::json> values;
@@ -1740,9 +1749,9 @@ nlohmann::json to_json(const RecordsCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<RecordsCreate> = Schema::RecordsCreate;
 
-// Changes to a record. Columns that are not named stay.
+// Changes to a record. Columns that are not named do not change.
 struct RecordPatch {
-  std::optional<std::int64_t> version;  // Of the record as it was read; as If-Match.
+  std::optional<std::int64_t> version;  // Version of the record as it was read, as in If-Match.
   nlohmann::json values;
   bool operator==(const RecordPatch&) const = default;
 };
@@ -1759,7 +1768,7 @@ nlohmann::json to_json(const TemplateTermPattern& value);
 // Term of a template.
 struct TemplateTerm {
   std::string code;
-  std::optional<std::string> parent;  // Code of the term above.
+  std::optional<std::string> parent;  // Code of the parent term.
   std::string label;  // In English.
   std::optional<Labels> labels;
   std::string definition;
@@ -1775,11 +1784,11 @@ inline constexpr Schema kSchemaOf<TemplateTerm> = Schema::TemplateTerm;
 // Table of a template. It has either terms or columns.
 struct TemplateTable {
   std::string name;
-  std::string slug;  // How columns and layers of the template name it.
+  std::string slug;  // Name of the table in columns and layers of the template.
   std::optional<Labels> labels;
   std::string description;
   std::optional<std::vector<TemplateTerm>> terms;
-  // Their targets are tables of the template: those before, or the table itself.
+  // Their targets are earlier tables of the template, or the table itself.
   std::optional<std::vector<ColumnCreate>> columns;
   bool operator==(const TemplateTable&) const = default;
 };
@@ -1808,7 +1817,7 @@ inline constexpr Schema kSchemaOf<TemplateLayer> = Schema::TemplateLayer;
 
 // Template: tables and layers that are made together.
 struct Template {
-  std::optional<std::string> slug;  // The name of its file.
+  std::optional<std::string> slug;  // Name of the template's file.
   std::string name;
   std::optional<Labels> labels;
   std::string description;
@@ -1823,9 +1832,9 @@ inline constexpr Schema kSchemaOf<Template> = Schema::Template;
 
 // Use of a template.
 struct TemplateUse {
-  // Id or slug of a model of the project: its layers are made there. Absent: tables only.
+  // Id or slug of a model of the project that gets the layers. Absent: only tables are created.
   std::optional<std::string> model;
-  // What things are called, as far as the template has it; English otherwise.
+  // Language of the names, if the template has it. Otherwise English.
   std::optional<std::string> language;
   bool operator==(const TemplateUse&) const = default;
 };
@@ -1839,19 +1848,20 @@ std::string_view name(ShapeRecipeKind value);
 void read(const nlohmann::json& json, ShapeRecipeKind& value);
 nlohmann::json to_json(const ShapeRecipeKind& value);
 
-// Values computed from the model's shape. The answer is a job; the layer is there once it is done. Unit, palette and description follow from the recipe where they are not given.
+// Values computed from the model's shape. The answer is a job; the layer exists when the job is finished. If unit, palette or description are absent, they follow from the recipe.
 struct ShapeRecipe {
   ShapeRecipeKind kind{};
-  // Curvatures and roughness: of the neighbourhood; absent: four edges of the mesh.
+  // Curvatures and roughness: radius of the neighborhood. Absent: four edges of the mesh.
   std::optional<double> radius_mm;
-  // Ambient occlusion and model distance: as far as it looks; absent: a quarter or a tenth of the
-  // model's diagonal.
+  // Ambient occlusion and model distance: largest distance of the search. Absent: a quarter of the
+  // model's diagonal for ambient occlusion, a tenth for model distance.
   std::optional<double> distance_mm;
-  std::optional<int> rays;  // Ambient occlusion: rays a point; absent: 64.
-  bool absolute = false;  // Height: the world's coordinate, not that above the lowest point.
+  std::optional<int> rays;  // Ambient occlusion: rays for each point. Absent: 64.
+  // Height: the world coordinate, instead of the height above the lowest point.
+  bool absolute = false;
   std::optional<std::string> model;  // Model distance: id or slug of the other model.
   std::optional<std::string> property;  // Vertex property: its name in the PLY, such as quality.
-  // Vertex property: the source file; needed where several have it.
+  // Vertex property: the source file. Required if several files have the property.
   std::optional<std::string> source;
   bool operator==(const ShapeRecipe&) const = default;
 };
@@ -1863,37 +1873,39 @@ inline constexpr Schema kSchemaOf<ShapeRecipe> = Schema::ShapeRecipe;
 // New layer.
 struct LayerCreate {
   std::string name;
-  std::optional<std::string> slug;  // Made from the name when absent; never all digits.
+  std::optional<std::string> slug;  // Absent: made from the name. Never all digits.
   strata::LayerKind kind = strata::LayerKind::numeric;
-  // Absent: u8; f32 for what is computed, but for a condition.
+  // Absent: u8. For computed layers f32, except u8 for a condition.
   std::optional<strata::ValueType> type;
   std::optional<int> resolution;  // Absent: the model's default.
   std::string unit;
   std::string description;
-  std::optional<Labels> labels;  // Its name in other languages.
+  std::optional<Labels> labels;  // Names of the layer in other languages.
   std::optional<Descriptions> descriptions;
   std::optional<nlohmann::json> palette;
   double opacity = 1;
-  // Absent: true, but for a computed layer, which must not cover what others look at: whoever made
-  // it sees it all the same.
+  // Absent: true. For computed layers false, because they must not cover the view of others; the
+  // creator sees the layer at once.
   std::optional<bool> visible;
-  // Nobody below curator changes its texels. Absent: false, but for a computed layer, which is
-  // always locked when it is made (false: 422).
+  // Nobody below curator can change the texels of the layer. Absent: false. A computed layer is
+  // always locked when it is created (422 for false).
   std::optional<bool> locked;
-  bool review = false;  // What annotators change waits for a curator's review.
-  // Absent: public. What it reads and is coloured by must be seen by all who see it.
+  bool review = false;  // Edits of annotators wait for a review by a curator.
+  // Absent: public. Everybody who can see the layer must be able to see the layers and columns that
+  // it reads and that color it.
   std::optional<strata::Visibility> visibility;
-  std::optional<int> order;  // Absent: on top, a computed layer below all others.
-  // Database layers: the project's table whose keys the texels hold. Absent: one of the layer's own
-  // name.
+  std::optional<int> order;  // Absent: on top. A computed layer is below all others.
+  // Layers of records: the project's table whose keys the texels hold. Absent: a new table with the
+  // layer's name.
   std::optional<TableRef> table;
-  // Database layers without `table`: those of its own one. Absent: one text, Name.
+  // Layers of records without `table`: columns of the new table. Absent: one text column, Name.
   std::optional<std::vector<ColumnCreate>> columns;
   std::optional<ShapeRecipe> compute;
-  // A computed layer: a number, or a condition (1 where it holds, not painted elsewhere) over
-  // layers, their records and the surface (x, y, z, nx, ny, nz, height, slope, curvature, area).
+  // For a computed layer: a number, or a condition (1 where it is true, not painted elsewhere). It
+  // can use layers, their records and the surface (x, y, z, nx, ny, nz, height, slope, curvature,
+  // area).
   std::optional<std::string> expression;
-  std::optional<Recompute> recompute;  // With `expression`; absent: manual.
+  std::optional<Recompute> recompute;  // With `expression`. Absent: manual.
   bool operator==(const LayerCreate&) const = default;
 };
 void read(const nlohmann::json& json, LayerCreate& value);
@@ -1901,7 +1913,7 @@ nlohmann::json to_json(const LayerCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<LayerCreate> = Schema::LayerCreate;
 
-// A property and the file that has it.
+// A property and its file.
 struct VertexPropertyName {
   std::string source;
   std::string property;
@@ -1912,7 +1924,7 @@ nlohmann::json to_json(const VertexPropertyName& value);
 template <>
 inline constexpr Schema kSchemaOf<VertexPropertyName> = Schema::VertexPropertyName;
 
-// Numbers that the source files keep with their vertices.
+// Numbers of the source files' vertices.
 struct VertexPropertyList {
   std::vector<VertexPropertyName> properties;
   std::int64_t total = 0;
@@ -1926,11 +1938,12 @@ inline constexpr Schema kSchemaOf<VertexPropertyList> = Schema::VertexPropertyLi
 // First comment of a thread.
 struct CommentCreate {
   std::string text;  // Plain text.
-  // World coordinates; the nearest place of the surface is taken, within 5 % of the model's
+  // World coordinates. The server uses the nearest place of the surface, within 5 % of the model's
   // diagonal.
   glm::dvec3 position{0};
-  std::optional<LayerRef> layer;  // What it is about.
-  std::optional<std::int64_t> record;  // What it is about: a key of the layer, which is of a table.
+  std::optional<LayerRef> layer;  // The layer that the comment is about.
+  // The record that the comment is about: a key of the layer, which must be a layer of records.
+  std::optional<std::int64_t> record;
   bool operator==(const CommentCreate&) const = default;
 };
 void read(const nlohmann::json& json, CommentCreate& value);
@@ -1948,10 +1961,10 @@ nlohmann::json to_json(const ReplyCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<ReplyCreate> = Schema::ReplyCreate;
 
-// Another text, or another state of a thread.
+// New text of a comment, or new state of a thread.
 struct CommentPatch {
-  std::optional<std::string> text;  // Of one's own comment.
-  std::optional<CommentState> state;  // Of the thread's first comment.
+  std::optional<std::string> text;  // Text of your own comment.
+  std::optional<CommentState> state;  // State of the thread, on its first comment.
   bool operator==(const CommentPatch&) const = default;
 };
 void read(const nlohmann::json& json, CommentPatch& value);
@@ -1959,13 +1972,14 @@ nlohmann::json to_json(const CommentPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<CommentPatch> = Schema::CommentPatch;
 
-// A view to keep.
+// New saved view.
 struct ViewCreate {
   std::string name;
   std::optional<std::string> text;  // Plain text.
   strata::Camera camera;  // With its section.
-  std::optional<std::vector<LayerOverride>> layers;  // Layers not listed show their defaults.
-  // Exactly these, bottom to top; absent: those visible by default.
+  // Layers that are not listed have their defaults.
+  std::optional<std::vector<LayerOverride>> layers;
+  // Exactly these, from bottom to top. Absent: the surface images that are visible by default.
   std::optional<std::vector<LookShown>> looks;
   std::optional<strata::Light> light;  // Absent: museum.
   bool operator==(const ViewCreate&) const = default;
@@ -1976,13 +1990,14 @@ Result<void> check(const ViewCreate& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<ViewCreate> = Schema::ViewCreate;
 
-// Changes to a view. What is shown is changed as a whole: with `camera`, absent `layers`, `looks` and `light` mean the defaults.
+// Changes to a saved view. The content changes as a whole: with `camera`, absent `layers`, `looks` and `light` mean the defaults.
 struct ViewPatch {
   std::optional<std::string> name;
   std::optional<std::string> text;  // Plain text.
   std::optional<strata::Camera> camera;  // With its section.
-  std::optional<std::vector<LayerOverride>> layers;  // Layers not listed show their defaults.
-  // Exactly these, bottom to top; absent: those visible by default.
+  // Layers that are not listed have their defaults.
+  std::optional<std::vector<LayerOverride>> layers;
+  // Exactly these, from bottom to top. Absent: the surface images that are visible by default.
   std::optional<std::vector<LookShown>> looks;
   std::optional<strata::Light> light;  // Absent: museum.
   bool operator==(const ViewPatch&) const = default;
@@ -1995,15 +2010,15 @@ inline constexpr Schema kSchemaOf<ViewPatch> = Schema::ViewPatch;
 
 // Stop of a tour.
 struct TourStopCreate {
-  std::string view;  // A named view of the model: slug or id.
-  TourWords title;  // In the tour's first language at least.
+  std::string view;  // Slug or id of a saved view of the model.
+  TourWords title;  // At least in the tour's first language.
   std::optional<TourText> text;
-  double attract_s = 10;  // How long it is shown while the tour plays by itself.
+  double attract_s = 10;  // Seconds that the stop is shown while the tour plays by itself.
   std::optional<TourTransition> transition;  // Absent: `move`.
-  double transition_s = 2;  // How long a `move` takes.
-  // Offered for swiping, in this order: slugs or ids. None twice.
+  double transition_s = 2;  // Duration of a `move` in seconds.
+  // Slugs or ids of the layers to swipe between, in this order. Each layer once.
   std::optional<std::vector<std::string>> layers;
-  std::optional<std::vector<TourRecords>> records;  // Each of another table of the project.
+  std::optional<std::vector<TourRecords>> records;  // Each entry has another table of the project.
   bool operator==(const TourStopCreate&) const = default;
 };
 void read(const nlohmann::json& json, TourStopCreate& value);
@@ -2011,13 +2026,14 @@ nlohmann::json to_json(const TourStopCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<TourStopCreate> = Schema::TourStopCreate;
 
-// A tour to keep.
+// New tour.
 struct TourCreate {
   std::string name;
-  std::optional<std::string> text;  // Plain text: what it is about, for those who choose one.
-  // The first one is that of who chooses none; every stop has a title in it. None twice.
+  // Plain text: the subject of the tour, for people who choose one.
+  std::optional<std::string> text;
+  // The first one is the default language; every stop has a title in it. Each language once.
   std::vector<std::string> languages;
-  int idle_s = 60;  // So long after the last touch the tour begins anew and plays by itself.
+  int idle_s = 60;  // Seconds after the last touch until the tour restarts and plays by itself.
   std::vector<TourStopCreate> stops;
   bool operator==(const TourCreate&) const = default;
 };
@@ -2026,11 +2042,12 @@ nlohmann::json to_json(const TourCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<TourCreate> = Schema::TourCreate;
 
-// Changes to a tour. Stops are changed as a whole. Those that stay must fit the languages.
+// Changes to a tour. Stops change as a whole. Remaining stops must match the languages.
 struct TourPatch {
   std::optional<std::string> name;
-  std::optional<std::string> text;  // Plain text: what it is about, for those who choose one.
-  // The first one is that of who chooses none; every stop has a title in it. None twice.
+  // Plain text: the subject of the tour, for people who choose one.
+  std::optional<std::string> text;
+  // The first one is the default language; every stop has a title in it. Each language once.
   std::optional<std::vector<std::string>> languages;
   std::optional<int> idle_s;
   std::optional<std::vector<TourStopCreate>> stops;
@@ -2041,10 +2058,10 @@ nlohmann::json to_json(const TourPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<TourPatch> = Schema::TourPatch;
 
-// A link for a kiosk.
+// New kiosk link.
 struct KioskCreate {
-  std::string name;  // Where it stands.
-  std::optional<int> days;  // Until it expires; absent: never.
+  std::string name;  // Location of the screen.
+  std::optional<int> days;  // Days until the link expires. Absent: never.
   bool operator==(const KioskCreate&) const = default;
 };
 void read(const nlohmann::json& json, KioskCreate& value);
@@ -2052,9 +2069,9 @@ nlohmann::json to_json(const KioskCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<KioskCreate> = Schema::KioskCreate;
 
-// The link of a kiosk.
+// Link of a kiosk.
 struct KioskLogin {
-  std::string link;  // Its secret: what stands behind `/kiosk/`.
+  std::string link;  // Secret of the link: the part after `/kiosk/`.
   bool operator==(const KioskLogin&) const = default;
 };
 void read(const nlohmann::json& json, KioskLogin& value);
@@ -2062,7 +2079,7 @@ nlohmann::json to_json(const KioskLogin& value);
 template <>
 inline constexpr Schema kSchemaOf<KioskLogin> = Schema::KioskLogin;
 
-// Another name for a tool.
+// New name of a brush shape.
 struct ToolPatch {
   std::string name;
   bool operator==(const ToolPatch&) const = default;
@@ -2072,7 +2089,7 @@ nlohmann::json to_json(const ToolPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<ToolPatch> = Schema::ToolPatch;
 
-// Changes to a look's description and defaults.
+// Changes to a surface image.
 struct LookPatch {
   std::optional<std::string> name;
   std::optional<std::string> description;
@@ -2086,29 +2103,30 @@ nlohmann::json to_json(const LookPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<LookPatch> = Schema::LookPatch;
 
-// Changes to a layer's description and defaults.
+// Changes to a layer.
 struct LayerPatch {
   std::optional<std::string> name;
   std::optional<std::string> unit;
   std::optional<std::string> description;
-  std::optional<Labels> labels;  // Its name in other languages, all of them.
-  std::optional<Descriptions> descriptions;  // In other languages, all of them.
+  std::optional<Labels> labels;  // Names in other languages; replaces all.
+  std::optional<Descriptions> descriptions;  // Descriptions in other languages; replaces all.
   std::optional<nlohmann::json> palette;
   std::optional<double> opacity;
   std::optional<bool> visible;
-  // true: from the answer on nobody below curator changes its texels, until it is unlocked. false,
-  // on a computed layer: from now on it is edited by hand, which stays known (`edited_by_hand`),
-  // and is not computed again by itself.
+  // true: from the answer on, nobody below curator can change the texels until the layer is
+  // unlocked. false, on a computed layer: from now on it is edited by hand, which stays marked
+  // (`edited_by_hand`), and the server does not compute it automatically.
   std::optional<bool> locked;
-  // true: what annotators change from now on waits for a curator's review. What waits already keeps
-  // waiting when it becomes false.
+  // true: later edits of annotators wait for a review by a curator. false: edits that wait already
+  // continue to wait.
   std::optional<bool> review;
-  std::optional<strata::Visibility> visibility;  // Counts at once, for open pages too.
+  std::optional<strata::Visibility> visibility;  // Applies at once, also to open pages.
   std::optional<int> order;
-  // Alone: a layer of u8 or u16 gets room for larger keys or values (u16, u32), its history too.
+  // Only without other members: a layer of u8 or u16, with its history, gets room for larger keys
+  // or values (u16, u32).
   std::optional<strata::ValueType> type;
-  // Of a computed layer, which it has to be computed by anew; empty: the layer keeps its values and
-  // is edited by hand from now on.
+  // For a computed layer: the new expression; compute the layer again with it. Empty: the layer
+  // keeps its values and is edited by hand from now on.
   std::optional<std::string> expression;
   std::optional<Recompute> recompute;
   bool operator==(const LayerPatch&) const = default;
@@ -2118,12 +2136,12 @@ nlohmann::json to_json(const LayerPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<LayerPatch> = Schema::LayerPatch;
 
-// What an edit did; it is durable.
+// Result of a durable edit.
 struct EditResult {
   std::int64_t sequence = 0;
   std::int64_t texels_changed = 0;
   double area_m2 = 0;
-  std::optional<bool> provisional;  // true: it waits for review.
+  std::optional<bool> provisional;  // true: the edit waits for review.
   bool operator==(const EditResult&) const = default;
 };
 void read(const nlohmann::json& json, EditResult& value);
@@ -2131,13 +2149,13 @@ nlohmann::json to_json(const EditResult& value);
 template <>
 inline constexpr Schema kSchemaOf<EditResult> = Schema::EditResult;
 
-// Where an edit stands that had to wait for review.
+// State of an edit that requires a review.
 enum class ReviewState { pending, accepted, rejected };
 std::string_view name(ReviewState value);
 void read(const nlohmann::json& json, ReviewState& value);
 nlohmann::json to_json(const ReviewState& value);
 
-// Who accepted or rejected an edit.
+// Person who accepted or rejected an edit.
 struct Reviewer {
   std::string user;
   std::string time;  // UTC, RFC 3339.
@@ -2156,18 +2174,18 @@ nlohmann::json to_json(const WaitingStrokeOp& value);
 
 // A stroke or another edit that waits for review.
 struct WaitingStroke {
-  std::int64_t sequence = 0;  // Of its first batch: by this it is reviewed.
-  std::int64_t last = 0;  // Of its last batch.
+  std::int64_t sequence = 0;  // Sequence of its first batch; name it in a review.
+  std::int64_t last = 0;  // Sequence of its last batch.
   Uuid stroke;
   std::string user;
-  std::optional<std::string> full_name;  // Of `user`; absent: they gave none.
-  std::optional<std::string> color;  // Of `user`.
+  std::optional<std::string> full_name;  // Full name of `user`. Absent: the person gave none.
+  std::optional<std::string> color;  // Color of `user`.
   WaitingStrokeOp op{};
   std::string begun;  // UTC, RFC 3339.
-  std::string time;  // Of its last batch.
-  std::int64_t texels_changed = 0;  // Of its batches, one after the other.
+  std::string time;  // Time of its last batch.
+  std::int64_t texels_changed = 0;  // Texels that its batches changed, counted once for each batch.
   double area_m2 = 0;
-  std::optional<strata::Camera> camera;  // From which it was painted, where it was.
+  std::optional<strata::Camera> camera;  // Camera from which it was painted, if there was one.
   bool operator==(const WaitingStroke&) const = default;
 };
 void read(const nlohmann::json& json, WaitingStroke& value);
@@ -2176,11 +2194,11 @@ Result<void> check(const WaitingStroke& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<WaitingStroke> = Schema::WaitingStroke;
 
-// Whose strokes wait.
+// Person whose strokes wait.
 struct ReviewPerson {
   std::string user;
-  std::optional<std::string> full_name;  // Of `user`; absent: they gave none.
-  std::optional<std::string> color;  // Of `user`.
+  std::optional<std::string> full_name;  // Full name of `user`. Absent: the person gave none.
+  std::optional<std::string> color;  // Color of `user`.
   std::int64_t strokes = 0;
   bool operator==(const ReviewPerson&) const = default;
 };
@@ -2189,11 +2207,11 @@ nlohmann::json to_json(const ReviewPerson& value);
 template <>
 inline constexpr Schema kSchemaOf<ReviewPerson> = Schema::ReviewPerson;
 
-// What of a layer waits for review, the oldest first.
+// Edits of a layer that wait for review, oldest first.
 struct ReviewQueue {
   std::vector<WaitingStroke> strokes;
-  std::int64_t total = 0;  // Strokes, of all pages.
-  std::vector<ReviewPerson> people;  // Everybody whose strokes wait, by name.
+  std::int64_t total = 0;  // Number of strokes on all pages.
+  std::vector<ReviewPerson> people;  // Everybody whose strokes wait, sorted by name.
   bool operator==(const ReviewQueue&) const = default;
 };
 void read(const nlohmann::json& json, ReviewQueue& value);
@@ -2205,9 +2223,9 @@ inline constexpr Schema kSchemaOf<ReviewQueue> = Schema::ReviewQueue;
 // A decision about edits of a layer.
 struct Review {
   ReviewDecision decision{};
-  // Sequences: of a stroke any of its batches stands for all.
+  // Sequences. Any batch of a stroke means the whole stroke.
   std::optional<std::vector<std::int64_t>> edits;
-  std::optional<std::string> user;  // All that waits of this person. Not with reopen.
+  std::optional<std::string> user;  // All waiting edits of this person. Not with reopen.
   std::optional<std::string> reason;
   bool operator==(const Review&) const = default;
 };
@@ -2229,14 +2247,14 @@ struct HistoryEntry {
   std::string user;
   std::string time;  // UTC, RFC 3339.
   HistoryEntryOp op{};
-  std::optional<bool> in_force;  // False while it is taken back, or rejected.
+  std::optional<bool> in_force;  // False while the edit is undone or rejected.
   std::optional<ReviewState> review;
   std::optional<Reviewer> reviewer;
   std::optional<std::int64_t> texels_changed;
   std::optional<double> area_m2;
   std::optional<nlohmann::json> recipe;
-  std::optional<std::string> expression;  // Of a computed layer, as it was computed then.
-  std::optional<ToolShape> shape;  // Of a stroke; a tool by its id.
+  std::optional<std::string> expression;  // For a computed layer: its expression of that moment.
+  std::optional<ToolShape> shape;  // For a stroke: the brush shape; one of the site by its id.
   std::optional<double> max_angle_deg;
   std::optional<double> depth_bias;
   bool operator==(const HistoryEntry&) const = default;
@@ -2257,7 +2275,7 @@ nlohmann::json to_json(const EditList& value);
 template <>
 inline constexpr Schema kSchemaOf<EditList> = Schema::EditList;
 
-// Empty object. Undo and redo take no members; no body is the same.
+// Empty object. Undo and redo take no members. A request without a body is the same.
 struct Empty {
   bool operator==(const Empty&) const = default;
 };
@@ -2266,9 +2284,9 @@ nlohmann::json to_json(const Empty& value);
 template <>
 inline constexpr Schema kSchemaOf<Empty> = Schema::Empty;
 
-// Whole layer back to a revision.
+// Restore of a whole layer.
 struct Restore {
-  std::int64_t sequence = 0;  // The layer becomes as it was after this edit; 0: empty.
+  std::int64_t sequence = 0;  // The layer gets its state after this edit. 0: empty.
   bool operator==(const Restore&) const = default;
 };
 void read(const nlohmann::json& json, Restore& value);
@@ -2276,13 +2294,14 @@ nlohmann::json to_json(const Restore& value);
 template <>
 inline constexpr Schema kSchemaOf<Restore> = Schema::Restore;
 
-// Point on the surface and the values there. Off the model only `hit` is there.
+// Point on the surface, with values. Next to the model, only `hit` is present.
 struct SurfacePoint {
   bool hit = false;
   std::optional<glm::dvec3> position;
   std::optional<glm::dvec3> normal;
   std::optional<glm::dvec2> uv;
-  std::optional<double> distance;  // From the asked point, or from the camera's near plane.
+  // Distance from the requested point, or from the camera's near plane.
+  std::optional<double> distance;
   std::optional<SurfaceValues> values;
   bool operator==(const SurfacePoint&) const = default;
 };
@@ -2306,7 +2325,7 @@ nlohmann::json to_json(const PositionsRequest& value);
 template <>
 inline constexpr Schema kSchemaOf<PositionsRequest> = Schema::PositionsRequest;
 
-// One entry per asked point, in their order.
+// One entry for each point, in the order of the request.
 struct PositionsResponse {
   std::vector<SurfacePoint> positions;
   int total = 0;
@@ -2317,7 +2336,7 @@ nlohmann::json to_json(const PositionsResponse& value);
 template <>
 inline constexpr Schema kSchemaOf<PositionsResponse> = Schema::PositionsResponse;
 
-// What is at a pixel.
+// Values at a pixel.
 struct PickRequest {
   strata::Camera camera;
   double x = 0;
@@ -2331,13 +2350,13 @@ Result<void> check(const PickRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<PickRequest> = Schema::PickRequest;
 
-// Part of the surface. Around a place: what lies within `radius_mm` of it (straight) and is connected with it within that distance. Or what is seen inside an outline in a camera's window.
+// Part of the surface. Around a place: the surface within `radius_mm` (in a straight line) that is connected with the place within that distance. Or the visible surface inside an outline in a camera's window.
 struct Within {
   std::optional<SurfacePlace> at;
-  std::optional<double> radius_mm;  // Millimetres on the object.
+  std::optional<double> radius_mm;  // Millimeters on the object.
   std::optional<strata::Camera> camera;
   std::optional<Outline> path;
-  std::optional<bool> through;  // What is hidden, too.
+  std::optional<bool> through;  // Also include hidden surfaces.
   bool operator==(const Within&) const = default;
 };
 void read(const nlohmann::json& json, Within& value);
@@ -2346,16 +2365,16 @@ Result<void> check(const Within& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<Within> = Schema::Within;
 
-// What takes longer.
+// Part of the statistics that takes longer.
 enum class StatisticsPart { pieces, perimeter, quantiles };
 std::string_view name(StatisticsPart value);
 void read(const nlohmann::json& json, StatisticsPart& value);
 nlohmann::json to_json(const StatisticsPart& value);
 
-// Paints what is selected.
+// Paint the selection.
 struct SelectInto {
   LayerRef layer;
-  double value = 0;  // In the layer's type; ignored when erasing.
+  double value = 0;  // In the layer's type; ignored for erasing.
   bool erase = false;
   bool operator==(const SelectInto&) const = default;
 };
@@ -2364,12 +2383,13 @@ nlohmann::json to_json(const SelectInto& value);
 template <>
 inline constexpr Schema kSchemaOf<SelectInto> = Schema::SelectInto;
 
-// Where on the surface. Without `where` and `within`: everywhere.
+// Selection of surface. Without `where` and `within`: everywhere.
 struct SelectRequest {
-  std::optional<std::string> where;  // A condition over the layers, as a fill takes it.
+  std::optional<std::string> where;  // A condition over the layers, as in a fill.
   std::optional<Within> within;
   std::optional<At> at;
-  std::optional<std::vector<LayerRef>> layers;  // Whose statistics there are asked for.
+  // Layers whose statistics in the selection are returned.
+  std::optional<std::vector<LayerRef>> layers;
   std::optional<std::vector<StatisticsPart>> include;
   std::optional<SelectInto> into;
   bool operator==(const SelectRequest&) const = default;
@@ -2393,15 +2413,15 @@ nlohmann::json to_json(const HistogramBin& value);
 template <>
 inline constexpr Schema kSchemaOf<HistogramBin> = Schema::HistogramBin;
 
-// Where one key lies.
+// Statistics of one key.
 struct KeyStatistics {
   double key = 0;
   std::int64_t texels = 0;
   double area_m2 = 0;
   glm::dvec3 centroid{0};
   Bounds bounds;
-  std::optional<std::int64_t> pieces;  // Where asked for: connected areas of this key.
-  std::optional<double> perimeter_m;  // Where asked for: around these areas, along the surface.
+  std::optional<std::int64_t> pieces;  // If requested: connected areas of this key.
+  std::optional<double> perimeter_m;  // If requested: length around these areas, along the surface.
   bool operator==(const KeyStatistics&) const = default;
 };
 void read(const nlohmann::json& json, KeyStatistics& value);
@@ -2409,7 +2429,7 @@ nlohmann::json to_json(const KeyStatistics& value);
 template <>
 inline constexpr Schema kSchemaOf<KeyStatistics> = Schema::KeyStatistics;
 
-// The smallest values that the lower 5, 25, 50, 75 and 95 % of the area do not exceed. Where asked for and something has an area.
+// The smallest values that the lower 5, 25, 50, 75 and 95 % of the area do not exceed. If requested, and if something has an area.
 struct Quantiles {
   double p5 = 0;
   double p25 = 0;
@@ -2423,7 +2443,7 @@ nlohmann::json to_json(const Quantiles& value);
 template <>
 inline constexpr Schema kSchemaOf<Quantiles> = Schema::Quantiles;
 
-// Statistics of a layer, weighted by surface area. Of valid texels on the surface. `min`, `max`, `mean` and `std` are absent while the layer is empty; `keys` is empty for fractions and for more than 4096 different values.
+// Statistics of a layer, weighted by surface area. For valid texels on the surface. `min`, `max`, `mean` and `std` are absent while the layer is empty. `keys` is empty for fractions, and for more than 4096 different values.
 struct Statistics {
   std::int64_t texels = 0;
   double area_m2 = 0;
@@ -2431,10 +2451,10 @@ struct Statistics {
   std::optional<double> max;
   std::optional<double> mean;
   std::optional<double> std;
-  // Where asked for: connected areas, of one value each in layers of whole numbers.
+  // If requested: connected areas; in layers of whole numbers, those of one value each.
   std::optional<std::int64_t> pieces;
-  // Where asked for: around what is valid, along the surface; an open edge of the mesh counts, a
-  // seam of the atlas does not.
+  // If requested: length around the valid areas, along the surface. An open edge of the mesh
+  // counts, a seam of the atlas does not.
   std::optional<double> perimeter_m;
   std::optional<Quantiles> quantiles;
   std::vector<HistogramBin> histogram;
@@ -2448,13 +2468,13 @@ inline constexpr Schema kSchemaOf<Statistics> = Schema::Statistics;
 
 // Texels and area of a selection.
 struct SelectResponse {
-  int resolution = 0;  // Of the texels that are counted.
+  int resolution = 0;  // Resolution of the counted texels.
   std::int64_t texels = 0;
   double area_m2 = 0;
-  double share = 0;  // Of the whole surface.
+  double share = 0;  // Share of the whole surface.
   std::optional<Bounds> bounds;
   nlohmann::json layers;
-  std::optional<EditResult> edit;  // Of `into`.
+  std::optional<EditResult> edit;  // Result of `into`.
   bool operator==(const SelectResponse&) const = default;
 };
 void read(const nlohmann::json& json, SelectResponse& value);
@@ -2462,10 +2482,10 @@ nlohmann::json to_json(const SelectResponse& value);
 template <>
 inline constexpr Schema kSchemaOf<SelectResponse> = Schema::SelectResponse;
 
-// The surface along a line. Through places: of each step the nearest surface point. Or what is seen under a line drawn in a camera's window, at each of its pixels.
+// Request for a profile of the surface. Through places: for each step, the nearest surface point. Or the visible surface under a line in a camera's window, at each of its pixels.
 struct ProfileRequest {
   std::optional<std::vector<glm::dvec3>> places;
-  std::optional<double> step_mm;  // Millimetres on the object.
+  std::optional<double> step_mm;  // Millimeters on the object.
   std::optional<strata::Camera> camera;
   std::optional<std::vector<glm::dvec2>> path;  // Pixels of the camera's window.
   std::optional<std::vector<LayerRef>> layers;  // Absent: all layers.
@@ -2480,7 +2500,7 @@ inline constexpr Schema kSchemaOf<ProfileRequest> = Schema::ProfileRequest;
 
 // Place on a profile.
 struct ProfileSample {
-  // On the surface, from the beginning. Where the line leaves the surface nothing is added.
+  // Distance on the surface from the start. Where the line leaves the surface, nothing is added.
   double along_mm = 0;
   SurfacePoint point;
   bool operator==(const ProfileSample&) const = default;
@@ -2490,7 +2510,7 @@ nlohmann::json to_json(const ProfileSample& value);
 template <>
 inline constexpr Schema kSchemaOf<ProfileSample> = Schema::ProfileSample;
 
-// The surface along a line.
+// Profile of the surface along a line.
 struct Profile {
   double length_mm = 0;
   std::vector<ProfileSample> samples;
@@ -2501,11 +2521,11 @@ nlohmann::json to_json(const Profile& value);
 template <>
 inline constexpr Schema kSchemaOf<Profile> = Schema::Profile;
 
-// Two layers against each other.
+// Request to compare two layers.
 struct CrossTableRequest {
   LayerRef rows;
   LayerRef columns;
-  std::optional<std::string> where;  // A condition over the layers, as a fill takes it.
+  std::optional<std::string> where;  // A condition over the layers, as in a fill.
   std::optional<Within> within;
   std::optional<At> at;
   bool operator==(const CrossTableRequest&) const = default;
@@ -2516,11 +2536,11 @@ Result<void> check(const CrossTableRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<CrossTableRequest> = Schema::CrossTableRequest;
 
-// Areas of pairs of values. Keys ascend; null, which comes last, stands for where the layer has no value.
+// Areas of pairs of values. Keys ascend. Null comes last, for places where the layer has no value.
 struct CrossTable {
   std::vector<std::optional<double>> rows;
   std::vector<std::optional<double>> columns;
-  std::vector<std::vector<double>> area_m2;  // A row's columns.
+  std::vector<std::vector<double>> area_m2;  // One array for each row, with its columns.
   std::vector<std::vector<std::int64_t>> texels;
   bool operator==(const CrossTable&) const = default;
 };
@@ -2529,14 +2549,15 @@ nlohmann::json to_json(const CrossTable& value);
 template <>
 inline constexpr Schema kSchemaOf<CrossTable> = Schema::CrossTable;
 
-// Where records lie on a model.
+// Extent of records on a model.
 struct Extent {
-  std::int64_t records = 0;  // That are meant.
-  std::int64_t painted = 0;  // Of them, those that are painted on the layer.
-  std::int64_t marked = 0;  // Of them, those that have lines or points on the model.
+  std::int64_t records = 0;  // Number of requested records.
+  std::int64_t painted = 0;  // Number of these records that are painted on the layer.
+  std::int64_t marked = 0;  // Number of these records that have lines or points on the model.
   std::int64_t texels = 0;
   double area_m2 = 0;
-  std::optional<Bounds> bounds;  // Of their texels, lines and points; absent where there are none.
+  // Bounds of their texels, lines and points. Absent: the records have none of these.
+  std::optional<Bounds> bounds;
   bool operator==(const Extent&) const = default;
 };
 void read(const nlohmann::json& json, Extent& value);
@@ -2544,7 +2565,7 @@ nlohmann::json to_json(const Extent& value);
 template <>
 inline constexpr Schema kSchemaOf<Extent> = Schema::Extent;
 
-// Records of a layer that are to be seen.
+// Highlighted records of a layer.
 struct LayerHighlight {
   LayerRef layer;
   Highlight highlight;
@@ -2563,12 +2584,12 @@ nlohmann::json to_json(const FrameRequestFormat& value);
 // One rendered picture.
 struct FrameRequest {
   strata::Camera camera;  // Its width × height is the size of the picture.
-  // Exactly these are drawn, bottom to top; absent: those visible by default.
+  // Exactly these are drawn, from bottom to top. Absent: the layers that are visible by default.
   std::optional<std::vector<LayerRef>> layers;
-  // Exactly these, bottom to top; absent: those visible by default.
+  // Exactly these, from bottom to top. Absent: the surface images that are visible by default.
   std::optional<std::vector<LookShown>> looks;
   std::optional<strata::Light> light;  // Absent: museum.
-  std::optional<Background> background;  // Absent: light grey.
+  std::optional<Background> background;  // Absent: light gray.
   std::optional<std::vector<LayerHighlight>> highlights;
   std::optional<At> at;
   FrameRequestFormat format = FrameRequestFormat::jpeg;
@@ -2580,22 +2601,22 @@ Result<void> check(const FrameRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<FrameRequest> = Schema::FrameRequest;
 
-// Kind of file. In SVG and PDF words, legend, scale bar and arrow can be edited.
+// Kind of file. In SVG and PDF, texts, legend, scale bar and arrow can be edited.
 enum class FigureFormat { png, tiff, svg, pdf };
 std::string_view name(FigureFormat value);
 void read(const nlohmann::json& json, FigureFormat& value);
 nlohmann::json to_json(const FigureFormat& value);
 
-// From where, by the model's up. From the top the front is below, and on a map of z up it is the plan: y runs up.
+// Direction of a figure, relative to the model's up. From the top, the front is at the bottom. On a map with z up, this is the plan: y points up.
 enum class FigureDirection { top, bottom, front, back, left, right };
 std::string_view name(FigureDirection value);
 void read(const nlohmann::json& json, FigureDirection& value);
 nlohmann::json to_json(const FigureDirection& value);
 
-// Words of records at their places. Where the layer shows a record: what it has in the column. What would lie over another is left out, the smaller area first.
+// Values of records at their places. Where the layer shows a record: its value in the column. If labels overlap, the label of the smaller area is left out first.
 struct FigureLabels {
-  LayerRef layer;  // A database layer.
-  std::string column;  // Of its table: slug or id.
+  LayerRef layer;  // A layer of records.
+  std::string column;  // Slug or id of a column of its table.
   bool operator==(const FigureLabels&) const = default;
 };
 void read(const nlohmann::json& json, FigureLabels& value);
@@ -2613,39 +2634,40 @@ std::string_view name(FigureRequestOrientation value);
 void read(const nlohmann::json& json, FigureRequestOrientation& value);
 nlohmann::json to_json(const FigureRequestOrientation& value);
 
-// A measured figure. A drawing without perspective, to scale, on a sheet with scale bar, legend and caption. What is shown, and where nothing else says so the direction, come from a named view or from camera, layers, looks and light; without any it is what the model shows by default, from the top.
+// A figure to scale. A drawing without perspective, to scale, on a sheet with scale bar, legend and caption. The content comes from a saved view, or from camera, layers, surface images and light. The direction comes from there, too, if nothing else sets it. Without any of them, the figure shows the default layers of the model from the top.
 struct FigureRequest {
-  std::optional<std::string> view;  // A named view: slug or id.
-  // In place of a view: its direction and its section count, and what lies in the middle.
+  std::optional<std::string> view;  // A saved view: slug or id.
+  // Instead of a view: its direction, its section and its middle are used.
   std::optional<strata::Camera> camera;
-  std::optional<std::vector<LayerOverride>> layers;  // Layers not listed show their defaults.
-  // Exactly these, bottom to top; absent: those visible by default.
+  // Layers that are not listed have their defaults.
+  std::optional<std::vector<LayerOverride>> layers;
+  // Exactly these, from bottom to top. Absent: the surface images that are visible by default.
   std::optional<std::vector<LookShown>> looks;
   std::optional<strata::Light> light;  // Absent: museum.
   std::optional<At> at;
-  std::optional<FigureDirection> direction;  // In place of the camera's or view's.
-  // In place of a direction: surface that faces this way (world) is seen square.
+  std::optional<FigureDirection> direction;  // Instead of the direction of the camera or view.
+  // Instead of a direction: a surface that faces this way (world) is drawn without foreshortening.
   std::optional<glm::dvec3> normal;
-  // In the middle of the drawing (world). Absent: of the direction of a camera or view what lies in
-  // its middle, otherwise the middle of what is seen.
+  // Middle of the drawing (world). Absent: with the direction of a camera or view, the middle of
+  // that view, otherwise the middle of the visible surface.
   std::optional<glm::dvec3> center;
-  // 50 is 1 : 50. Absent: the largest of 1, 2, 2.5, 5, 10, 20, 25, 50 … at which all of it is on
-  // the sheet.
+  // 50 is 1 : 50. Absent: the largest of 1, 2, 2.5, 5, 10, 20, 25, 50 … with which the whole
+  // drawing is on the sheet.
   std::optional<double> scale;
   FigureRequestPaper paper = FigureRequestPaper::a4;
-  // Absent: the one with room for the larger scale.
+  // Absent: the one with space for the larger scale.
   std::optional<FigureRequestOrientation> orientation;
-  int dpi = 300;  // Pixels an inch; of SVG and PDF of the drawing in them.
+  int dpi = 300;  // Pixels for each inch. In SVG and PDF: of the drawing in them.
   std::optional<FigureFormat> format;  // Absent: pdf.
-  std::optional<std::string> title;  // Absent: the model's name.
+  std::optional<std::string> title;  // Absent: the name of the model.
   std::optional<std::string> caption;
-  std::optional<std::string> credit;  // Absent: the model's.
-  // Of the layers and classes that the drawing shows: not of what an opaque layer above covers
-  // wholly, or of what is not in the drawing.
+  std::optional<std::string> credit;  // Absent: that of the model.
+  // For the layers and classes that the drawing shows. Classes outside of the drawing, and those
+  // completely below an opaque layer, are left out.
   bool legend = true;
-  // What the legend calls what waits for review, which is hatched.
+  // Text in the legend for edits that wait for review, which are hatched.
   std::string provisional = "Provisional";
-  // What the legend puts behind the title of a list that goes on in another column.
+  // Text in the legend after the title of a list that continues in another column.
   std::string continued = "(continued)";
   std::optional<FigureLabels> labels;
   bool operator==(const FigureRequest&) const = default;
@@ -2656,11 +2678,11 @@ Result<void> check(const FigureRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<FigureRequest> = Schema::FigureRequest;
 
-// Class of a column's values. Of numbers from `from` (included) to `to`, which only the last class includes; of others `value`.
+// Class of a column's values. For numbers: from `from` (included) to `to`, which only the last class includes. Otherwise `value`.
 struct ColumnClass {
   std::optional<double> from;
   std::optional<double> to;
-  std::optional<std::string> value;  // As text: of a number as JSON, of a term its key.
+  std::optional<std::string> value;  // As text. For a number: as JSON. For a term: its key.
   std::int64_t records = 0;
   bool operator==(const ColumnClass&) const = default;
 };
@@ -2673,9 +2695,10 @@ inline constexpr Schema kSchemaOf<ColumnClass> = Schema::ColumnClass;
 struct ColumnClasses {
   std::vector<ColumnClass> classes;
   int total = 0;
-  std::int64_t records = 0;  // Of the table.
-  std::int64_t unclassified = 0;  // Whose values are rarer than those of the classes.
-  std::int64_t without = 0;  // That have no value in this column.
+  std::int64_t records = 0;  // Number of records of the table.
+  // Number of records whose values are rarer than those of the classes.
+  std::int64_t unclassified = 0;
+  std::int64_t without = 0;  // Number of records without a value in this column.
   bool operator==(const ColumnClasses&) const = default;
 };
 void read(const nlohmann::json& json, ColumnClasses& value);
@@ -2683,10 +2706,10 @@ nlohmann::json to_json(const ColumnClasses& value);
 template <>
 inline constexpr Schema kSchemaOf<ColumnClasses> = Schema::ColumnClasses;
 
-// Whether the server can work.
+// Readiness of the server.
 struct Readiness {
   bool ready = false;
-  std::vector<std::string> reasons;  // What is missing.
+  std::vector<std::string> reasons;  // Parts that do not work.
   bool operator==(const Readiness&) const = default;
 };
 void read(const nlohmann::json& json, Readiness& value);
@@ -2694,7 +2717,7 @@ nlohmann::json to_json(const Readiness& value);
 template <>
 inline constexpr Schema kSchemaOf<Readiness> = Schema::Readiness;
 
-// Which release of Strata runs.
+// Release of Strata.
 struct ServerVersion {
   std::string version;  // Semantic version of the release.
   bool operator==(const ServerVersion&) const = default;
