@@ -1,5 +1,5 @@
-// Leaves `third-party-notices.txt` in the build: the licences of the npm packages whose code is in
-// it.
+// Writes `third-party-notices.txt` into the build: the licenses of the npm packages whose code is
+// in the build.
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Plugin } from "vite";
@@ -21,7 +21,7 @@ export function thirdPartyNotices(): Plugin {
       const packages = new Map<string, string>();
       for (const chunk of Object.values(bundle))
         for (const id of chunk.type === "chunk" ? Object.keys(chunk.modules) : []) {
-          // Rollup marks what it makes of a CommonJS module by a zero byte.
+          // Rollup marks the modules that it generates from CommonJS with a zero byte.
           const found = kFolder.exec(id.replaceAll("\\", "/").replace(/^\0/, ""));
           if (found) packages.set(found[2]!, found[1]!);
         }

@@ -4,10 +4,10 @@ import { compressedBeside } from "./compress";
 import { thirdPartyNotices } from "./notices";
 import { operationsWithoutScript } from "./operations";
 
-// The server's address while developing the page with `npm run dev`.
+// The server's address during development of the page with `npm run dev`.
 const server = process.env["STRATA_SERVER"] ?? "http://127.0.0.1:8080";
 
-// Redoc's readers of other kinds of contracts than ours are left out.
+// Replaces Redoc's readers of other kinds of contracts.
 const unused = fileURLToPath(new URL("src/docs/unused.ts", import.meta.url));
 
 export default defineConfig({
@@ -23,14 +23,14 @@ export default defineConfig({
     outDir: "dist",
     target: "es2022",
     sourcemap: true,
-    manifest: true, // what is loaded with what, for the test of the page's weight
-    // The server's content security policy allows only files of its own: nothing is inlined into
-    // the page.
+    manifest: true, // the import graph, for the test of the page's size
+    // The server's content security policy allows only files of the same origin: nothing is inlined
+    // into the page.
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },
     rollupOptions: {
       input: { index: "index.html", docs: "docs.html", "kiosk-worker": "src/kiosk/worker.ts" },
-      // A service worker has an address that never changes.
+      // A service worker needs a constant address.
       output: {
         entryFileNames: ({ name }) =>
           name === "kiosk-worker" ? "kiosk-worker.js" : "assets/[name]-[hash].js",

@@ -1,11 +1,11 @@
-// An interface whose calls are answered by functions: what a test says of the server, without HTTP.
+// An Api whose calls are answered by functions: a test's fake server, without HTTP.
 
 import type { Api } from "../src/net/api";
 import type { Call, Options } from "../src/net/calls";
 
 type Answers = { [C in Call]?: (options: Options<C>, progress?: unknown) => unknown };
 
-/** A call that has no function fails, and so does the test. */
+/** A call without a function fails the test. */
 export function fakeApi(answers: Answers): Api {
   const ask = async (call: Call, options: never = {} as never): Promise<unknown> => {
     const answer = answers[call];

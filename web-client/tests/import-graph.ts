@@ -1,4 +1,4 @@
-// Which file of the page imports which, types included, and what is wrong with that.
+// The imports between files of the page, including types, and checks of them.
 
 import { readdirSync, readFileSync } from "node:fs";
 import { join, posix } from "node:path";
@@ -6,7 +6,7 @@ import ts from "typescript";
 
 export interface Import {
   to: string;
-  /** Nothing of it is left when the page runs. */
+  /** Absent at run time. */
   typeOnly: boolean;
 }
 /** Files by their path within `src`, with `/` between its parts. */
@@ -25,7 +25,7 @@ const kFolders = [
   "features",
   "shell",
 ];
-/** What the kiosk's page is made of; the words of the workbench are not loaded for it. */
+/** The folders of the kiosk's page, which does not load the workbench's texts. */
 const kOfKiosk = ["core", "math", "net", "domain", "ui", "tools", "session", "kiosk"];
 /** Decides whether the workbench or the kiosk is loaded. */
 const kEntry = "shell/main.ts";
@@ -45,7 +45,7 @@ export function readImports(root: string): ImportGraph {
   );
 }
 
-/** Targets as they are written, from the folder of the file. */
+/** Import targets, relative to the file's folder. */
 export function importsOf(file: string, code: string): Import[] {
   const found: Import[] = [];
   const add = (specifier: ts.Node | undefined, typeOnly: boolean): void => {
@@ -95,13 +95,13 @@ function mayImport(from: string, { to, typeOnly }: Import): boolean {
   return kFolders.includes(own) && kFolders.indexOf(other) <= kFolders.indexOf(own);
 }
 
-/** Imports that lead from a lower folder to a higher one, or from one feature to another. */
+/** Imports from a lower folder to a higher one, or between features. */
 export const wrongImports = (graph: ImportGraph): string[] =>
   [...graph].flatMap(([from, imports]) =>
     imports.filter((each) => !mayImport(from, each)).map(({ to }) => `${from} imports ${to}`),
   );
 
-/** Files that import each other in a circle: one circle for each file that is found again. */
+/** Circular imports: one circle for each file that is reached again. */
 export function circles(graph: ImportGraph): string[] {
   const found: string[] = [];
   const done = new Set<string>();

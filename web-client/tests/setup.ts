@@ -1,4 +1,4 @@
-// Node 18 has the web's crypto, but not as a global.
+// Node 18 has the Web Crypto API, but not as a global.
 import { webcrypto } from "node:crypto";
 import { loadTexts } from "../src/texts";
 

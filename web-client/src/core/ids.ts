@@ -1,4 +1,4 @@
-// Names that this page gives to what it sends.
+// Identifiers that this page gives to its messages and requests.
 
 /** A random UUID; also on plain-HTTP addresses, where `crypto.randomUUID` is absent. */
 export function newId(): string {

@@ -1,5 +1,5 @@
-// A value that this browser keeps for the page. Where it keeps nothing (it is full, or told not
-// to), the value lives as long as the page.
+// A value that this browser keeps for the page. Where the browser does not store it (its storage is
+// full or disabled), the value lives as long as the page.
 
 export class Kept<T> {
   private _value: T;
@@ -14,7 +14,7 @@ export class Kept<T> {
       const text = _storage()?.getItem(_name);
       if (text) this._value = JSON.parse(text) as T;
     } catch {
-      // What stands there is not ours, or must not be read: as if there were nothing.
+      // The stored text is not from this page or cannot be read: the default stays.
     }
   }
 
@@ -27,7 +27,7 @@ export class Kept<T> {
     try {
       this._storage()?.setItem(this._name, JSON.stringify(value));
     } catch {
-      // It is kept here.
+      // The value is kept in memory.
     }
   }
 }

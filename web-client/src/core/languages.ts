@@ -1,9 +1,9 @@
-// Languages by their tags (BCP 47), and names of things in several of them.
+// Languages by their tags (BCP 47), and names of things in several languages.
 
 import { pageLocale } from "./locale";
 import type { Labels } from "./protocol.gen";
 
-/** Those that are offered; any other tag may be written. */
+/** The languages on offer; a user can enter any other tag. */
 export const kCommonLanguages: readonly string[] = [
   "ar",
   "bg",
@@ -54,7 +54,7 @@ export const kCommonLanguages: readonly string[] = [
   "zh-Hant",
 ];
 
-/** As tags are usually written, "pt-BR"; null where it is none. */
+/** The tag in its usual form, "pt-BR"; null for an invalid tag. */
 export function wellWrittenTag(tag: string): string | null {
   try {
     return Intl.getCanonicalLocales(tag)[0] ?? null;
@@ -63,14 +63,14 @@ export function wellWrittenTag(tag: string): string | null {
   }
 }
 
-/** What those who speak it call it: "español"; empty where that is not known. */
+/** The name of a language in that language: "español"; empty where it is unknown. */
 export function nameOfLanguage(tag: string): string {
   const locale = wellWrittenTag(tag);
   if (!locale) return "";
   return new Intl.DisplayNames([locale], { type: "language", fallback: "none" }).of(locale) ?? "";
 }
 
-/** What this person's page calls it: "Spanish"; the tag itself where that is not known. */
+/** The name of a language in the page's language: "Spanish"; the tag itself where it is unknown. */
 export const languageInWords = (tag: string): string => {
   const locale = wellWrittenTag(tag);
   return locale
@@ -79,9 +79,9 @@ export const languageInWords = (tag: string): string => {
 };
 
 export interface LabelRow {
-  language: string; // as it was written
+  language: string; // as the user entered it
   label: string;
-  description?: string; // where the field has room for one
+  description?: string; // where the field has room for a description
 }
 
 export type ReadLabels = { labels: Labels } | { row: number; wrong: "no_language" | "twice" };
@@ -95,8 +95,8 @@ export const rowsOf = (labels: Labels, descriptions: Labels = {}): LabelRow[] =>
   }));
 
 /**
- * What the rows say; those without a label say nothing. Whether a tag is one is for the server to
- * judge.
+ * Returns the labels in the rows; rows without a label and a description are skipped. The server
+ * checks whether a tag is valid.
  */
 export function labelsOf(rows: readonly LabelRow[]): ReadLabels {
   const labels = new Map<string, string>();
@@ -112,7 +112,7 @@ export function labelsOf(rows: readonly LabelRow[]): ReadLabels {
   return { labels: Object.fromEntries(labels) };
 }
 
-/** The descriptions of rows in which labelsOf() finds nothing wrong. */
+/** The descriptions in rows that labelsOf() accepted. */
 export const descriptionsOf = (rows: readonly LabelRow[]): Labels =>
   Object.fromEntries(
     rows

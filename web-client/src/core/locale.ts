@@ -1,4 +1,4 @@
-// The language of the page, and how numbers, moments and lists are written in it. Set once, before
+// The language of the page, and the format of numbers, times and lists in it. Set once, before
 // anything is shown.
 
 export const kPageLanguages = ["en", "de", "es"] as const;
@@ -13,8 +13,7 @@ const isPageLanguage = (language: string): language is PageLanguage =>
   (kPageLanguages as readonly string[]).includes(language);
 
 /**
- * What was chosen, else the first of the browser's languages that the page is written in, else
- * English.
+ * The chosen language, else the first of the browser's languages that the page has, else English.
  */
 export function pageLanguage(chosen: string | null, browser: readonly string[]): PageLanguage {
   return (
@@ -23,9 +22,9 @@ export function pageLanguage(chosen: string | null, browser: readonly string[]):
 }
 
 /**
- * From now on numbers and moments are written as in `language`, in the browser's own variety of it
- * where it names one ("de-CH"), and data with names in several languages are called by the language
- * that was chosen, or else by the browser's.
+ * Sets the language of numbers and times to `language`, in the browser's own variety of it if the
+ * browser names one ("de-CH"). Data with names in several languages use the chosen language, or
+ * else the browser's.
  */
 export function setLocale(
   language: PageLanguage,
@@ -45,13 +44,13 @@ export function setLocale(
       .find(({ type }) => type === "decimal")?.value ?? ".";
 }
 
-/** The tag whose rules numbers, moments and plurals follow: "en-GB". */
+/** The tag that sets the rules for numbers, times and plurals: "en-GB". */
 export const pageLocale = (): string => locale;
-/** Those that this person reads, the best first. */
+/** The languages that this person reads, the best first. */
 export const personLanguages = (): readonly string[] => languages;
 
 export const formatCount = (n: number): string => n.toLocaleString(locale);
-/** With that many decimals, none grouped: for coordinates. */
+/** Formats with `decimals` decimals and without grouping: for coordinates. */
 export const formatFixed = (value: number, decimals: number): string =>
   value.toLocaleString(locale, {
     minimumFractionDigits: decimals,
@@ -61,25 +60,26 @@ export const formatFixed = (value: number, decimals: number): string =>
 export const formatList = (items: readonly string[]): string =>
   new Intl.ListFormat(locale, { style: "short", type: "unit" }).format(items);
 /**
- * Numbers that belong together, as the coordinates of a place: parted by what is no decimal sign.
+ * Joins numbers that belong together, such as the coordinates of a place, by a separator that is
+ * not the decimal sign.
  */
 export const formatPlace = (numbers: readonly string[]): string =>
   numbers.join(decimal === "," ? "; " : ", ");
 
-/** A number with all of its digits, as it is typed into a field. */
+/** A number with all of its digits, in the form that users type. */
 export const typedNumber = (value: number): string => withDecimalSign(String(value));
 /**
- * Between the cells of CSV files, as spreadsheets of the language's countries take them: a comma
- * stands in their numbers.
+ * The separator of cells in CSV files, as spreadsheets of the language's countries expect it: a
+ * semicolon where numbers contain a comma.
  */
 export const csvSeparator = (): "comma" | "semicolon" => (decimal === "," ? "semicolon" : "comma");
-/** What JavaScript wrote with a point. */
+/** Replaces the point of a number that JavaScript formatted by the decimal sign of the language. */
 export const withDecimalSign = (plain: string): string => plain.replace(".", decimal);
 
 /**
- * What was typed into a field: with the decimal sign of the language, or a point. NaN where it is
- * no number, and where it may be either of two: in languages with a decimal comma "1.500" is not
- * told from a grouped 1500. Nothing is guessed.
+ * Parses a typed number with the decimal sign of the language or a point. Returns NaN for anything
+ * else and for ambiguous input: in languages with a decimal comma, "1.500" may be a grouped 1500.
+ * Nothing is guessed.
  */
 export function readNumber(typed: string): number {
   const text = typed.trim();
@@ -88,5 +88,5 @@ export function readNumber(typed: string): number {
   return /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(plain) ? Number(plain) : Number.NaN;
 }
 
-/** As dictionaries of the language order words. */
+/** Compares words in the dictionary order of the language. */
 export const compareWords = (a: string, b: string): number => a.localeCompare(b, locale);

@@ -1,12 +1,12 @@
-// What the page itself says of a call that failed, where no server said it. The words come with the
-// language; core/ has none of its own.
+// The page's own problem texts for failed calls without a problem from the server. Each language
+// provides the texts; core/ contains none.
 
-/** What happened, and what to do. */
+/** A title and the advice on what to do. */
 type Told = readonly [title: string, detail: string];
 
 export interface OwnProblems {
   unreachable: Told;
-  /** Of statuses that came without a problem, as from a proxy. */
+  /** For statuses of responses without a problem body, such as a proxy's. */
   statuses: Readonly<Record<string, Told>>;
   other_status(status: number): string;
   other_status_detail: string;

@@ -1,4 +1,4 @@
-// The generated types of the protocol, with what the page needs to be complete.
+// The generated types of the protocol, with additions that the page needs.
 
 import type * as wire from "./protocol.gen";
 
@@ -44,14 +44,14 @@ export interface Layer extends wire.Layer {
   palette: Palette;
 }
 
-/** RFC 9457, with the field that is wrong. */
+/** A problem of RFC 9457, with the field that is wrong. */
 export interface ProblemBody {
   status: number;
   title: string;
   detail?: string;
   field?: string;
-  offset?: number; // of an expression: the character that is wrong, from 0
-  rows?: wire.RecordsReport; // of records in bulk
+  offset?: number; // in an expression: index of the wrong character, from 0
+  rows?: wire.RecordsReport; // for requests with many records
 }
 
 /** `min` and `max` default to the outer points. */
@@ -70,7 +70,7 @@ export const completeLayer = (layer: wire.Layer): Layer => ({
   palette: completePalette(layer.palette),
 });
 
-/** Each may do what the ones before may. */
+/** Each role includes the rights of those before it. */
 export const kRoles: readonly wire.Role[] = [
   "guest",
   "viewer",
@@ -79,22 +79,23 @@ export const kRoles: readonly wire.Role[] = [
   "administrator",
   "owner",
 ];
-/** What people may be in one project, ascending. */
+/** Roles in one project, ascending. */
 export const kProjectRoles: readonly wire.ProjectRole[] = ["viewer", "annotator", "curator"];
 
-/** Who gets the files of a model's scan, and what is as good as they are. */
+/** Whether the role may download a model's scan and files of the same quality. */
 export const mayDownload = (
   role: wire.Role,
   { source_download: sourceDownload }: Pick<wire.Model, "source_download">,
 ): boolean => kRoles.indexOf(role) >= kRoles.indexOf(sourceDownload);
-/** Who may change what layers hold. */
+/** Whether the role may change the values of layers. */
 export const mayPaint = (role: wire.Role): boolean =>
   kRoles.indexOf(role) >= kRoles.indexOf("annotator");
-/** Who may change what layers and models there are, and what they are called. */
+/** Whether the role may create, delete and rename layers and models. */
 export const mayCurate = (role: wire.Role): boolean =>
   kRoles.indexOf(role) >= kRoles.indexOf("curator");
 /**
- * Its values are what was computed: nobody changes them until it is unlocked to be edited by hand.
+ * Whether the layer's values are as computed: nobody can change them until a user unlocks the layer
+ * for editing by hand.
  */
 export const isAsComputed = ({
   computed,
@@ -102,7 +103,7 @@ export const isAsComputed = ({
   edited_by_hand: editedByHand,
 }: Pick<wire.Layer, "computed" | "locked" | "edited_by_hand">): boolean =>
   computed !== undefined && locked && editedByHand !== true;
-/** Who may invite people, and say what they may do. */
+/** Whether the role may invite people and set their roles. */
 export const mayAdminister = (role: wire.Role): boolean =>
   kRoles.indexOf(role) >= kRoles.indexOf("administrator");
 

@@ -1,6 +1,7 @@
-// The contract of the API as a page: Redoc, put together from its parts. Its own frame loads a
-// picture from another site and starts a search worker from a text, which our content security
-// policy forbids, so the page has neither. The menu is ours: Redoc's has menu items without a menu.
+// The contract of the API as a page: Redoc, assembled from its parts. Redoc's own frame loads a
+// picture from another site and starts a search worker from a string. Our content security policy
+// forbids both, so the page has neither. The page has its own menu, because Redoc's menu items are
+// not in a menu.
 import { autorun } from "mobx";
 import { type ComponentProps, createElement, useEffect, useState } from "react";
 import { createRoot } from "react-dom/client";
@@ -24,7 +25,7 @@ const kContract = "/api/v1/openapi.json";
 
 type Menu = AppStore["menu"];
 type Item = Menu["items"][number];
-type Contents = ComponentProps<typeof ContentItems>["items"]; // what the menu's items are, too
+type Contents = ComponentProps<typeof ContentItems>["items"]; // also the type of the menu's items
 
 const isOperation = (item: Item): item is OperationModel => item.type === "operation";
 
@@ -37,7 +38,7 @@ function MenuLink({ item, active, menu }: { item: Item; active: boolean; menu: M
     {
       href: `#${item.id}`,
       "aria-current": active ? "location" : undefined,
-      onClick: () => menu.closeSidebar(), // a small window shows the menu over the contents
+      onClick: () => menu.closeSidebar(), // in a small window, the menu covers the contents
     },
     method,
     " ",
@@ -98,7 +99,7 @@ function Contract({ store }: { store: AppStore }) {
   );
 }
 
-/** Redoc leaves its choices of a media type or an example without a name. */
+/** Redoc's select boxes for a media type or an example have no accessible name. */
 function nameChoices(place: Element): void {
   for (const choice of place.querySelectorAll("select:not([aria-label])"))
     choice.setAttribute(

@@ -1,4 +1,4 @@
-// Colours of Redoc whose own have too little contrast (WCAG 2.2, 1.4.3). A response has one colour
+// Replaces Redoc's colors that have too little contrast (WCAG 2.2, 1.4.3). A response has one color
 // on the light page and one on the dark tabs of its samples.
 import type { AppStore } from "redoc";
 

@@ -1,5 +1,5 @@
-// Stands for what Redoc reads other kinds of contracts with: several files, YAML, Swagger 2. Ours
-// is one file of JSON.
+// Replaces the modules with which Redoc reads other kinds of contracts: several files, YAML,
+// Swagger 2. Our contract is one JSON file.
 function unused(): never {
   throw new Error("Only one kind of contract is read here.");
 }

@@ -1,19 +1,19 @@
-// Lines of what was done in a project: without the page.
+// Lines of a project's activity, without the user interface.
 
 import type { Activity } from "../core/protocol.gen";
 
-/** What is known so far, the newest first, and what the server calls the place where it goes on. */
+/** The known lines, the newest first, and the server's cursor for the next page. */
 export interface ActivityLog {
   lines: readonly Activity[];
-  next: string | undefined; // nothing: all of it is here
+  next: string | undefined; // undefined: the log is complete
 }
 
 const isNewer = (a: Activity, b: Activity): number =>
   a.time < b.time ? 1 : a.time > b.time ? -1 : b.id - a.id;
 
 /**
- * With a newer first page. A line that went on since has moved to the top; where the page does not
- * reach what is known, it is all there is.
+ * Merges a newer first page. A line with new events has moved to the top. If the page does not
+ * reach the known lines, the page replaces them.
  */
 export function withFirstPage(log: ActivityLog, page: ActivityLog): ActivityLog {
   const ids = new Set(page.lines.map(({ id }) => id));
@@ -32,7 +32,7 @@ export function withNextPage(log: ActivityLog, page: ActivityLog): ActivityLog {
   return { lines: [...log.lines, ...page.lines.filter(({ id }) => !ids.has(id))], next: page.next };
 }
 
-/** By the day of their last time, as `dayOf` names it. */
+/** Groups lines by the day of their last time, as `dayOf` names it. */
 export function byDay(
   lines: readonly Activity[],
   dayOf: (iso: string) => string,

@@ -1,11 +1,11 @@
-// Values of records as people read and write them. The server judges what a value may be; here is
-// only what a field needs.
+// Values of records in the form in which people read and write them. The server validates values;
+// this file has only the rules that a field needs.
 
 import { personLanguages, readNumber, typedNumber } from "../core/locale";
 import { isListOfMarks } from "./marks";
 import type { CellValue, Column, Labels, Table, TableRecord } from "../core/protocol.gen";
 
-/** The language and those that it is a kind of, in lower case: "es-mx", "es". */
+/** The language and the more general ones, in lower case: "es-mx", "es". */
 function kindsOfLanguage(language: string): string[] {
   const tags: string[] = [];
   for (
@@ -18,8 +18,8 @@ function kindsOfLanguage(language: string): string[] {
 }
 
 /**
- * What it is called in the first of the person's languages that it has a name in: of "es-MX" also
- * the name in "es".
+ * The name in the first of the person's languages that has one: "es-MX" also matches a name in
+ * "es".
  */
 export function labelOf(
   thing: { name: string; labels: Labels },
@@ -35,7 +35,7 @@ export function labelOf(
   return thing.name;
 }
 
-/** The same of what is said of it. */
+/** The same for the description. */
 export const descriptionIn = (
   thing: { description: string; descriptions: Labels },
   languages?: readonly string[],
@@ -56,8 +56,8 @@ export function namedKeys(value: CellValue | undefined): number[] {
 }
 
 /**
- * As it is typed and shown; what names records is shown by their labels instead, and of lines and
- * points how many there are.
+ * The value as typed and shown. Cells that name records show labels instead; for lines and points
+ * the text is their number.
  */
 export function cellText(value: CellValue | undefined): string {
   if (value === null || value === undefined) return "";
@@ -71,7 +71,7 @@ export const sameValue = (a: CellValue | undefined, b: CellValue | undefined): b
 
 export type Parsed = { value: CellValue } | { wrong: "number" | "whole" };
 
-/** What was typed into a field of the column; nothing is no value. */
+/** Parses the text that a user typed into a field of the column; an empty text is no value. */
 export function parseCell(column: Pick<Column, "kind">, text: string): Parsed {
   const typed = column.kind === "text" ? text : text.trim();
   if (typed === "") return { value: null };
@@ -98,10 +98,10 @@ export function parseCell(column: Pick<Column, "kind">, text: string): Parsed {
 }
 
 type Naming = Pick<Table, "columns" | "kind" | "title_column">;
-/** What a record of another table is called; null: it is not known, or not yet. */
+/** Returns the name of a record of another table; null: unknown, or not loaded yet. */
 export type NameOfKey = (table: number, key: number) => string | null;
 
-/** Whether what a record has in the column can be what it is called. */
+/** Whether values of the column can be a record's name. */
 export const canBeTitle = ({ kind }: Pick<Column, "kind">): boolean =>
   kind !== "relation" &&
   kind !== "picture" &&
@@ -111,8 +111,8 @@ export const canBeTitle = ({ kind }: Pick<Column, "kind">): boolean =>
   kind !== "boolean";
 
 /**
- * The column that tells records apart for people: the one that they chose, or the best one; null
- * where no column does.
+ * The column that distinguishes records for people: the chosen one, or the best one; null where no
+ * column can.
  */
 export function labelColumn(table: Pick<Table, "columns" | "title_column">): Column | null {
   const chosen = table.columns.find(({ id }) => id === table.title_column);
@@ -124,7 +124,7 @@ function bestLabelColumn(table: Pick<Table, "columns">): Column | null {
   return (
     texts.find((column) => column.required && column.unique) ??
     texts.find((column) => column.unique || column.required) ??
-    // what an observation is of, and not who made it
+    // the subject of an observation, not its author
     table.columns.slice(0, 1).find(({ kind }) => kind === "term") ??
     texts[0] ??
     table.columns.find((column) => column.unique && !namesRecords(column)) ??
@@ -133,8 +133,8 @@ function bestLabelColumn(table: Pick<Table, "columns">): Column | null {
 }
 
 /**
- * The columns that may name a record, the best first: of terms their labels in the person's
- * languages, the label of none, and the code.
+ * The columns that can name a record, the best first. For terms: labels in the person's languages,
+ * then the label without a language, then the code.
  */
 export function namingColumns(table: Naming, languages?: readonly string[]): Column[] {
   const last = [labelColumn(table) ?? [], bestLabelColumn(table) ?? []].flat();
@@ -149,8 +149,8 @@ export function namingColumns(table: Naming, languages?: readonly string[]): Col
 }
 
 /**
- * What the record is called; empty where it has no name. `nameOf`: of what a term names; without
- * it another column says the name.
+ * The name of the record; empty where it has none. `nameOf` returns the name of the term that a
+ * cell points to; without it, another column provides the name.
  */
 export function labelOfRecord(
   table: Naming,
@@ -171,7 +171,7 @@ export function labelOfRecord(
   return "";
 }
 
-/** The first one that the record has: the number of its file. */
+/** The first picture of the record: the number of its file. */
 export function firstPicture(
   table: Pick<Table, "columns">,
   { values }: Pick<TableRecord, "values">,
@@ -183,7 +183,9 @@ export function firstPicture(
   );
 }
 
-/** Those that say something of the record in words: not the one that names it, nor pictures. */
+/**
+ * Columns that describe the record in words, without the one that names it and without pictures.
+ */
 export function tellingColumns(table: Naming, { values }: Pick<TableRecord, "values">): Column[] {
   const [name] = namingColumns(table);
   return table.columns.filter(

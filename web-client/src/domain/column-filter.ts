@@ -1,6 +1,6 @@
-// What is chosen in the filter of one column, as a condition of the language that filters records
-// (CQL2 text) and back. The text is all that there is: a condition that was built here is found in
-// it again, and what somebody typed beside it stays.
+// The choices in the filter of one column, as a condition of the language that filters records
+// (CQL2 text), and back. The text is the only state: the functions recognize a condition in it that
+// they built, and keep all other conditions that a user typed.
 
 import { nameInText } from "./completion";
 import type { Column } from "../core/protocol.gen";
@@ -10,8 +10,8 @@ export type FilterValue = string | number | boolean;
 export type ColumnFilter =
   | { is: "one_of"; values: readonly FilterValue[]; empty: boolean }
   /**
-   * Both ends belong to it; an empty text leaves one open. Numbers as JavaScript writes them, times
-   * as in the table.
+   * Both ends are included; an empty text leaves an end open. Numbers as JavaScript formats them,
+   * times as in the table.
    */
   | { is: "range"; from: string; to: string }
   | { is: "contains"; text: string }
@@ -26,7 +26,7 @@ const isTime = ({ kind }: Pick<Column, "kind">): boolean =>
   kind === "date" || kind === "timestamp" || kind === "period";
 const isText = ({ kind }: Pick<Column, "kind">): boolean => kind === "text" || kind === "url";
 
-/** What can be asked of a column, the most usual first. */
+/** The kinds of filter for a column, the most common first. */
 export function filterKinds(column: Pick<Column, "kind">): FilterKind[] {
   const kinds: FilterKind[] = [];
   if (isNumber(column) || isTime(column)) kinds.push("range");
@@ -36,15 +36,14 @@ export function filterKinds(column: Pick<Column, "kind">): FilterKind[] {
   return [...kinds, "filled", "empty"];
 }
 
-// ── one condition
-// ───────────────────────────────────────────────────────────────────────────────────────────────────
+// ── one condition ────────────────────────────────────────────────────────────────────────────────
 
 const quoted = (text: string): string => `'${text.replaceAll("'", "''")}'`;
 const literal = (value: FilterValue): string =>
   typeof value === "string" ? quoted(value) : String(value);
 const patternOf = (text: string): string => quoted(`%${text.replaceAll(/[\\%_]/g, "\\$&")}%`);
 
-/** Empty: nothing is asked, so that all records stay. */
+/** Returns an empty text for a filter without a condition: all records remain. */
 export function conditionOf(column: Pick<Column, "slug" | "kind">, filter: ColumnFilter): string {
   const name = nameInText(column.slug);
   switch (filter.is) {
@@ -89,8 +88,8 @@ const valuesIn = (list: string): FilterValue[] =>
   (list.match(new RegExp(kLiteral, "g")) ?? []).map(valueFor);
 
 /**
- * What a condition asks of the column, where it is one that conditionOf() writes; null for all
- * others.
+ * Returns the filter of the column that a condition of conditionOf() expresses; null for all other
+ * conditions.
  */
 export function filterOf(
   column: Pick<Column, "slug" | "kind">,
@@ -133,11 +132,10 @@ export function filterOf(
   return null;
 }
 
-// ── the text
-// ────────────────────────────────────────────────────────────────────────────────────────────────────────
+// ── the text ─────────────────────────────────────────────────────────────────────────────────────
 
 /**
- * The conditions that a filter joins by "and"; one that joins by "or" is a single one, in
+ * Splits a filter at its top-level "and". A condition joined by "or" is one condition, in
  * parentheses.
  */
 export function conditionsOf(filter: string): string[] {
@@ -146,7 +144,7 @@ export function conditionsOf(filter: string): string[] {
   const parts: string[] = [];
   let depth = 0;
   let begun = 0;
-  let between = false; // whose "and" joins nothing
+  let between = false; // its "and" does not join conditions
   for (const { 0: token, index } of text.matchAll(
     /'(?:[^']|'')*'|"[^"]*"|[()]|[\p{L}_][\p{L}\p{N}_.-]*/gu,
   )) {
@@ -166,7 +164,10 @@ export function conditionsOf(filter: string): string[] {
   return [...parts, text.slice(begun).trim()].filter((part) => part !== "");
 }
 
-/** What the filter asks of the column, as far as it was chosen and not typed otherwise. */
+/**
+ * The part of the filter that was chosen for the column; conditions that were typed in another form
+ * are not included.
+ */
 export const chosenIn = (
   filter: string,
   column: Pick<Column, "slug" | "kind">,
@@ -175,7 +176,7 @@ export const chosenIn = (
     .map((part) => filterOf(column, part))
     .find((found) => found !== null) ?? null;
 
-/** The filter with another choice for the column, or none. */
+/** Returns the filter with another choice for the column, or without one. */
 export function withChoice(
   filter: string,
   column: Pick<Column, "slug" | "kind">,
@@ -187,7 +188,7 @@ export function withChoice(
   return [...others, own].filter((part) => part !== "").join(" and ");
 }
 
-/** Of a condition that stands alone again. */
+/** For a condition that is the only one again. */
 function withoutParentheses(condition: string): string {
   const inner = condition.startsWith("(") && condition.endsWith(")") ? condition.slice(1, -1) : "";
   return inner !== "" && conditionsOf(inner)[0] === condition ? inner : condition;

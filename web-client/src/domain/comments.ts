@@ -1,8 +1,8 @@
-// Threads of comments, and what their texts say: without the page.
+// Threads of comments and the parts of their texts, without the user interface.
 
 import type { Comment, Point3 } from "../core/protocol.gen";
 
-/** A first comment has its place. */
+/** The first comment of a thread, which has a place. */
 export type FirstComment = Comment & { position: Point3; normal: Point3 };
 
 export interface Thread {
@@ -15,7 +15,7 @@ export type ThreadState = "open" | "resolved" | "all";
 
 export interface ThreadFilter {
   state: ThreadState;
-  /** Only where this person wrote something, or somebody wrote to them. */
+  /** If set, only threads in which this person wrote or was mentioned. */
   of: string | null;
   words: string;
 }
@@ -23,7 +23,7 @@ export interface ThreadFilter {
 const isFirst = (comment: Comment): comment is FirstComment =>
   comment.thread === undefined && comment.position !== undefined && comment.normal !== undefined;
 
-/** Those that somebody wrote in last come first. */
+/** Sorts by the newest comment, descending. */
 export function threadsOf(comments: Iterable<Comment>): Thread[] {
   const threads = new Map<number, Thread>();
   const all = [...comments].sort((a, b) => a.id - b.id);
@@ -41,7 +41,10 @@ export function threadsOf(comments: Iterable<Comment>): Thread[] {
 
 export const commentsIn = ({ first, replies }: Thread): Comment[] => [first, ...replies];
 
-/** Every word must begin one of somebody's text or name in the thread, in any case. */
+/**
+ * Finds threads by words: each word must be the start of a word of a text or author name in the
+ * thread, ignoring case.
+ */
 export function findThreads(
   threads: readonly Thread[],
   { state, of, words }: ThreadFilter,
@@ -71,7 +74,7 @@ export type TextPart =
 
 const kParts = /\bhttps?:\/\/[^\s<>"]+|(?<![A-Za-z0-9._@-])@[A-Za-z0-9][A-Za-z0-9._@-]*/giu;
 
-/** Plain text with its addresses and the @names of those people. */
+/** Splits a text into plain text, addresses and the @names of `people`. */
 export function textParts(text: string, people: ReadonlySet<string>): TextPart[] {
   const known = new Set([...people].map((name) => name.toLowerCase()));
   const parts: TextPart[] = [];
@@ -97,9 +100,7 @@ export function textParts(text: string, people: ReadonlySet<string>): TextPart[]
 export const mentions = (text: string, name: string): boolean =>
   textParts(text, new Set([name])).some(({ kind }) => kind === "mention");
 
-/**
- * Names may end in what ends a sentence; the longest that somebody has is meant. Empty: nobody's.
- */
+/** A name may end with punctuation. Returns the longest known name; empty if no person has it. */
 function mentionIn(found: string, known: ReadonlySet<string>): string {
   for (let whole = found; whole.length > 1; whole = whole.slice(0, -1)) {
     if (known.has(whole.slice(1).toLowerCase())) return whole;
@@ -108,7 +109,7 @@ function mentionIn(found: string, known: ReadonlySet<string>): string {
   return "";
 }
 
-/** Without what belongs to the sentence around it. Empty: it is no address. */
+/** Removes punctuation that belongs to the sentence. Empty: not an address. */
 function linkIn(found: string): string {
   let whole = found;
   for (;;) {
@@ -126,13 +127,13 @@ function linkIn(found: string): string {
   }
 }
 
-/** Which comments a person has seen: all up to one, and of threads more. */
+/** Which comments a person has read: all up to `upto`, and more by thread. */
 export interface ReadMarks {
   upto: number;
   threads: Record<string, number>;
 }
 
-/** Somebody else wrote there since. */
+/** Whether another person has written there since. */
 export function isUnread(thread: Thread, { upto, threads }: ReadMarks, me: string): boolean {
   const seen = Math.max(upto, threads[thread.first.id] ?? 0);
   return commentsIn(thread).some(({ id, user, deleted }) => id > seen && user !== me && !deleted);

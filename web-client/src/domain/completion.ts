@@ -1,13 +1,13 @@
-// Completion of names in an expression (docs/reference/conditions.md): what the word before the caret may
-// become.
+// Completion of names in an expression (docs/reference/conditions.md): the candidates for the word
+// before the caret.
 
 export interface Suggestion {
-  text: string; // that replaces the word
-  hint: string; // what it is, for people
+  text: string; // replaces the word
+  hint: string; // a description for people
 }
 
 export interface Completion {
-  from: number; // where the word begins
+  from: number; // start of the word
   suggestions: Suggestion[];
 }
 
@@ -36,8 +36,8 @@ export const nameInText = (slug: string): string =>
   /^[a-z_]/.test(slug) && !kWords.has(slug) ? slug : `"${slug}"`;
 
 /**
- * Those that begin with the word before the caret, then those with a part that does; none where no
- * word stands there, or within a text.
+ * Returns suggestions that start with the word before the caret, then those of which a part does;
+ * none without a word, or within a quoted text.
  */
 export function complete(text: string, caret: number, all: readonly Suggestion[]): Completion {
   const before = text.slice(0, caret);
@@ -55,8 +55,8 @@ export function complete(text: string, caret: number, all: readonly Suggestion[]
 }
 
 /**
- * The text in three parts around the character (a Unicode code point) that is wrong; the middle one
- * is a space at its end.
+ * Splits the text into three parts around the wrong character (a Unicode code point); at the end of
+ * the text the middle part is a space.
  */
 export function markedAt(text: string, offset: number): [string, string, string] {
   const characters = [...text];

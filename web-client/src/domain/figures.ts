@@ -1,5 +1,5 @@
-// Measured figures: what there is to choose of one, and what the server is asked for. What is shown
-// on the model is a view's matter, or the person's own.
+// Measured figures: the options of a figure and the request to the server. The content of the
+// figure is that of a named view, or of this person's view.
 
 import { readNumber, typedNumber } from "../core/locale";
 import type {
@@ -22,44 +22,47 @@ export const kDirections: readonly FigureDirection[] = [
 export const kFormats: readonly FigureFormat[] = ["pdf", "svg", "png", "tiff"];
 export const kPapers = ["a5", "a4", "a3"] as const;
 export const kOrientations = ["portrait", "landscape"] as const;
-/** 5 is 1 : 5. */
+/** 5 means 1 : 5. */
 export const kScales: readonly number[] = [1, 2, 2.5, 5, 10, 20, 25, 50, 100, 200, 250, 500];
 export const kResolutions: readonly number[] = [150, 300, 600];
 export const kScaleRange = { least: 0.01, most: 1_000_000 };
 export const kDpiRange = { least: 50, most: 600 };
-/** Pixels an inch at which a sheet is some 700 pixels wide: enough to judge it by. */
+/** Dots per inch at which a sheet is about 700 pixels wide, enough for a preview. */
 const kPreviewDpi = { a5: 100, a4: 80, a3: 60 };
 
 export type Paper = (typeof kPapers)[number];
 export type Orientation = (typeof kOrientations)[number];
-/** As the person or the named view sees it, along an axis, or square to a face that is picked. */
+/**
+ * The camera of the person or of the named view, a direction along an axis, or perpendicular to a
+ * picked face.
+ */
 export type FigureFrom = "camera" | FigureDirection | "face";
 
-/** What is chosen for one figure after the other. */
+/** Options that persist from one figure to the next. */
 export interface FigureChoices {
   from: FigureFrom;
-  scale: number | null; // null: the largest at which all of it is on the sheet
+  scale: number | null; // null: the largest scale at which the whole content fits the sheet
   paper: Paper;
-  orientation: Orientation | null; // null: the one with room for the larger scale
+  orientation: Orientation | null; // null: the orientation with room for the larger scale
   dpi: number;
   format: FigureFormat;
   legend: boolean;
 }
 
-/** What is written on the sheet; empty: as the server has it. */
+/** Texts on the sheet; empty: the server's default. */
 export interface FigureWords {
   title: string;
   caption: string;
   credit: string;
 }
 
-/** A place of the surface that is to be seen square, world. */
+/** A place on the surface that the figure shows from the front, in world coordinates. */
 export interface Face {
   center: Point3;
   normal: Point3;
 }
 
-/** Camera, layers, looks and light, or a named view that has them. */
+/** Camera, layers, surface images and light, or a named view with them. */
 export type FigureShown = ViewContent | { view: string };
 
 export const usualFigure = (): FigureChoices => ({
@@ -80,8 +83,8 @@ export const isDpi = (value: unknown): value is number =>
   (value as number) <= kDpiRange.most;
 
 /**
- * What a browser kept, which may be of another version of the page, or anybody's: what is no choice
- * is the usual one.
+ * Reads the choices from the browser's storage, which may be from another version of the page or
+ * invalid. An invalid choice becomes the default.
  */
 export function figureChoices(kept: unknown): FigureChoices {
   const usual = usualFigure();
@@ -99,7 +102,7 @@ export function figureChoices(kept: unknown): FigureChoices {
   };
 }
 
-/** What is asked for; null: a face is still to be picked. */
+/** Builds the request; null: the person has yet to pick a face. */
 export function figureRequest(
   shown: FigureShown,
   { from, scale, orientation, ...choices }: FigureChoices,
@@ -130,7 +133,7 @@ export const previewRequest = (request: FigureRequest): FigureRequest => ({
   dpi: kPreviewDpi[request.paper ?? "a4"],
 });
 
-/** A scale as people write it, "1 : 40", "2:1" or the 40 alone; NaN where it is none. */
+/** Parses a scale in usual forms, "1 : 40", "2:1" or only 40; NaN for anything else. */
 export function readScale(typed: string): number {
   const parts = typed.split(":").map(readNumber);
   const [onPaper, inWorld] = parts.length === 1 ? [1, parts[0]!] : [parts[0]!, parts[1]!];

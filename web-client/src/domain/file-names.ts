@@ -1,4 +1,4 @@
-// What things are called after the files that they come from.
+// Names derived from the names of files.
 
 /** A model's name from its file's: "statue_nefertiti_70k.ply" → "statue nefertiti 70k". */
 export function nameOfFile(filename: string): string {

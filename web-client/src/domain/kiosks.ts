@@ -1,10 +1,10 @@
-// What becomes of a kiosk's link, as far as it can be told from here.
+// The state of a kiosk's link, as far as the page can determine it.
 
 import type { Kiosk } from "../core/protocol.gen";
 
 /**
- * A kiosk tells of itself every half a minute, and is said to be seen to a minute: one that says
- * nothing for so long shows nothing, or has no network.
+ * A kiosk reports every half minute, and the server keeps the time of its last report to the
+ * minute. A kiosk without a report for this time shows nothing, or has no network.
  */
 export const kSilentMs = 3 * 60_000;
 

@@ -1,4 +1,4 @@
-// Lines and points that records have on models, as cells of columns of these kinds hold them.
+// Lines and points of records on models, as cells of columns of these kinds store them.
 
 import { formatPlace, typedNumber } from "../core/locale";
 import { formatLength, metresPer } from "./measure";
@@ -16,11 +16,11 @@ export const markColumns = (table: Pick<Table, "columns">, kind: MarkKind): Colu
 export const isListOfMarks = (value: CellValue | undefined): value is Mark[] =>
   Array.isArray(value) && typeof value[0] === "object";
 
-/** Those of a cell; none where it holds something else. */
+/** The marks of a cell; none for values of other kinds. */
 export const marksOf = (value: CellValue | undefined): Mark[] =>
   isListOfMarks(value) ? value : [];
 
-/** From place to place, in the unit of the model that it lies on. */
+/** The length from place to place, in the unit of the model that it lies on. */
 export function markLength({ coordinates }: Pick<Mark, "coordinates">): number {
   return coordinates
     .slice(1)
@@ -47,21 +47,21 @@ export function summaryOf(
   };
 }
 
-/** Of a line "1.24 m", of a point "12.1, 4.25, 30" in the model's unit. */
+/** "1.24 m" for a line; "12.1, 4.25, 30" in the model's unit for a point. */
 export function describeMark(mark: Mark, kind: MarkKind, model: Pick<Model, "unit">): string {
   if (kind === "line") return formatLength(markLength(mark) * metresPer(model.unit));
   return `${formatPlace(mark.coordinates[0]!.map((number) => typedNumber(Number(number.toPrecision(5)))))} ${model.unit}`;
 }
 
-// times what it is where the surface is seen straight: between the places of two neighbouring
-// pixels, at 1.5° or less
+// multiple of the distance between two neighboring pixels where the surface faces the camera:
+// reached where the angle to the surface is at most 1.5°
 const kLongestStep = 40;
 
 /**
- * The parts of a line on a surface, of what was found at one step of it after the other. Where
- * nothing was hit, and where the next place lies far before or behind the last, as at the edge of a
- * handle, one part ends and another begins. `stepAt`: how far two steps are from each other at a
- * place where the surface is seen straight, the length of a pixel there.
+ * Splits a line on a surface, given as the results at its steps, into parts. A part ends where a
+ * step hit nothing, and where the next place lies far in front of or behind the last one, as at the
+ * edge of a handle. `stepAt`: the distance of two steps at a place where the surface faces the
+ * camera, which is the length of a pixel there.
  */
 export function partsOfLine<T>(
   found: readonly (T | null)[],
@@ -82,8 +82,8 @@ export function partsOfLine<T>(
 }
 
 /**
- * Leaves out places that are no farther than the tolerance there from the line that remains (Ramer
- * 1972, Douglas and Peucker 1973).
+ * Removes places that are no farther from the remaining line than the tolerance there (Ramer 1972,
+ * Douglas and Peucker 1973).
  */
 export function simplifyLine(
   places: readonly MarkPlace[],

@@ -1,4 +1,4 @@
-// Lengths, areas and numbers as people write them, and the smallest detail a layer can hold.
+// Lengths, areas and numbers in readable form, and the smallest detail that a layer can hold.
 
 import { formatCount, pageLocale, withDecimalSign } from "../core/locale";
 import type { Atlas, Model, Unit } from "../core/types";
@@ -15,7 +15,7 @@ export function formatNumber(value: number, digits = 3): string {
   return value.toLocaleString(pageLocale(), { maximumFractionDigits: Math.min(decimals, 20) });
 }
 
-/** The unit that suits a length, and how many of it a metre has. */
+/** The unit that suits a length, and the number of these units in a meter. */
 export function lengthUnit(metres: number): { unit: string; perMetre: number } {
   const size = Math.abs(metres);
   if (size > 0 && size < 1e-5) return { unit: "µm", perMetre: 1e6 };
@@ -37,18 +37,18 @@ function areaText(squareMetres: number, digits: number): string {
   return `${formatNumber(squareMetres, digits)} m²`;
 }
 
-/** A length in metres with the unit that suits its size: "0.8 mm", "12.4 cm", "3.1 m". */
+/** A length in meters with the unit that suits its size: "0.8 mm", "12.4 cm", "3.1 m". */
 export const formatLength = (metres: number): string =>
   lengthText(metres, Math.abs(metres) < 0.01 ? 2 : 3);
 export const formatArea = (squareMetres: number): string => areaText(squareMetres, 3);
 
 export const kMeasuredDigits = 4;
-/** What was measured: "12.43 cm". */
+/** A measured length: "12.43 cm". */
 export const measuredLength = (metres: number): string => lengthText(metres, kMeasuredDigits);
 export const measuredArea = (squareMetres: number): string =>
   areaText(squareMetres, kMeasuredDigits);
 
-/** Three sides in one unit, for "105 × 99 × 91 mm". */
+/** Three sides with one unit, for "105 × 99 × 91 mm". */
 export function formatSize(sidesInMetres: readonly number[]): string {
   const largest = Math.max(...sidesInMetres);
   const [factor, unit] = largest < 1 ? [1000, "mm"] : largest < 10 ? [100, "cm"] : [1, "m"];
@@ -60,8 +60,8 @@ export function formatSize(sidesInMetres: readonly number[]): string {
 }
 
 /**
- * What is asked about a model first: while nobody has confirmed it, what the server proposes where
- * nobody has said otherwise.
+ * The unit and up axis that the page suggests: while they are unconfirmed, the server's proposal
+ * for each one that the importer did not set.
  */
 export function likelyScale(
   model: Pick<Model, "unit" | "unit_assumed" | "scale_verified" | "up" | "proposal">,
@@ -73,7 +73,7 @@ export function likelyScale(
     up: model.up === kUpWithoutProposal ? proposal.up : model.up,
   };
 }
-// of models whose importer said nothing and did not ask for the proposal
+// of models whose importer set no up axis and requested no proposal
 const kUpWithoutProposal = "z";
 
 export function formatBytes(bytes: number): string {
@@ -84,10 +84,10 @@ export function formatBytes(bytes: number): string {
 
 export interface DetailChoice {
   resolution: number;
-  detailM: number; // side of the smallest spot that can be painted anywhere on the surface
+  detailM: number; // side of the smallest spot that is paintable everywhere on the surface
 }
 
-/** The choices of "smallest detail" for a new layer, coarsest first. */
+/** The choices for "smallest detail" of a new layer, coarsest first. */
 export function detailChoices(
   atlas: Pick<Atlas, "lowest_resolution" | "texel_area_max_m2" | "texel_sizes">,
 ): DetailChoice[] {
@@ -108,7 +108,7 @@ export function detailChoices(
   return choices;
 }
 
-/** A round length (1, 2 or 5 × 10ⁿ metres) of at most `maxPx` pixels. */
+/** A round length (1, 2 or 5 × 10ⁿ meters) of at most `maxPx` pixels. */
 export function scaleBar(
   metresPerPx: number,
   maxPx: number,

@@ -1,8 +1,8 @@
-// Names that are completed behind an @ in a comment.
+// Completion of names after an @ in a comment.
 
 import type { ProjectPerson } from "../core/protocol.gen";
 
-/** What is written behind the @ before the caret, and where the @ stands. */
+/** The text after the @ before the caret, and the position of the @. */
 export interface MentionBegun {
   at: number;
   word: string;
@@ -11,15 +11,15 @@ export interface MentionBegun {
 const kBegun = /(?<![A-Za-z0-9._@-])@([A-Za-z0-9._@-]*)$/;
 const kMostPeople = 6;
 
-/** Nothing: the caret does not stand behind one; an address of a mail is none. */
+/** Null: the caret is not in a mention; the @ of a mail address is not one. */
 export function mentionBegun(text: string, caret: number): MentionBegun | null {
   const found = kBegun.exec(text.slice(0, caret));
   return found ? { at: found.index, word: found[1]! } : null;
 }
 
 /**
- * Those whose name begins so, then those with a part of name or full name that does, in any case
- * and without regard to accents.
+ * Finds people whose user name starts with the word, then those with a part of the user or full
+ * name that does, ignoring case and accents.
  */
 export function peopleLike(people: readonly ProjectPerson[], word: string): ProjectPerson[] {
   const wanted = plain(word);

@@ -1,4 +1,4 @@
-// Colours of values, as the server's palette gives them: for legends and swatches.
+// Colors of values according to the server's palette, for legends and swatches.
 
 import type { CellValue } from "../core/protocol.gen";
 import type { Layer, Palette, PalettePoint, ValueType } from "../core/types";
@@ -7,7 +7,7 @@ export interface Rgba {
   r: number;
   g: number;
   b: number;
-  a: number; // 0…255, as the others
+  a: number; // 0…255, like the others
 }
 
 export function parseColor(text: string): Rgba {
@@ -21,7 +21,7 @@ export const cssColor = (text: string): string => {
   return `rgb(${r} ${g} ${b} / ${(a / 255).toFixed(3)})`;
 };
 
-/** #rrggbb for an <input type="color">, which knows no opacity. */
+/** #rrggbb for an <input type="color">, which has no opacity. */
 export const opaqueColor = (text: string): string => text.slice(0, 7);
 
 /** A CSS gradient of a linear or stepped palette from its lower to its upper limit. */
@@ -45,7 +45,7 @@ export function pointOf(palette: Palette, value: number): PalettePoint | undefin
   return palette.points.find((point) => point.at === value);
 }
 
-/** The colour of a class that the palette does not list, the same as the server's. */
+/** The color of a class that the palette does not list, the same as on the server. */
 export function generatedColor(key: number): string {
   const hash = Math.imul(key, 2654435761) >>> 0;
   const hue = ((hash >>> 8) / 16777216) * 6;
@@ -60,19 +60,19 @@ export function generatedColor(key: number): string {
   return `#${channel(5)}${channel(3)}${channel(1)}ff`;
 }
 
-// of records that have no value in the column that colours, as the server draws them
+// for records without a value in the coloring column, as the server draws them
 export const kNoValueColor = "#9a9a9a80";
 
 /**
- * The colour a value is drawn in; null for a palette without any, and where the record behind a key
- * has to be asked.
+ * The color of a value; null for a palette without colors, and where the color depends on the
+ * record behind the key.
  */
 export function colorOf(palette: Palette, value: number): string | null {
   if (palette.column) return null;
   return colorOfNumber(palette, value);
 }
 
-/** The colour of a record, by the column that colours or by its key. */
+/** The color of a record, by the coloring column or by its key. */
 export function recordColor(
   palette: Palette,
   record: { key: number; values: Record<string, CellValue> },
@@ -111,7 +111,7 @@ function colorOfNumber(palette: Palette, value: number): string | null {
 }
 
 export type LayerPurpose = "presence" | "classes" | "measurement" | "records";
-/** What each texel of such a layer holds. */
+/** The type of the values in a layer for this purpose. */
 export const kTypeOfPurpose: Readonly<Record<LayerPurpose, ValueType>> = {
   presence: "u8",
   classes: "u8",
@@ -119,14 +119,14 @@ export const kTypeOfPurpose: Readonly<Record<LayerPurpose, ValueType>> = {
   records: "u32",
 };
 
-/** What a layer is for, in the words of the create-layer dialog. */
+/** The purpose of a layer, as the create-layer dialog names it. */
 export function purposeOf(layer: Pick<Layer, "kind" | "palette">): LayerPurpose {
   if (layer.kind === "database") return "records";
   if (layer.palette.mode !== "categorical") return "measurement";
   return layer.palette.points.length === 1 ? "presence" : "classes";
 }
 
-// Okabe and Ito's colours, and two more: told apart by colour-blind people.
+// Colors of Okabe and Ito and two more, distinguishable for color-blind people.
 export const kClassColors = [
   "#e69f00ff",
   "#56b4e9ff",
@@ -146,10 +146,10 @@ export const presencePalette = (label: string, color: string): Palette => ({
   points: [{ at: 1, color, label }],
 });
 
-/** Every key has the colour that is made from it. */
+/** A palette without points: each key has the color that is generated from it. */
 export const recordPalette = (): Palette => ({ mode: "categorical", min: 0, max: 1, points: [] });
 
-/** All that a point says; what is not said has its default. */
+/** All members of a point, with defaults for absent ones. */
 const told = ({
   at,
   color,
@@ -160,7 +160,7 @@ const told = ({
   spacing_mm: spacingMm = 0,
 }: PalettePoint): string => JSON.stringify([at, color, label, value, pattern, angle, spacingMm]);
 
-/** Whether both show every value alike and call it the same. */
+/** Whether both palettes give each value the same color and label. */
 export function samePalette(a: Palette, b: Palette): boolean {
   return (
     [a.mode, a.min, a.max, a.column, a.others, a.points.length].join() ===
@@ -169,7 +169,7 @@ export function samePalette(a: Palette, b: Palette): boolean {
   );
 }
 
-/** The same colours over another range. */
+/** The same colors for another range. */
 export function withRange(palette: Palette, min: number, max: number): Palette {
   const span = palette.max - palette.min || 1;
   const points = palette.points.map((point) => ({
@@ -179,7 +179,7 @@ export function withRange(palette: Palette, min: number, max: number): Palette {
   return { ...palette, min, max, points };
 }
 
-/** The colour with a share of its opacity. */
+/** The color with its opacity multiplied by `share`. */
 function withShare(color: string, share: number): string {
   const { a } = parseColor(color);
   return `${opaqueColor(color)}${Math.round(a * share)
@@ -187,7 +187,7 @@ function withShare(color: string, share: number): string {
     .padStart(2, "0")}`;
 }
 
-/** A square of a legend: the colour as it is laid on. Measures as in shaders/shared/shade.h. */
+/** A square of a legend, filled as on the surface. Measures as in shaders/shared/shade.h. */
 export function swatchStyle({
   color,
   pattern = "solid",
@@ -196,7 +196,7 @@ export function swatchStyle({
   const shown = cssColor(color);
   if (pattern === "outline")
     return { background: "transparent", border: `2px solid ${shown}`, "box-shadow": "none" };
-  // CSS turns clockwise from the vertical, and across the lines.
+  // CSS measures the angle clockwise from the vertical, perpendicular to the lines.
   const ground = cssColor(withShare(color, 0.3));
   const border = { "box-shadow": `inset 0 0 0 2px ${shown}` };
   if (pattern === "hatch")
@@ -212,7 +212,7 @@ export function swatchStyle({
   return { background: shown };
 }
 
-/** Points for values that a column holds, in the order of the colours. */
+/** Points for values of a column, in the order of the colors. */
 export function categoryPalette(
   column: string,
   classes: { value: string; label: string; color: string }[],
@@ -231,7 +231,7 @@ export function categoryPalette(
   };
 }
 
-/** Classes of numbers from the lower limits on. */
+/** Classes of numbers, by their lower limits. */
 export function graduatedPalette(
   column: string,
   classes: { from: number; to: number }[],
@@ -251,8 +251,8 @@ export function graduatedPalette(
 }
 
 /**
- * From low to high, told apart by every colour vision and in greyscale: viridis, and two ramps for
- * one thing that grows.
+ * From low to high, distinguishable with every color vision and in grayscale: viridis, and two
+ * ramps for one increasing quantity.
  */
 export const kRamps = {
   viridis: [
@@ -291,7 +291,7 @@ export const kRamps = {
 } as const;
 export type Ramp = keyof typeof kRamps;
 
-/** `count` colours spread over the ramp. */
+/** `count` colors, evenly spaced on the ramp. */
 export function rampColors(ramp: Ramp, count: number): string[] {
   const stops = kRamps[ramp];
   const scale: Palette = {

@@ -1,23 +1,23 @@
-// Who is at the model: viewers (connections) as people, and the order and colours they are shown
-// in.
+// Participants of the model: groups connections by person, in the order and with the colors that
+// the page shows.
 
 import type { PresenceUser } from "../core/protocol.gen";
 import type { Vec3 } from "../math/vector";
 
-/** Somebody, with all windows in which they have the model open. */
+/** A person, with all windows in which they have the model open. */
 export interface PersonHere {
   user: string;
-  full_name: string; // empty: none was given
+  full_name: string; // empty: the account has none
   color: string;
   own: boolean;
-  /** Of another window than this one: the one to look with, or null. */
+  /** A connection from another window than this one, which can be followed; null: none. */
   viewer: PresenceUser | null;
   leading: boolean;
-  /** Sessions that they follow, of any of their windows. */
+  /** Sessions that the person follows in any of their windows. */
   following: string[];
 }
 
-/** Each person once: first who uses this window, then in the order in which they came. */
+/** Each person once: first the person at this window, then by time of joining. */
 export function peopleHere(viewers: readonly PresenceUser[], ownSession: string): PersonHere[] {
   const own = viewers.find(({ session }) => session === ownSession)?.name;
   const byName = new Map<string, PresenceUser[]>();
@@ -42,11 +42,11 @@ export function peopleHere(viewers: readonly PresenceUser[], ownSession: string)
   return people.sort((a, b) => Number(b.own) - Number(a.own));
 }
 
-/** People, without who they are themselves, that look with one of these sessions. */
+/** Other people who follow one of these sessions. */
 export const followersOf = (people: readonly PersonHere[], session: string): PersonHere[] =>
   people.filter(({ following }) => following.includes(session));
 
-/** Whether following `session` would lead back to this window: then the server refuses it. */
+/** Whether following `session` would create a cycle to this window, which the server refuses. */
 export function leadsBack(
   viewers: readonly PresenceUser[],
   session: string,
@@ -64,7 +64,10 @@ export function leadsBack(
 const kDarkInk = "#20292a";
 const kLightInk = "#ffffff";
 
-/** What is read best on a colour (#rrggbb): the ink with the larger contrast ratio of WCAG 2. */
+/**
+ * The ink that is most readable on a color (#rrggbb): the one with the larger contrast ratio of
+ * WCAG 2.
+ */
 export const inkOn = (color: string): string =>
   contrast(color, kLightInk) >= contrast(color, kDarkInk) ? kLightInk : kDarkInk;
 

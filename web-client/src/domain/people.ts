@@ -1,4 +1,4 @@
-// What can be said of accounts without asking the server.
+// Rules for accounts that need no request to the server.
 
 import type { Me, MemberGroup, Person, ProjectRole, Role } from "../core/protocol.gen";
 import { kProjectRoles, kRoles } from "../core/types";
@@ -6,8 +6,8 @@ import { kProjectRoles, kRoles } from "../core/types";
 export const kLeastPasswordLength = 10; // characters, as the server counts them
 
 /**
- * Somebody as answers of the server name them: what they sign in with, what they are called, and
- * the colour of their account.
+ * A person as answers of the server describe them: user name, full name and the color of their
+ * account.
  */
 export interface Named {
   user: string;
@@ -15,7 +15,7 @@ export interface Named {
   color?: string;
 }
 
-/** One or two letters that stand for a person. */
+/** One or two letters for a person. */
 export function initials({ user, full_name: fullName = "" }: Named): string {
   const words =
     fullName.trim() !== ""
@@ -30,28 +30,30 @@ export function initials({ user, full_name: fullName = "" }: Named): string {
 }
 
 /**
- * The name of a control, for readers of the screen and for speech: what is seen on it is part of it
- * (WCAG 2.5.3).
+ * The accessible name of a control, for screen readers and voice control: it contains the visible
+ * text (WCAG 2.5.3).
  */
 export function nameWith(name: string, seen: string): string {
   const said = seen.trim();
   return name.toLocaleLowerCase().includes(said.toLocaleLowerCase()) ? name : `${name} (${said})`;
 }
 
-/** What a person is called where others read it. */
+/** The name of a person that other people see. */
 export const called = ({ user, full_name: fullName = "" }: Named): string =>
   fullName.trim() || user;
 
-/** Those that somebody may give away, the least first: nobody makes another owner. */
+/**
+ * Roles that a person with the role `own` can assign, the lowest first: nobody can assign owner.
+ */
 export const rolesToGive = (own: Role): Role[] =>
   kRoles.slice(0, Math.min(kRoles.indexOf(own), kRoles.indexOf("administrator")) + 1);
 /**
- * Those that a token of somebody may have, the least first. What a guest may do in projects the
- * server knows.
+ * Roles that a token of this person can have, the lowest first. The server decides on a guest's
+ * rights in projects.
  */
 export const rolesOfTokens = (own: Role): Role[] =>
   own === "guest" ? [...kProjectRoles] : kRoles.slice(1, kRoles.indexOf(own) + 1);
-/** The same of one that is good in a project alone, where they have this role. */
+/** The same for a token of one project, in which the person has this role. */
 export const rolesOfTokensIn = (own: Role): Role[] =>
   kProjectRoles.filter((role) => kRoles.indexOf(role) <= kRoles.indexOf(own));
 
@@ -60,7 +62,7 @@ export type PasswordMistake = {
   kind: "too_short" | "is_the_name" | "differs";
 };
 
-/** What the server would refuse, and a slip of the hand. */
+/** Checks a new password for the server's rules and for typing mistakes. */
 export function passwordMistake(
   user: string,
   password: string,
@@ -72,7 +74,7 @@ export function passwordMistake(
   return password === repeat ? null : { field: "repeat", kind: "differs" };
 }
 
-// The first that fits: browsers also name those that they descend from.
+// The first match counts: a browser also names its ancestors.
 const kBrowsers: [RegExp, string][] = [
   [/\bEdg(?:e|A|iOS)?\//, "Edge"],
   [/\b(?:OPR|Opera)\//, "Opera"],
@@ -93,13 +95,13 @@ const kSystems: [RegExp, string][] = [
 ];
 
 /**
- * Of what a browser calls itself: a name that people know, and the system that it runs on; each is
- * empty where nothing is known.
+ * Parses a user agent: the browser's common name and its operating system; each is empty where it
+ * is unknown.
  */
 export function browserOf(agent: string): { browser: string; system: string } {
   const named = (list: [RegExp, string][]): string =>
     list.find(([pattern]) => pattern.test(agent))?.[1] ?? "";
-  // of what is no browser, such as curl
+  // programs other than browsers, such as curl
   const program = /^([A-Za-z][\w.-]*)\//.exec(agent)?.[1] ?? "";
   return {
     browser: named(kBrowsers) || (program === "Mozilla" ? "" : program),
@@ -108,8 +110,8 @@ export function browserOf(agent: string): { browser: string; system: string } {
 }
 
 /**
- * Nobody changes themselves there, nor whoever may do as much as they; the owner is changed by
- * nobody.
+ * Whether `me` may change the account: nobody can change their own account here, an equal or higher
+ * role, or the owner.
  */
 export const mayChange = (
   me: Pick<Me, "user" | "role">,
@@ -120,8 +122,8 @@ export const mayChange = (
   kRoles.indexOf(person.role) < kRoles.indexOf(me.role);
 
 /**
- * The highest role that these groups give somebody in a project, and which of them do; null: none
- * of them is theirs.
+ * The highest role that these groups give a person in a project, and the groups that give it; null:
+ * the person is in none of them.
  */
 export function roleByGroups(
   given: readonly MemberGroup[],
@@ -137,8 +139,8 @@ export function roleByGroups(
 }
 
 /**
- * Those in whose names, or in what `alsoOf` says of them, every word of the text begins one, in
- * any case.
+ * Finds people by words: each word must be the start of a word in the name, or in the texts that
+ * `alsoOf` returns, ignoring case.
  */
 export function findPeople(
   people: readonly Person[],
@@ -160,6 +162,6 @@ export function findPeople(
   });
 }
 
-/** As the server takes it for a new account. */
+/** Whether the server accepts the name for a new account. */
 export const isUserName = (name: string): boolean =>
   /^[A-Za-z0-9][A-Za-z0-9._@-]{0,63}$/.test(name);

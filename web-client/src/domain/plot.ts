@@ -1,23 +1,23 @@
-// Where a curve and its axes lie in a plot: round ticks, units, one scale for both axes where that
-// is asked for. Knows nothing of how it is drawn.
+// Layout of a curve and its axes in a plot: round ticks, units, and one scale for both axes on
+// request. Independent of how the plot is drawn.
 
 import { formatFixed } from "../core/locale";
 import { formatNumber, lengthUnit, ticks } from "./measure";
 
 export interface PlotPoint {
   x: number;
-  /** Null: nothing is known there, and the curve has a gap. */
+  /** Null: unknown; the curve has a gap there. */
   y: number | null;
 }
 
 export interface PlotOf {
-  /** Of the curve: it is broken between them. By x. */
+  /** Parts of the curve, sorted by x; the curve is broken between them. */
   parts: readonly (readonly PlotPoint[])[];
-  /** What y is measured in; null: x and y are both lengths in metres. */
+  /** The unit of y; null: x and y are both lengths in meters. */
   yUnit: string | null;
-  /** As high as wide, for lengths: slopes look as they are. */
+  /** Equal scale on both axes, for lengths: slopes keep their angle. */
   equal: boolean;
-  /** Of the whole plot, pixels. */
+  /** Size of the whole plot in pixels. */
   width: number;
   height: number;
 }
@@ -41,26 +41,25 @@ export interface Plot {
   bottom: number;
   x: PlotAxis;
   y: PlotAxis;
-  /** Path data of each run without a gap. */
+  /** SVG path data of each run without a gap. */
   curves: readonly string[];
-  /** Where the curve is broken though nothing lies between, pixels. */
+  /** Positions of breaks in the curve without a gap between the parts, in pixels. */
   breaks: readonly number[];
   xAt(x: number): number;
   yAt(y: number): number;
-  /** At a pixel of the plot's width. */
+  /** The x at a pixel of the plot's width. */
   xOf(pixel: number): number;
 }
 
-const kCharacterPx = 6.4; // of the ticks' labels
+const kCharacterPx = 6.4; // width of a character in a tick label
 const kTickSpacePx = { x: 48, y: 22 };
-const kTopPx = 24; // room for the name of the y axis
-const kBottomPx = 38; // for ticks and the name of the x axis
+const kTopPx = 24; // room for the label of the y axis
+const kBottomPx = 38; // for ticks and the label of the x axis
 const kRightPx = 14;
-// of the heights' range to the distance: what is flatter is noise, and is not blown up to look like
-// relief
+// range of heights divided by distance: anything flatter is noise and is not magnified into relief
 const kLeastSlope = 1e-5;
 
-/** Round numbers between the limits with as many decimals as all of them need. */
+/** Round numbers between the limits, all with the number of decimals that they need. */
 export function tickLabels(numbers: readonly number[]): string[] {
   const [first, second] = numbers;
   if (first === undefined) return [];
@@ -98,14 +97,14 @@ export function makePlot({ parts, yUnit, equal, width, height }: PlotOf): Plot {
   };
   const limitsOf = (left: number): { x: number; y: readonly [number, number] } => {
     if (!asHigh) return { x: xMax, y: [low, high] };
-    const scale = Math.min((right - left) / xMax, (bottom - top) / (high - low)); // pixels a metre
+    const scale = Math.min((right - left) / xMax, (bottom - top) / (high - low)); // px per meter
     const [middle, half] = [(low + high) / 2, (bottom - top) / scale / 2];
     return { x: (right - left) / scale, y: [middle - half, middle + half] };
   };
   let left = leftOf([low, high]);
   let limits = limitsOf(left);
   if (leftOf(limits.y) !== left) {
-    left = leftOf(limits.y); // labels of the wider range may be longer
+    left = leftOf(limits.y); // the labels of the wider range may be longer
     limits = limitsOf(left);
   }
   const [yMin, yMax] = limits.y;
@@ -152,8 +151,8 @@ export function makePlot({ parts, yUnit, equal, width, height }: PlotOf): Plot {
 }
 
 /**
- * A little wider than the numbers. Where they differ by less than `noise`, so wide that they look
- * alike.
+ * A range slightly larger than that of the numbers. Where they differ by less than `noise`, the
+ * range is so large that the curve looks flat.
  */
 function rangeOf(numbers: readonly number[], noise: number | null): [number, number] {
   let [min, max] = [Infinity, -Infinity];
@@ -180,7 +179,7 @@ function runsOf(part: readonly PlotPoint[]): { x: number; y: number }[][] {
   return runs;
 }
 
-/** A single point is seen, too, as the ends of its line are round. */
+/** A single point is visible as well, since its line has round ends. */
 function pathOf(
   run: readonly { x: number; y: number }[],
   xAt: (x: number) => number,
@@ -190,7 +189,7 @@ function pathOf(
   return `M${points.join("L")}${points.length === 1 ? "h0.01" : ""}`;
 }
 
-/** Which of the places, by their x in ascending order, is nearest. */
+/** The index of the nearest place; `xs` ascends. */
 export function nearestIndex(xs: readonly number[], x: number): number {
   let [low, high] = [0, xs.length - 1];
   while (low < high) {

@@ -1,5 +1,5 @@
-// The surface along a line, as the server answers it, made ready to be told and drawn: how far each
-// place is along the surface, where the line leaves it, and what a layer holds there.
+// The surface along a line: prepares the server's answer for text and plot, with the distance along
+// the surface, the gaps in it, and a layer's values.
 
 import { partsOfLine, simplifyLine } from "./marks";
 import type { ProfileSample } from "../core/protocol.gen";
@@ -10,14 +10,14 @@ export interface ProfilePlace {
   along: number;
   place: Vec3;
   normal: Vec3 | null;
-  /** Of the layer that was asked for; null where it has none. */
+  /** The value of the requested layer; null where it has none. */
   value: number | null;
 }
 
-/** Parts of a line that lie on the surface without a gap, each with at least one place. */
+/** Continuous parts of a line on the surface, each with at least one place. */
 export type ProfileParts = readonly (readonly ProfilePlace[])[];
 
-/** What lies between two parts (see `partsOfLine`) adds nothing to the distances. */
+/** A gap between two parts (see `partsOfLine`) adds nothing to the distances. */
 export function profileParts(
   samples: readonly ProfileSample[],
   stepAt: (place: Vec3) => number,
@@ -44,11 +44,11 @@ export function profileParts(
   return parts;
 }
 
-/** Along the surface, without the gaps. */
+/** The length along the surface, without the gaps. */
 export const lengthOf = (parts: ProfileParts): number =>
   parts[parts.length - 1]?.at(-1)?.along ?? 0;
 
-/** Whether the line comes as near to each of the places as `reachAt` allows there. */
+/** Whether the line passes each of the places within the distance `reachAt`. */
 export const passesThrough = (
   parts: ProfileParts,
   places: readonly Vec3[],
@@ -61,7 +61,8 @@ export const passesThrough = (
   );
 
 /**
- * Only what its course needs to be drawn: no place farther than the tolerance there is left out.
+ * Keeps only the places that the plot needs: a removed place is no farther from the line than the
+ * tolerance there.
  */
 export function simplifyProfile(
   parts: ProfileParts,

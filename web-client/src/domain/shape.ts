@@ -1,5 +1,5 @@
-// What a picture becomes as the shape of a brush. The server decides; this is what its answer looks
-// like beforehand.
+// Converts a picture to the shape of a brush. The server has the final result; this code previews
+// it.
 
 export const kShapeSide = 256;
 
@@ -15,8 +15,8 @@ const luma = (data: Uint8ClampedArray, at: number): number =>
   0.2126 * data[at]! + 0.7152 * data[at + 1]! + 0.0722 * data[at + 2]!;
 
 /**
- * Which part a person most likely means: what is opaque; else a light shape on a dark ground, or a
- * dark one on a light.
+ * The most likely part: the opaque pixels; else a light shape on a dark background, or a dark shape
+ * on a light one.
  */
 export function likelyPart({ width, height, data }: Pixels): ShapePart {
   for (let at = 3; at < data.length; at += 4) if (data[at] !== 255) return "opaque";
@@ -33,8 +33,8 @@ export function likelyPart({ width, height, data }: Pixels): ShapePart {
 }
 
 /**
- * In place: opaque black where the tool is, transparent elsewhere. Returns whether anything is the
- * tool.
+ * In place: opaque black in the shape, transparent elsewhere. Returns whether the shape has any
+ * pixel.
  */
 export function toShape({ data }: Pixels, part: ShapePart): boolean {
   let any = false;
@@ -51,7 +51,7 @@ export function toShape({ data }: Pixels, part: ShapePart): boolean {
   return any;
 }
 
-/** Where a picture lies in the square around it. */
+/** The position of a picture in the square around it. */
 export function inSquare(
   width: number,
   height: number,

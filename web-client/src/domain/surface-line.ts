@@ -1,7 +1,7 @@
-// A line that was drawn over a picture, put onto the surface: it follows the surface on which it
-// began. The server tells what each pixel of the drawing shows (`Step`); where the hand left the
-// surface for a short way, as beside an edge, the line goes on along the surface instead of leaping
-// to what lies behind, and where that cannot be it is cut.
+// Projects a line that was drawn over the picture onto the surface where it began. The server
+// returns the place that each pixel of the drawing shows (`Step`). Where the drawing left the
+// surface for a short distance, as next to an edge, the line continues along the surface instead of
+// jumping to the background; where it cannot, it is cut.
 
 import type { Point } from "../net/stroke";
 import { markLength, simplifyLine } from "./marks";
@@ -9,44 +9,44 @@ import type { MarkPlace, ProfileSample } from "../core/protocol.gen";
 import { dot, length, subtract, type Vec3 } from "../math/vector";
 
 export interface Step {
-  at: Point; // on the picture
-  place: MarkPlace | null; // null: there is no surface
+  at: Point; // in the picture
+  place: MarkPlace | null; // null: no surface
   normal: Vec3 | null;
 }
 type Found = Step & { place: MarkPlace };
-/** Steps that lie on the surface without a leap. */
+/** Consecutive steps on the surface without a jump. */
 type Run = Found[];
 
 /**
- * Lengths of a drawing: that of a pixel at a place of the surface, in the model's unit, and pixels
- * of the picture in one of the screen.
+ * Lengths of a drawing: `pixelAt`: of a pixel at a place of the surface, in the model's unit;
+ * `scale`: pixels of the picture per pixel of the screen.
  */
 export interface Measures {
   pixelAt(place: MarkPlace): number;
   scale: number;
 }
 
-/** The nearest places of the surface along a straight way, in equal steps; the ends among them. */
+/** The nearest places of the surface along a straight line, in equal steps, including both ends. */
 export type NearestAlong = (
   from: MarkPlace,
   to: MarkPlace,
   step: number,
 ) => Promise<readonly (MarkPlace | null)[]>;
 
-// In pixels of the picture, or lengths of so many there.
-const kRelief = 6; // a step of the surface that needs no reason
-const kLongestStep = 80; // where the surface is seen at 0.7°
-const kDeepest = 40; // a leap that may be a part of the surface which hides itself
-const kSlope = 2; // of the surface across a gap, to the plane of the picture
-const kOffSurface = 0.2; // share of a step that may lead off the surface at either of its ends
-// In pixels of the screen: how far a hand strays from an edge that it follows, and how long a gap
-// may be without any surface.
+// In pixels of the picture, or in lengths of a pixel at the place.
+const kRelief = 6; // a step that is always accepted
+const kLongestStep = 80; // where the surface is seen at an angle of 0.7°
+const kDeepest = 40; // a jump that may be a part of the surface that another part hides
+const kSlope = 2; // slope of the surface across a gap, relative to the picture plane
+const kOffSurface = 0.2; // share of a step that may leave the surface at either end
+// In pixels of the screen: the largest distance of the drawing from the edge that it follows, and
+// the longest gap without any surface.
 const kStrayPx = 16;
 const kSmallGapPx = 24;
 
 /**
- * What was found at each pixel of a path, with where that is: the server takes whole steps of a
- * pixel or less between two points.
+ * The result at each pixel of a path, with its position: between two points the server takes equal
+ * steps of at most one pixel.
  */
 export function stepsAlong(path: readonly Point[], samples: readonly ProfileSample[]): Step[] {
   const at: Point[] = [path[0]!];
@@ -69,8 +69,8 @@ const apart = (a: Found, b: Found): number => length(subtract(a.place, b.place))
 const lastOf = <T>(list: readonly T[]): T => list[list.length - 1]!;
 
 /**
- * Whether the surface goes on from one step to the next: they are near each other, or it is seen so
- * much at a slant that both lie along it.
+ * Whether the surface continues from one step to the next: they are near each other, or the surface
+ * is seen at so flat an angle that both lie along it.
  */
 function goesOn(from: Found, to: Found, pixel: number): boolean {
   const step = subtract(to.place, from.place);
@@ -96,12 +96,15 @@ function runsOf(steps: readonly Step[], { pixelAt }: Measures): Run[] {
   return runs;
 }
 
-/** Whether a step lies where the surface may have gone on to, after a gap of the drawing. */
+/** Whether the surface may reach from `end` to a step after a gap of the drawing. */
 function isBack(end: Found, step: Found, { pixelAt }: Measures): boolean {
   return apart(end, step) <= (kRelief + kSlope * screenDistance(end, step)) * pixelAt(end.place);
 }
 
-/** How long the runs are on the screen, from where the line left and to where it came back. */
+/**
+ * The length of the runs on the screen, from the point where the line left the surface to the point
+ * where it returned.
+ */
 function drawnLength(end: Found, aside: readonly Run[], back: Found | null): number {
   const way = [end, ...aside.flat(), ...(back ? [back] : [])];
   return way.slice(1).reduce((sum, step, index) => sum + screenDistance(way[index]!, step), 0);
@@ -124,8 +127,8 @@ function strayOf(end: Found, aside: readonly Run[], back: Found): number {
 }
 
 /**
- * The runs without those beside the surface: what lies much deeper or nearer than the way over it
- * is long, until the line is back.
+ * Returns the runs without those off the surface: a run is off while its jump in depth is larger
+ * than half the length drawn on the screen, until the line returns.
  */
 function keptRuns(runs: readonly Run[], measures: Measures): Run[] {
   const kept: Run[] = runs.slice(0, 1);
@@ -154,7 +157,7 @@ function keptRuns(runs: readonly Run[], measures: Measures): Run[] {
   return kept;
 }
 
-/** The way over the surface between two runs, without its ends; null: there is none. */
+/** The path over the surface between two runs, without its ends; null: none exists. */
 async function joint(
   end: Found,
   begin: Found,
@@ -178,8 +181,8 @@ async function joint(
 }
 
 /**
- * The line on the surface that was begun, in one piece, or in several where it crossed an edge and
- * could not go on.
+ * The line on the surface where the drawing began, in one piece, or in several where it crossed an
+ * edge and could not continue.
  */
 export async function lineOnSurface(
   steps: readonly Step[],
@@ -200,10 +203,7 @@ export async function lineOnSurface(
     .filter((each) => markLength({ coordinates: each }) > 0);
 }
 
-/**
- * How long such a line is, while it is drawn: what it goes along between two runs is taken as
- * straight.
- */
+/** The length of the line during drawing; the parts between two runs count as straight. */
 export function lengthSeen(steps: readonly Step[], measures: Measures): number {
   let sum = 0;
   let end: Found | null = null;

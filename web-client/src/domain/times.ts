@@ -1,4 +1,4 @@
-// Moments of the server as people say them, in the time of this browser.
+// Times from the server in readable form, in the time zone of this browser.
 
 import { pageLocale } from "../core/locale";
 
@@ -23,9 +23,9 @@ export const toldTime = (iso: string, now = new Date()): string =>
 const kAgo = [
   ["minute", 60],
   ["hour", 24],
-] as const; // each with how many make the next
+] as const; // each with the number that makes one of the next
 
-/** "2 minutes ago", "3 hours ago", from a day on as toldTime(). */
+/** "2 minutes ago", "3 hours ago"; after a day as toldTime(). */
 export function toldAgo(iso: string, now = new Date()): string {
   let ago = Math.max(0, now.getTime() - new Date(iso).getTime()) / 60_000;
   for (const [unit, most] of kAgo) {

@@ -1,5 +1,5 @@
-// A tour while somebody writes it: what its fields hold, what is missing in them, and which field a
-// refusal of the server is about.
+// A draft of a tour: the contents of its fields, checks for missing ones, and the field that a
+// refusal of the server concerns.
 
 import { readNumber, typedNumber } from "../core/locale";
 import type {
@@ -18,17 +18,17 @@ export const kMostRecordTables = 10;
 export const kMostKeys = 100;
 export const kSeconds = { idle: [30, 3600], attract: [1, 600], transition: [0, 30] } as const;
 
-/** Words by language, which may be empty while they are written. */
+/** Texts by language; they may be empty during editing. */
 export type Words = Readonly<Record<string, string>>;
 
 export interface StopDraft {
-  /** For the page alone: it stays when the stop moves. */
+  /** Only for the page: it stays the same when the stop moves. */
   readonly id: number;
-  /** Slug; empty: its view is gone, and another must be chosen. */
+  /** Slug; empty: the view was deleted, and the user must choose another. */
   readonly view: string;
   readonly title: Words;
   readonly text: Words;
-  /** As they were typed. */
+  /** As typed. */
   readonly attract_s: string;
   readonly transition: TourTransition;
   readonly transition_s: string;
@@ -39,7 +39,7 @@ export interface StopDraft {
 export interface TourDraft {
   readonly name: string;
   readonly text: string;
-  readonly languages: readonly string[]; // the first is that of who chooses none
+  readonly languages: readonly string[]; // the first is the default
   readonly idle_s: string;
   readonly stops: readonly StopDraft[];
 }
@@ -85,22 +85,20 @@ export const draftOf = ({ name, text, languages, idle_s: idleS, stops }: Tour): 
   stops: stops.map(stopOf),
 });
 
-/** With what stands at `from` out and set where `to` is then. */
+/** Returns a copy with the item at `from` moved to the index `to` of the result. */
 export function moved<T>(all: readonly T[], from: number, to: number): T[] {
   const rest = all.filter((_, index) => index !== from);
   rest.splice(Math.max(0, Math.min(to, rest.length)), 0, all[from]!);
   return rest;
 }
 
-// ── languages
-// ───────────────────────────────────────────────────────────────────────────────────────────────────────
+// ── languages ────────────────────────────────────────────────────────────────────────────────────
 
 const without = (words: Words, language: string): Words =>
   Object.fromEntries(Object.entries(words).filter(([tag]) => tag !== language));
 
 /**
- * What was written in the language is gone with it: the server takes no words in others than the
- * tour's.
+ * Also removes the texts in the language: the server accepts texts only in the tour's languages.
  */
 export function withoutLanguage(draft: TourDraft, language: string): TourDraft {
   return {
@@ -123,7 +121,7 @@ export function withoutLanguage(draft: TourDraft, language: string): TourDraft {
 
 const says = (words: Words, language: string): boolean => (words[language] ?? "").trim() !== "";
 
-/** Whether something is written in the language anywhere. */
+/** Whether any text in the language exists. */
 export const writesIn = ({ stops }: TourDraft, language: string): boolean =>
   stops.some(
     ({ title, text, records }) =>
@@ -132,15 +130,14 @@ export const writesIn = ({ stops }: TourDraft, language: string): boolean =>
       records.some(({ columns }) => columns.some(({ labels }) => says(labels ?? {}, language))),
   );
 
-/** Languages in which the stop has no title, or no text though the first one has. */
+/** Languages in which the stop has no title, or no text although the first language has one. */
 export const untranslated = ({ title, text }: StopDraft, languages: readonly string[]): string[] =>
   languages.filter(
     (language) =>
       !says(title, language) || (says(text, languages[0] ?? "") && !says(text, language)),
   );
 
-// ── what is sent, and what is wrong with it
-// ─────────────────────────────────────────────────────────────────────────
+// ── requests and checks ──────────────────────────────────────────────────────────────────────────
 
 export type Wrong =
   | "name_missing"
@@ -151,16 +148,16 @@ export type Wrong =
   | "seconds";
 
 export interface DraftProblem {
-  /** As the server names it: `stops[2].title.fr`. */
+  /** The server's name of the field: `stops[2].title.fr`. */
   field: string;
   wrong: Wrong;
-  /** Of seconds: the least and the most. */
+  /** For seconds: minimum and maximum. */
   range?: readonly [number, number];
 }
 
 /**
- * The first thing without which the server would refuse it; what only the server knows is left to
- * it.
+ * The first problem for which the server would refuse the draft; checks that only the server can do
+ * are not included.
  */
 export function problemOf(draft: TourDraft): DraftProblem | null {
   const [first] = draft.languages;
@@ -193,7 +190,7 @@ export function problemOf(draft: TourDraft): DraftProblem | null {
   return null;
 }
 
-/** By tag, without what is blank. */
+/** By tag, without blank texts. */
 const written = (words: Words): Record<string, string> =>
   Object.fromEntries(
     Object.entries(words)
@@ -203,7 +200,7 @@ const written = (words: Words): Record<string, string> =>
   );
 
 function bodyOfStop(stop: StopDraft): TourStopCreate {
-  // of a cut it is not looked at, and may be anything
+  // for a cut, the duration is unused and may have any value
   const heldS = readNumber(stop.transition_s);
   return {
     view: stop.view,
@@ -228,7 +225,7 @@ function bodyOfStop(stop: StopDraft): TourStopCreate {
   };
 }
 
-/** Of a draft of which problemOf() says nothing. */
+/** For a draft without problemOf(). */
 export const bodyOf = ({
   name,
   text,
@@ -243,25 +240,25 @@ export const bodyOf = ({
   stops: stops.map(bodyOfStop),
 });
 
-/** Whether a draft says something else than another. */
+/** Whether two drafts differ. */
 export const differs = (a: TourDraft, b: TourDraft): boolean =>
   JSON.stringify(bodyOf(a)) !== JSON.stringify(bodyOf(b));
 
 /**
- * Where a field of the server stands: of which stop, and what within it. Null: of the tour itself.
+ * Parses a field name of the server: the stop and the field within it. Null: a field of the tour
+ * itself.
  */
 export function placeOf(field: string): { stop: number | null; within: string } {
   const found = /^stops\[(\d+)\]\.?(.*)$/.exec(field);
   return found ? { stop: Number(found[1]), within: found[2]! } : { stop: null, within: field };
 }
 
-/** Whether a refusal of `within` is about `field`: it itself, or a part of it. */
+/** Whether a refusal of `within` concerns `field` or a part of it. */
 export const isAbout = (within: string, field: string): boolean =>
   within === field || within.startsWith(`${field}.`) || within.startsWith(`${field}[`);
 
 /**
- * The language that a field is in: that of `title.fr`, `text.fr` and
- * `records[0].columns[1].labels.fr`.
+ * The language of a field name: for `title.fr`, `text.fr` and `records[0].columns[1].labels.fr`.
  */
 export const languageOfField = (within: string): string | null =>
   /^(?:title|text|.*\.labels)\.([A-Za-z0-9-]+)$/.exec(within)?.[1] ?? null;

@@ -1,25 +1,25 @@
-// How many records of a table hold each value of a column.
+// Counts the records of a table for each value of a column.
 
 import type { FilterValue } from "./column-filter";
 import type { CellValue, RecordList } from "../core/protocol.gen";
 import type { RecordQuery } from "../net/records";
 
-const kPage = 1000; // the most that the server gives at once
-const kMostCounted = 20_000; // beyond it a person would wait
+const kPage = 1000; // the server's limit for one request
+const kMostCounted = 20_000; // more would make the user wait
 
 export interface ValueCounts {
   ofValue: Map<FilterValue, number>;
-  /** Records without a value. */
+  /** The number of records without a value. */
   empty: number;
-  /** Of numbers and texts, as they are ordered. */
+  /** For numbers and texts, in their order. */
   least: FilterValue | null;
   greatest: FilterValue | null;
-  /** Records that were looked at, of all. */
+  /** The number of records that were read, out of `total`. */
   counted: number;
   total: number;
 }
 
-/** Each record that a cell names is a value of its own. */
+/** For a cell with several records, each is a separate value. */
 const valuesInCell = (value: CellValue | undefined): FilterValue[] =>
   value === null || value === undefined
     ? []

@@ -1,6 +1,5 @@
-// Named views: what they keep of how somebody sees the model, and what follows from it for who
-// comes to see it so. Layers and looks are meant by id. What nobody says of a view, its name and
-// text, is not of this file.
+// Named views: the settings that they keep and apply. They refer to layers and surface images by
+// id. A view's name and text are not part of this file.
 
 import { samePalette } from "./palette";
 import type {
@@ -14,11 +13,11 @@ import type {
 import { completePalette, type Layer, type Palette } from "../core/types";
 
 /**
- * Where from, and what is shown how: enough to show the same again, whatever the defaults are then.
+ * The camera and all display settings: enough to show the same again even if the defaults change.
  */
 export type ViewContent = Required<Pick<View, "camera" | "layers" | "looks" | "light">>;
 
-/** How somebody shows a layer. An absent member is the layer's own. */
+/** A person's settings for a layer. An absent member has the layer's default. */
 export interface LayerShown {
   visible?: boolean;
   opacity?: number;
@@ -27,15 +26,15 @@ export interface LayerShown {
   highlight?: Highlight;
 }
 
-/** How somebody shows a look. An absent member is the look's own. */
+/** A person's settings for a surface image. An absent member has the image's default. */
 export interface LookSettings {
   visible?: boolean;
   opacity?: number;
 }
 
 /**
- * What a view keeps of the layers: visibility and opacity of each, as the defaults may be others
- * later; palettes, places in the order and highlights where they are this person's own.
+ * The settings of layers that a view keeps: visibility and opacity of each layer, since the
+ * defaults may change; palette, order and highlight only where this person has changed them.
  */
 export const layersToKeep = (
   layers: readonly Layer[],
@@ -62,8 +61,7 @@ export const layersToKeep = (
   });
 
 /**
- * Of how a layer is shown, what differs from what everybody sees at first; null: nothing.
- * Highlights are of views.
+ * The settings of a layer that differ from the defaults; null: none. Highlights belong to views.
  */
 export function ownPart(
   layer: Layer,
@@ -78,7 +76,7 @@ export function ownPart(
   return Object.keys(own).length > 0 ? own : null;
 }
 
-/** How the layers that there are shown in a view, by id. */
+/** The settings of the existing layers in a view, by id. */
 export function layersOfView(
   { layers }: Pick<View, "layers"> | PersonalView,
   known: readonly Layer[],
@@ -95,8 +93,8 @@ export function layersOfView(
 }
 
 /**
- * How the looks that there are shown in a view, by id, and those that it shows from bottom to top.
- * Without `looks` it shows the defaults.
+ * The settings of the existing surface images in a view, by id, and the stack of the visible ones,
+ * bottom to top. A view without `looks` shows the defaults.
  */
 export function looksOfView(
   { looks }: { looks?: LookShown[] },

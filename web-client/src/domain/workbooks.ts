@@ -1,6 +1,6 @@
-// Tables that are saved for a spreadsheet.
+// Tables saved as a spreadsheet.
 
-/** `lang`: the language in which terms stand in it. */
+/** `lang`: the language of terms. */
 export interface WorkbookQuery {
   f: "csv" | "xlsx";
   lang: string;

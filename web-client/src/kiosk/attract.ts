@@ -1,7 +1,7 @@
-// The tour that plays by itself: a stop after the other, each for its time. One timer.
+// The automatic loop of a tour: shows one stop after the other, each for its time. Uses one timer.
 
 export interface AttractHost {
-  /** Of the stop that is seen: how long until it stands still, and how long it is shown then. */
+  /** For the current stop: the duration of the transition, and of the display after it. */
   times(): { transition_s: number; attract_s: number } | null;
   next(): void;
 }

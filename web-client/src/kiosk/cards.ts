@@ -1,4 +1,4 @@
-// What is told of a record: the columns that the tour chose, or else what its table tells, in the
+// Contents of a record's card: the columns that the tour lists, or else those of its table, in the
 // visitor's language, and its pictures.
 
 import { ApiError } from "../net/api-error";
@@ -29,7 +29,7 @@ import { textsIn } from "./texts";
 
 export interface CardPicture {
   name: string;
-  small: string; // addresses
+  small: string; // URLs
   large: string;
 }
 
@@ -49,10 +49,10 @@ export interface CardAsked {
   languages: readonly string[]; // of the tour
 }
 
-const kMostLines = 8; // of a table of which the tour chose no columns
+const kMostLines = 8; // for a table without columns in the tour
 const kMostPictures = 12;
 
-/** Null: there is no such record, or not for visitors. Other failures are ApiErrors. */
+/** Null: the record does not exist or is not public. Other failures are ApiErrors. */
 export async function cardOf(api: Api, asked: CardAsked): Promise<Card | null> {
   try {
     return await readCard(api, asked);
@@ -81,7 +81,7 @@ async function readCard(api: Api, asked: CardAsked): Promise<Card> {
   for (const { column, chosen } of shown) {
     if (holdsFiles(column)) continue;
     const text = await textOf(api, asked, column, record.values[column.slug] ?? null);
-    // What is the card's heading is not said again, unless the tour wants it so.
+    // The card's heading is not repeated, unless the tour lists its column.
     if (text === "" || (!chosen && text === title) || (!chosen && lines.length >= kMostLines))
       continue;
     lines.push({ label: labelOnCard(column, chosen, asked), text });
@@ -100,8 +100,8 @@ async function readCard(api: Api, asked: CardAsked): Promise<Card> {
 }
 
 /**
- * As the tour or the table call it in the visitor's language; else as the tour calls it in its
- * first one, or by its name, whatever language that is.
+ * The label from the tour or the table in the visitor's language; else the tour's label in its
+ * first language, or the column's name in whichever language.
  */
 function labelOnCard(
   column: Column,
@@ -147,7 +147,7 @@ async function textOf(
   return column.unit ? `${text} ${column.unit}` : text;
 }
 
-/** Those that visitors may know. */
+/** Names of the public records among the keys. */
 async function namesOf(
   api: Api,
   { language }: CardAsked,
@@ -168,8 +168,8 @@ async function namesOf(
 }
 
 /**
- * Of the columns that are shown, in their order; browsers show no others than these two kinds that
- * the server makes small ones of.
+ * The pictures of the shown columns, in their order, in the two formats that browsers display and
+ * that the server makes thumbnails of.
  */
 function picturesOf(
   columns: readonly Column[],

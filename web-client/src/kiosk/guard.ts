@@ -1,6 +1,6 @@
-// Keeps visitors on the page: no menu, no selection, no dragging out, no zoom of the whole page, no
-// printing, no way back. The browser's bars go with the whole screen, where a touch may ask for it;
-// its keys only its own kiosk mode takes away.
+// Keeps visitors on the page: no context menu, selection, dragging, page zoom, printing or history.
+// Full screen, which needs a touch, hides the browser's toolbars; only the browser's own kiosk mode
+// disables its keys.
 
 const refuse = (event: Event): void => event.preventDefault();
 
@@ -10,8 +10,8 @@ export function keepOnPage(): void {
   document.addEventListener("wheel", (event) => event.ctrlKey && event.preventDefault(), {
     passive: false,
   });
-  // Safari zooms with two fingers whatever the page's viewport says; the stage's own gestures are
-  // of pointers.
+  // Safari zooms with two fingers regardless of the page's viewport; the stage's own gestures use
+  // pointer events.
   document.addEventListener(
     "touchmove",
     (event) => event.touches.length > 1 && event.cancelable && event.preventDefault(),
@@ -27,8 +27,8 @@ export function keepOnPage(): void {
 }
 
 /**
- * The whole screen, where the browser's own kiosk mode has not given it: browsers grant that to a
- * touch only, and visitors' browsers not at all or for as long as they want.
+ * Requests full screen, unless the browser's own kiosk mode provides it. Browsers grant it only on
+ * a touch; browsers of visitors' own devices may refuse or end it.
  */
 export function fillScreen(): void {
   const hasIt =
@@ -38,11 +38,11 @@ export function fillScreen(): void {
     document.documentElement.requestFullscreen({ navigationUI: "hide" }).catch(() => {});
 }
 
-/** The screen stays on, where the browser grants that. */
+/** Keeps the screen on if the browser permits. */
 export async function stayAwake(): Promise<void> {
   try {
     if (document.visibilityState === "visible") await navigator.wakeLock?.request("screen");
   } catch {
-    // Low battery, or not allowed: the screen's own settings rule.
+    // Low battery, or no permission: the system's settings apply.
   }
 }

@@ -1,25 +1,25 @@
-// Whether somebody stands before the screen. After the tour's time without a touch they are asked,
-// with a countdown, and when nobody answers the screen is alone: it begins anew and plays by itself
-// until the next touch. One timer at most, whatever is touched how often.
+// Detects whether a visitor uses the screen. After the tour's idle time without a touch it shows a
+// question with a countdown. Without an answer the tour restarts and plays automatically until the
+// next touch. Uses at most one timer, regardless of the number of touches.
 
 /**
- * alone: nobody is there. visited: somebody is. asked: they have not touched for long, and `leftS`
- * seconds to say that they are there.
+ * alone: no visitor. visited: a visitor is present. asked: no touch for the idle time; the visitor
+ * has `leftS` seconds to answer.
  */
 export type Presence = { is: "alone" } | { is: "visited" } | { is: "asked"; leftS: number };
 
 export interface IdleHost {
-  /** Seconds without a touch before somebody is asked. */
+  /** Seconds without a touch before the question. */
   idleS(): number;
-  /** Somebody came. */
+  /** A visitor has arrived. */
   came(): void;
-  /** Nobody is there any more. */
+  /** The visitor has left. */
   left(): void;
   changed(): void;
 }
 
 export const kAskedS = 10;
-const kLeastS = 30; // whatever the tour says: who reads touches nothing
+const kLeastS = 30; // minimum for all tours, since readers do not touch the screen
 
 export class IdleWatch {
   presence: Presence = { is: "alone" };
@@ -28,11 +28,11 @@ export class IdleWatch {
 
   constructor(private readonly _host: IdleHost) {}
 
-  /** Anything that a person does. */
+  /** Call this for each action of a person. */
   touched(): void {
     this._touchedMs = performance.now();
     const { is } = this.presence;
-    if (is === "visited") return; // the timer sees when it fires that it is too early
+    if (is === "visited") return; // the timer detects this when it fires
     this.enter({ is: "visited" }, this._host.idleS());
     if (is === "alone") this._host.came();
   }

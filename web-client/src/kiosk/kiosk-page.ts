@@ -1,5 +1,5 @@
-// <strata-kiosk>: the whole screen: the object, and below or beside it what the stop says and what
-// visitors can do.
+// <strata-kiosk>: the whole screen: the object, and below or next to it the texts of the stop and
+// the controls.
 
 import { html, LitElement, nothing, svg, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -16,9 +16,9 @@ import { followSwipes } from "./swipe";
 import { textsIn } from "./texts";
 
 const kMostDots = 12;
-const kMostInvitations = 3; // languages in which one is asked to begin
+const kMostInvitations = 3; // languages in the invitation
 
-/** Many languages write their own name small within a sentence. */
+/** Capitalizes the name: many languages write it in lower case. */
 function nameOnButton(tag: string): string {
   const name = nameOfLanguage(tag) || tag;
   return name.charAt(0).toLocaleUpperCase(tag) + name.slice(1);
@@ -53,11 +53,11 @@ export class StrataKiosk extends LitElement {
   }
 
   /**
-   * Whoever does anything is there. What begins the tour is its button alone, so that the same
-   * touch does nothing else.
+   * Any event counts as activity. Only the start button begins the tour, so that the same touch
+   * does nothing else.
    */
   private readonly touched = (event: Event): void => {
-    // on a table that shakes
+    // a table may shake
     const restsAMouse = event.type === "pointermove" && (event as PointerEvent).buttons === 0;
     if (!restsAMouse && this.session.idle.presence.is === "visited") this.session.touched();
   };
@@ -83,7 +83,7 @@ export class StrataKiosk extends LitElement {
     this.holdFocus();
   }
 
-  /** Each thing that opens over the others has the focus, once. */
+  /** Focuses each overlay once, when it opens. */
   private holdFocus(): void {
     const { session } = this;
     const open =
@@ -124,7 +124,7 @@ export class StrataKiosk extends LitElement {
     `;
   }
 
-  /** Beside the finger, above it where there is room. */
+  /** Next to the finger, above it where there is room. */
   private place({
     title,
     about,
@@ -241,7 +241,7 @@ export class StrataKiosk extends LitElement {
     </section>`;
   }
 
-  /** In the first languages of the tour of which the page has words. */
+  /** In the first languages of the tour that the page's texts exist in. */
   private invitation(): TemplateResult {
     const { session } = this;
     const { languages } = session;

@@ -1,6 +1,5 @@
-// What happens on one kiosk: its tour, the stop that is seen, the language, what is told of a
-// record, and whether somebody is there. Elements subscribe and draw themselves from its state;
-// they change it only through its methods.
+// The state of a kiosk: its tour, the current stop and language, the open card, and the presence of
+// a visitor. Elements subscribe and render its state; they change it only through its methods.
 
 import type { Api } from "../net/api";
 import { ApiError } from "../net/api-error";
@@ -42,20 +41,20 @@ export interface SessionOptions {
 
 export class KioskSession {
   self: KioskSelf | null = null;
-  /** The link leads nowhere any more. */
+  /** The link is not valid. */
   worthless = false;
   stops: Stop[] = [];
-  /** The views were read, so that `stops` is what there is. */
+  /** The views are loaded, and `stops` is complete. */
   ready = false;
   index = 0;
   language = "en";
   choices: LayerChoice[] = [];
   choice: LayerChoice = null;
-  /** Of the stop's records, under their names. */
+  /** The records of the stop, with their names. */
   named: NamedRecord[] = [];
   card: Card | null = null;
   enlarged: Card["pictures"][number] | null = null;
-  /** Where somebody tapped, while it is where they tapped. */
+  /** The tapped place, until the picture moves. */
   private _place: TappedPlace | null = null;
   show: KioskShow | null = null;
 
@@ -64,7 +63,7 @@ export class KioskSession {
   private readonly _link: KioskLink;
   private readonly _listeners = new Set<() => void>();
   private _views = new Map<string, View>(); // by slug
-  private _reading = 0; // the newest reading of views or records wins
+  private _reading = 0; // only the latest read of views or records counts
   private _naming = 0;
   private _askedCard = 0;
 
@@ -103,14 +102,13 @@ export class KioskSession {
     this.show?.close();
     this._listeners.clear();
   }
-  /** The network or the page is back. */
+  /** Call this after the network or the page has returned. */
   lookAgain(): void {
     this._link.ask();
     this.show?.checkConnection();
   }
 
-  // ── what is seen
-  // ──────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── state ──────────────────────────────────────────────────────────────────────────────────────
 
   get tour(): Tour | null {
     return this.self?.tour ?? null;
@@ -130,10 +128,7 @@ export class KioskSession {
   get text(): string {
     return wordsIn(this.stop?.stop.text, this.language, this.languages);
   }
-  /**
-   * What the place that was tapped is called, and where it is on the stage; null: there is nothing
-   * to tell of any.
-   */
+  /** The name of the tapped place and its position on the stage; null: none. */
   get place(): { title: string; about: string; x: number; y: number } | null {
     const { _place: place, show } = this;
     const layer = place && show?.layers.find(({ id }) => id === place.layer);
@@ -141,13 +136,12 @@ export class KioskSession {
       ? { ...wordsOfPlace(layer, place.value, this.language), x: place.x, y: place.y }
       : null;
   }
-  /** Nobody is there; the tour plays by itself. */
+  /** No visitor: the tour plays automatically. */
   get resting(): boolean {
     return this.idle.presence.is === "alone";
   }
 
-  // ── what visitors do
-  // ──────────────────────────────────────────────────────────────────────────────────────────────
+  // ── actions of visitors ────────────────────────────────────────────────────────────────────────
 
   touched(): void {
     if (!this.worthless && this.ready) this.idle.touched();
@@ -170,7 +164,7 @@ export class KioskSession {
     this.show?.showLayers(this.overrides());
     this.changed();
   }
-  /** To the next of the layers; after the last one comes none. Not beneath a card. */
+  /** Shows the next layer, if there is one. Not below a card. */
   swipe(by: 1 | -1): void {
     if (this.card) return;
     const next = this.choices[this.choices.indexOf(this.choice) + by];
@@ -192,7 +186,7 @@ export class KioskSession {
       this.card = card;
       this.changed();
     } catch (error) {
-      // the server is away, and the record was never looked at: nothing opens
+      // the server is unreachable and the record is not stored: no card
       if (!(error instanceof ApiError)) throw error;
     }
   }
@@ -212,15 +206,14 @@ export class KioskSession {
     this.changed();
   }
 
-  // ── the tour
-  // ──────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── the tour ───────────────────────────────────────────────────────────────────────────────────
 
   private begin(): void {
     this._attract.stop();
     this.goTo(0);
   }
 
-  /** As a visitor finds it: the first stop in the first language; then it plays by itself. */
+  /** The initial state: the first stop in the first language; then the tour plays automatically. */
   private rest(): void {
     this.language = this.languages[0] ?? "en";
     this.goTo(0);
@@ -245,13 +238,13 @@ export class KioskSession {
     return stop && show ? layersShown(stop, show.layers, this.choices, this.choice) : [];
   }
 
-  /** Of the stop, by what they are called; those that there are no more are left out. */
+  /** Loads the names of the stop's records; deleted records are omitted. */
   private async nameRecords(): Promise<void> {
     const naming = ++this._naming;
     const { stop, language, languages } = this;
     const wanted =
       stop?.stop.records.flatMap(({ table, keys }) => keys.map((key) => ({ table, key }))) ?? [];
-    if (wanted.length === 0 || this.resting) this.named = []; // which nobody reads then
+    if (wanted.length === 0 || this.resting) this.named = []; // not visible in this state
     if (!stop || wanted.length === 0 || this.resting) return;
     const cards = await Promise.all(
       wanted.map((each) =>
@@ -267,7 +260,7 @@ export class KioskSession {
     this.changed();
   }
 
-  /** Of a record its card, of a class or a number what it is, beside the place. */
+  /** Opens the card of a record; for a class or number, shows its name at the place. */
   private onTapped(picked: Picked, { x, y }: { x: number; y: number }): void {
     const { show } = this;
     if (!show || this.resting) return;
@@ -281,20 +274,19 @@ export class KioskSession {
     }
   }
 
-  // ── the server
-  // ────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── the server ─────────────────────────────────────────────────────────────────────────────────
 
   private async onTold(self: KioskSelf): Promise<void> {
     const before = this.self;
     this.self = self;
     if (!before || before.tour.version !== self.tour.version || before.tour.id !== self.tour.id)
       await this.takeTour();
-    else if (this.show?.drawn) this.keep(); // what is seen comes first
+    else if (this.show?.drawn) this.keep(); // the picture has priority
     if (!this.ready) await this.readViews();
     this.changed();
   }
 
-  /** Away at the start: goes on with what was told last. */
+  /** If the server is unreachable at the start: continues with the last stored answer. */
   private async onMissed(): Promise<void> {
     if (this.self && !this.ready) await this.readViews();
     if (this.self) return;
@@ -336,7 +328,7 @@ export class KioskSession {
         tapped: (picked, at) => this.onTapped(picked, at),
         moved: () => this.forgetPlace(),
         changed: () => this.changed(),
-        lost: () => this._link.ask(), // which knows why
+        lost: () => this._link.ask(), // finds out the reason
       },
       this._options.makeSocket,
     );
@@ -349,7 +341,7 @@ export class KioskSession {
     const slugs = [...new Set(self.tour.stops.flatMap(({ view }) => view ?? []))];
     const views = await Promise.all(slugs.map((slug) => this.readView(self.model, slug)));
     if (reading !== this._reading || this.worthless) return;
-    if (!this.ready && views.includes(undefined)) return; // asked again when the server is
+    if (!this.ready && views.includes(undefined)) return; // repeated when the server is reachable
     this._views = new Map(
       slugs.flatMap((slug, place): [string, View][] =>
         [views[place] ?? []].flat().map((view) => [slug, view]),
@@ -363,7 +355,7 @@ export class KioskSession {
     else this.showAgain();
   }
 
-  /** Null: it is gone. Where the server is away, as it was known, or undefined. */
+  /** Null: deleted. If the server is unreachable: the known view, or undefined. */
   private async readView(model: string, slug: string): Promise<View | null | undefined> {
     try {
       return await this._options.api.json("GET /models/{model}/views/{view}", {
@@ -375,7 +367,7 @@ export class KioskSession {
     }
   }
 
-  /** The same stop, with what is known of the model or the tour now. */
+  /** Shows the same stop with the current model and tour. */
   private showAgain(): void {
     const { stop, show, choice } = this;
     if (!stop || !show) return void this.changed();

@@ -1,6 +1,6 @@
-// How the kiosk looks: large, quiet, and in the lower half whatever is to be touched. Targets are
-// 15 mm at least (57 CSS pixels), larger where fingers are all there is. Upright screens have the
-// object above the words, wide ones beside them.
+// Styles of the kiosk: large and calm, with all controls in the lower half. Targets are at least 15
+// mm (57 CSS pixels), and larger on touch-only screens. Upright screens have the object above the
+// texts, wide screens next to them.
 
 import { css } from "lit";
 
@@ -12,9 +12,9 @@ export const kioskStyles = css`
     position: fixed;
     inset: 0;
     display: grid;
-    --words: 40; /* the most of the height, in percent, that words may take */
+    --words: 40; /* largest share of the height for texts, in percent */
     grid-template: minmax(0, 1fr) auto / minmax(0, 1fr);
-    background: linear-gradient(rgb(241 240 236), rgb(214 211 204)); /* as the server draws it behind the model */
+    background: linear-gradient(rgb(241 240 236), rgb(214 211 204)); /* the server's background */
     color: var(--ink);
     font: clamp(17px, 1.7vmin + 7px, 34px) / 1.5 var(--sans);
     overflow: hidden;
@@ -119,7 +119,7 @@ export const kioskStyles = css`
     overflow: hidden;
     pointer-events: none;
   }
-  /* a dot where the finger was, and the words over it, within the stage */
+  /* a dot at the tapped place, and the text above it, inside the stage */
   .place-of-tap::before {
     content: "";
     position: absolute;
@@ -157,7 +157,7 @@ export const kioskStyles = css`
   .panel {
     grid-area: 2 / 1;
     position: relative;
-    max-height: calc(var(--words) * 1dvh); /* as tall as its words, which scroll beyond that */
+    max-height: calc(var(--words) * 1dvh); /* as tall as its text; a longer text scrolls */
     display: flex;
     flex-direction: column;
     gap: var(--gap);
@@ -202,7 +202,7 @@ export const kioskStyles = css`
     padding: 6px var(--rim);
   }
   .row.layers {
-    touch-action: pan-y; /* drawn sideways it goes to the next one */
+    touch-action: pan-y; /* a horizontal swipe selects the next layer */
   }
   .row.scrolls button {
     flex: none;
@@ -249,7 +249,7 @@ export const kioskStyles = css`
     position: absolute;
     inset: auto 0 0;
     z-index: 2;
-    height: max(100%, calc(var(--words) * 1dvh)); /* over the foot of the picture, which does not move */
+    height: max(100%, calc(var(--words) * 1dvh)); /* over the bottom of the fixed picture */
     display: flex;
     flex-direction: column;
     gap: var(--gap);
@@ -376,7 +376,7 @@ export const kioskStyles = css`
     }
   }
   .panel.resting {
-    padding-bottom: calc(2.5 * var(--rim) + 1.25 * var(--target) + 3em); /* for what invites to begin */
+    padding-bottom: calc(2.5 * var(--rim) + 1.25 * var(--target) + 3em); /* for the invitation */
     text-align: center;
   }
   .panel.resting .words {

@@ -1,8 +1,8 @@
-// The languages of a tour: in which of them something is said, and how they are written.
+// The languages of a tour: the choice of a text's language, and the direction of writing.
 
 import type { TourWords } from "../core/protocol.gen";
 
-/** In that language, or else in the first of the tour that has it. */
+/** The text in that language, or else in the first of the tour's languages that has it. */
 export function wordsIn(
   words: TourWords | undefined,
   language: string,

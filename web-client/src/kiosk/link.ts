@@ -1,7 +1,7 @@
-// The kiosk's link to its server: signs in with the link's secret, and asks from time to time
-// whether it is still good, the tour still the same, and whether the page is to be loaded anew. A
-// server that is away is asked again for ever, ever more seldom; and so is, every five minutes, one
-// that knows no such link: what was in the trash may be restored.
+// The kiosk's link to its server: signs in with the link's secret, then asks at intervals whether
+// the link is valid, whether the tour has changed, and whether to reload the page. If the server is
+// unreachable, the kiosk asks again without end, at increasing intervals. If the server does not
+// accept the link, it asks again every five minutes, since the tour may be restored from the trash.
 
 import type { Api } from "../net/api";
 import { ApiError } from "../net/api-error";
@@ -13,11 +13,11 @@ const kWorthlessS = 300;
 
 export interface LinkHost {
   told(self: KioskSelf): void;
-  /** No answer, or none that says anything. */
+  /** No answer, or not a valid one. */
   missed(): void;
   /**
-   * It was revoked, is over, or its tour is in the trash. Told each time. If it is good again, the
-   * page is loaded anew.
+   * The link was revoked, has expired, or its tour is in the trash. Called after each such answer.
+   * If the link becomes valid again, the page is reloaded.
    */
   worthless(): void;
   reload(): void;
@@ -37,7 +37,7 @@ export class KioskLink {
     private readonly _host: LinkHost,
   ) {}
 
-  /** Now, whenever the next time would have been. */
+  /** Asks now, before the next interval. */
   ask(): void {
     if (this._ended || this._asking) return;
     if (this._timer) clearTimeout(this._timer);
@@ -80,7 +80,7 @@ export class KioskLink {
     } else this.take(self ?? (await this.signIn()));
   }
 
-  /** Null: the server no longer knows this browser, which may only have lost its cookie. */
+  /** Null: the server does not recognize this browser, which may only have lost its cookie. */
   private async unlessForgotten(asked: Promise<KioskSelf>): Promise<KioskSelf | null> {
     try {
       return await asked;
@@ -97,7 +97,7 @@ export class KioskLink {
       this._signedIn = true;
       return self;
     } catch (error) {
-      // 404: its tour is gone. 422: no such secret could have been given.
+      // 404: its tour was deleted. 422: the secret has no valid form.
       if (!(error instanceof ApiError) || ![401, 404, 422].includes(error.status)) throw error;
       return null;
     }

@@ -1,4 +1,4 @@
-// The page at /kiosk/{secret}. Started by the page's own main.ts, of which it loads nothing else.
+// The page at /kiosk/{secret}. The site's main.ts starts it and loads nothing else.
 
 import { Api } from "../net/api";
 import { sayOwnProblemsIn } from "../core/problems";
@@ -8,12 +8,12 @@ import "./kiosk-page";
 import { KioskSession } from "./kiosk-session";
 import { KioskStore, openBrowserCache, startWorker } from "./store";
 
-/** Behind /kiosk/; null: there is none. */
+/** The part after /kiosk/; null: none. */
 export const secretOf = (path: string): string | null =>
   /^\/kiosk\/([^/]{1,200})\/?$/.exec(path)?.[1] ?? null;
 
 export function startKiosk(): void {
-  // Visitors are told of no call that failed.
+  // Visitors see no messages about failed calls.
   sayOwnProblemsIn({
     unreachable: ["The server is away", ""],
     statuses: {},

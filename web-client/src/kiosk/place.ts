@@ -1,5 +1,5 @@
-// What lies where a visitor tapped: of a record its card tells more; of everything else the class,
-// or what was measured, is named beside the place.
+// The place that a visitor tapped: for a record the kiosk opens its card; for a class or a measured
+// value it shows the name at the place.
 
 import { labelOf } from "../domain/cells";
 import { formatNumber } from "../domain/measure";
@@ -15,8 +15,8 @@ export interface TappedPlace {
 }
 
 /**
- * The topmost of the layers that holds a record there, or else the topmost that holds anything.
- * Null: none is painted there.
+ * The topmost layer with a record there, or else the topmost with any value. Null: no layer is
+ * painted there.
  */
 export function layerThere(
   seen: readonly Layer[],
@@ -29,11 +29,11 @@ export function layerThere(
   return painted.find(({ layer }) => layer.table !== undefined) ?? painted[0] ?? null;
 }
 
-/** What a layer is called in the visitor's language, or as its makers call it. */
+/** The name of a layer in the visitor's language, or its original name. */
 export const nameOfLayer = (layer: Pick<Layer, "name" | "labels">, language: string): string =>
   labelOf(layer, [language]);
 
-/** What the place is, in words: the class, or a number with its unit; and what that is about. */
+/** Describes the place: the class, or a number with its unit, and the layer's name. */
 export function wordsOfPlace(
   layer: Layer,
   value: number,

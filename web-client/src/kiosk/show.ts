@@ -1,5 +1,5 @@
-// The model on the kiosk's stage: the live connection, the camera, and what the stop that is seen
-// shows of layers, looks and light.
+// The model on the kiosk's stage: the live connection, the camera, and the layers, surface images
+// and light of the current stop.
 
 import { ViewControl } from "../session/view-control";
 import { newId } from "../core/ids";
@@ -14,22 +14,22 @@ import { looksOfView } from "../domain/views";
 import { OrbitTool } from "../tools/navigate";
 import { asKiosk } from "./as-kiosk";
 
-const kAwayMs = 3000; // so long a lost connection is no news
-const kTapReachCss = 14; // a finger on glass
+const kAwayMs = 3000; // shorter losses of the connection are not shown
+const kTapReachCss = 14; // reach of a finger
 
 export interface ShowHost {
   /**
-   * The model, its layers, or a named view are known, or others; `views`: those of the tour are to
-   * be read again.
+   * The model, its layers or a named view were loaded or changed; `views`: the tour's views need a
+   * new read.
    */
   learned(what: "model" | "views"): void;
-  /** A tap, and what is there; where on the stage, in CSS pixels. */
+  /** A tap, with the values there and its position on the stage in CSS pixels. */
   tapped(picked: Picked, at: { x: number; y: number }): void;
-  /** The picture moves away from under what was told of a place. */
+  /** The picture has moved from the tapped place. */
   moved(): void;
-  /** There are live pictures, or no longer. */
+  /** Live pictures have started or ended. */
   changed(): void;
-  /** The connection is gone, for a moment or for long. */
+  /** The connection was lost, for a short or long time. */
   lost(): void;
 }
 
@@ -39,7 +39,7 @@ export class KioskShow {
   looks: Look[] = [];
   /** A live picture is on the canvas. */
   drawn = false;
-  /** There have been no live pictures for some seconds. */
+  /** No live pictures for some seconds. */
   away = false;
   /** Set by the stage. */
   onFrame: (part: FrameMessage) => void = () => {};
@@ -49,10 +49,10 @@ export class KioskShow {
   private readonly _connection: Connection;
   private readonly _orbitTool: OrbitTool;
   private _viewShown: View | null = null;
-  private _standsAtView = false; // nobody has moved the camera since
-  private _placed = false; // the camera has been where the view has it
+  private _standsAtView = false; // the camera was not moved since
+  private _placed = false; // the camera has been at the view's position
   private _awayTimer: ReturnType<typeof setTimeout> | null = null;
-  private _pick = ""; // the newest tap that is not answered
+  private _pick = ""; // the last tap without an answer
   private _pickedAt = { x: 0, y: 0 }; // on the stage, CSS pixels
   private _flightEndsMs = 0;
 
@@ -103,12 +103,12 @@ export class KioskShow {
     this.stopExpecting();
     this._connection.close();
   }
-  /** The server has just answered something else: no need to wait for the next attempt. */
+  /** Call this when the server has just answered another request: reconnects at once. */
   checkConnection(): void {
     this._connection.check();
   }
 
-  /** As the view has it, but with these layers; `flightS`: how long the way there takes. */
+  /** Shows the view with these layers; `flightS`: duration of the camera's movement. */
   goTo(view: View, layers: LayerOverride[], flightS: number): void {
     this._viewShown = view;
     this._standsAtView = true;
@@ -122,8 +122,8 @@ export class KioskShow {
   }
 
   /**
-   * What is known of the model, or of the view, may be something else than before. Where visitors
-   * have turned to stays, unless the view itself was changed.
+   * Shows a view after the model or the view may have changed. Visitors' camera movements are kept,
+   * unless the camera of the view has changed.
    */
   goOn(view: View, layers: LayerOverride[]): void {
     const same =
@@ -132,7 +132,7 @@ export class KioskShow {
     else this.goTo(view, layers, 0);
   }
 
-  /** Nobody has turned it since it came to the view. */
+  /** Whether the camera is still at the view. */
   get untouched(): boolean {
     return this._standsAtView;
   }
@@ -150,8 +150,8 @@ export class KioskShow {
   }
 
   /**
-   * CSS pixels, and window pixels for each. The words of a stop may need more room than those
-   * before: what is on its way there goes on.
+   * CSS pixels, and window pixels per CSS pixel. The text of a stop may need more room than the
+   * previous one; a running camera movement continues.
    */
   setViewport(width: number, height: number, scale: number): void {
     this.view.setViewport(width, height, scale);
@@ -173,7 +173,7 @@ export class KioskShow {
   private move(change: () => void): void {
     const first = this._standsAtView;
     this._standsAtView = false;
-    this._pick = ""; // what was tapped is elsewhere by now
+    this._pick = ""; // the tapped place has moved
     change();
     this._host.moved();
     if (first) this._host.changed();
@@ -224,8 +224,8 @@ export class KioskShow {
           this._pick = "";
           this._host.tapped(message, this._pickedAt);
         },
-        // What visitors could do nothing about is not told to them; who looks after the screen
-        // finds it in the browser's console.
+        // Visitors cannot act on problems and do not see them; the operator finds them in the
+        // browser's console.
         problem: (problem) =>
           console.info(
             "the server refused something:",

@@ -1,5 +1,5 @@
-// <strata-kiosk-stage>: the streamed picture and the fingers on it. While there is no live picture,
-// the stored one of the stop stands in its place.
+// <strata-kiosk-stage>: the streamed picture and the gestures on it. Without live pictures, it
+// shows the stored picture of the stop.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -21,7 +21,7 @@ const kKeyZoom = 0.85;
 export class StrataKioskStage extends LitElement {
   @property({ attribute: false }) session!: KioskSession;
   @property({ attribute: false }) show!: KioskShow;
-  // counted up by who holds it: the session draws by being told
+  // The owner increments this to trigger a render.
   @property({ type: Number }) changes = 0;
   @query("canvas") private _canvas!: HTMLCanvasElement;
   @query(".surface") private _surface!: HTMLElement;
@@ -54,7 +54,7 @@ export class StrataKioskStage extends LitElement {
     }
     img {
       margin: auto;
-      /* Of another shape than the stage, it ends nowhere. */
+      /* The edges fade out where the picture's shape differs from the stage. */
       mask:
         linear-gradient(transparent, #000 9%, #000 91%, transparent),
         linear-gradient(to right, transparent, #000 9%, #000 91%, transparent);
@@ -70,7 +70,8 @@ export class StrataKioskStage extends LitElement {
     canvas.live {
       opacity: 1;
     }
-    /* Something moves while nobody is there, at no cost to the server: it is the same picture of full quality, for all screens at this stop. */
+    /* Movement without visitors, at no cost for the server: the same full-quality picture for
+       all screens at this stop. */
     :host(.resting) :is(canvas, img) {
       animation: come-near 20s ease-in-out infinite alternate;
     }
@@ -110,7 +111,7 @@ export class StrataKioskStage extends LitElement {
     this.show.onFrame = this.show.onResetFrames = () => {};
   }
 
-  /** What the canvas shows is told in its data attributes, for tests and tools. */
+  /** Data attributes describe the canvas, for tests and tools. */
   private onDrawn(part: FrameMessage): void {
     this.show.frameDrawn(part);
     const { dataset } = this._canvas;
@@ -146,8 +147,8 @@ export class StrataKioskStage extends LitElement {
     const { session, show } = this;
     const view = session.stop?.view;
     const live = show.drawn && !show.away;
-    // Behind the live picture it would only take memory; the browser has it at hand when it is
-    // wanted.
+    // Behind the live picture it would only use memory; the browser's cache has it when it is
+    // needed.
     return html`${view && !live ? this.storedPicture(view) : nothing}
       <div class="surface" tabindex="0" role="application" aria-label=${session.words.stage} @keydown=${this.onKey}>
         <canvas class=${live ? "live" : ""} width="2" height="2"></canvas>

@@ -1,5 +1,5 @@
-// What the stops of a tour show: which of them there are, and of each the layers among which
-// visitors choose.
+// The contents of a tour's stops: the existing stops, and the layers that visitors can choose at
+// each.
 
 import type { LayerOverride, Tour, TourStop, View } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
@@ -11,7 +11,7 @@ export interface Stop {
   view: View;
 }
 
-/** Those whose views there are: the others are passed over. `views` by slug. */
+/** The stops whose views exist; the others are skipped. `views`: by slug. */
 export const stopsOf = (tour: Pick<Tour, "stops">, views: ReadonlyMap<string, View>): Stop[] =>
   tour.stops.flatMap((stop) => {
     const view = stop.view === undefined ? undefined : views.get(stop.view);
@@ -21,12 +21,12 @@ export const stopsOf = (tour: Pick<Tour, "stops">, views: ReadonlyMap<string, Vi
 export const stepFrom = (index: number, by: number, count: number): number =>
   (((index + by) % count) + count) % count;
 
-/** One of the ways in which a stop shows its layers; null: as its view was kept. */
+/** A way in which a stop shows its layers; null: as saved in its view. */
 export type LayerChoice = Layer | null;
 
 /**
- * The layers of the stop that there are, and before them the view as it was kept, unless that shows
- * just one of them, too.
+ * The existing layers of the stop, and before them the view as saved, unless that view shows only
+ * one of them.
  */
 export function choicesOf({ stop, view }: Stop, layers: readonly Layer[]): LayerChoice[] {
   const offered = stop.layers.flatMap((slug) => layers.find((layer) => layer.slug === slug) ?? []);
@@ -34,7 +34,7 @@ export function choicesOf({ stop, view }: Stop, layers: readonly Layer[]): Layer
   return shownAtFirst({ stop, view }, offered).length === 1 ? offered : [null, ...offered];
 }
 
-/** Which of the choices is seen on arrival. */
+/** The choice at arrival. */
 export const firstChoice = (stop: Stop, choices: readonly LayerChoice[]): LayerChoice =>
   choices.includes(null)
     ? null
@@ -48,7 +48,7 @@ function shownAtFirst({ view }: Stop, offered: readonly Layer[]): Layer[] {
   return offered.filter((layer) => shown.get(layer.id)?.visible ?? layer.visible);
 }
 
-/** As the view has the layers, but of those that are chosen among only the chosen one. */
+/** The layers of the view; among the choices, only the chosen one. */
 export function layersShown(
   stop: Stop,
   layers: readonly Layer[],
@@ -62,7 +62,7 @@ export function layersShown(
   return [...shown].map(([layer, rest]) => ({ layer, ...rest }));
 }
 
-/** The layers that are seen then, the topmost first. */
+/** The visible layers, the topmost first. */
 export function seenLayers(layers: readonly Layer[], overrides: readonly LayerOverride[]): Layer[] {
   const visible = new Map(overrides.map((each) => [each.layer, each.visible]));
   return [...layers]

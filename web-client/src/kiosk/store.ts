@@ -1,6 +1,7 @@
-// What a kiosk keeps in its browser, so that the tour goes on while the server is away: the page's
-// files, what it was told of its tour, and all that the stops show. Where browsers have no such
-// store (addresses without TLS other than localhost), nothing is kept.
+// The kiosk's storage in its browser, with which the tour continues while the server is
+// unreachable: the page's files, the last answer about its tour, and all contents of the stops.
+// Where browsers have no such storage (addresses without TLS other than localhost), nothing is
+// stored.
 
 import { Api, type Fetch } from "../net/api";
 import { ApiError } from "../net/api-error";
@@ -8,7 +9,7 @@ import type { KioskSelf } from "../core/protocol.gen";
 import { asKiosk, patientFetch, pictureOfView } from "./as-kiosk";
 import { cardOf } from "./cards";
 
-/** As the browser has it: of CacheStorage and Cache what is used here. */
+/** The used parts of the browser's CacheStorage and Cache. */
 export interface KioskCache {
   match(key: string): Promise<Response | undefined>;
   put(key: string, response: Response): Promise<void>;
@@ -21,25 +22,24 @@ export interface StoreOptions {
   openCache: () => Promise<KioskCache | null>;
   secret: string;
   fetch?: Fetch;
-  /** Of the page and what it has loaded. */
+  /** Files of the page that were loaded. */
   files?: () => string[];
 }
 
 const kCache = "strata-kiosk";
-/** Under which the page is stored, whatever its secret; what the worker has a say over. */
+/** Key of the stored page, the same for every secret, and scope of the worker. */
 const kPageKey = "/kiosk/";
 const kAgainMs = 6 * 3600_000; // records may have changed without a new version of the tour
 
 export class KioskStore {
-  private _kept = ""; // what the last complete keeping was of
+  private _kept = ""; // state of the last complete storing
   private _keptMs = 0;
   private _keeping = false;
 
   constructor(private readonly _options: StoreOptions) {}
 
   /**
-   * What the server told of this link last; null where that is not known, or the link is over by
-   * now.
+   * The last answer of the server for this link; null where it is unknown, or the link has expired.
    */
   async lastTold(now: Date = new Date()): Promise<KioskSelf | null> {
     const found = await (await this._options.openCache())?.match(await this.selfKey());
@@ -48,7 +48,7 @@ export class KioskStore {
     return self.expires && new Date(self.expires) <= now ? null : self;
   }
 
-  /** The link is worthless: nothing of it stays. */
+  /** Deletes everything after the link became invalid. */
   async forget(): Promise<void> {
     this._kept = "";
     const cache = await this._options.openCache();
@@ -56,9 +56,8 @@ export class KioskStore {
   }
 
   /**
-   * Keeps the tour with all that it shows, one thing after the other, and nothing else: what a
-   * former state of it needed goes. `state`: another one is kept anew. What fails is tried again
-   * with the next call.
+   * Stores the tour with all its contents, one item after the other, and deletes items of earlier
+   * versions. `state`: a different one is stored again. The next call repeats failed items.
    */
   async keep(self: KioskSelf, state: string): Promise<void> {
     const nowMs = performance.now();
@@ -104,7 +103,7 @@ export class KioskStore {
     return complete;
   }
 
-  /** Not the secret itself: it is nobody's who reads the store. */
+  /** A digest, so that the storage does not reveal the secret. */
   private async selfKey(): Promise<string> {
     const digest = await crypto.subtle.digest(
       "SHA-256",
@@ -116,7 +115,7 @@ export class KioskStore {
 
 type Put = (key: string, ask: () => Promise<Response>) => Promise<void>;
 
-/** Asks for all that visitors may come to see at the stops, and puts each answer away. */
+/** Requests everything that visitors can open at the stops, and stores each answer. */
 async function keepTour({ model, tour }: KioskSelf, get: Fetch, put: Put): Promise<void> {
   const api = new Api(async (address, init) => {
     const response = await get(asKiosk(address), init);
@@ -154,7 +153,7 @@ async function unlessGone(asked: Promise<unknown>): Promise<void> {
   }
 }
 
-/** What the page has loaded under names that never change, and its icon. */
+/** Loaded files with immutable names, and the icon. */
 function filesOfPage(): string[] {
   const loaded = performance.getEntriesByType("resource").map(({ name }) => new URL(name));
   const own = loaded.filter(
@@ -177,15 +176,12 @@ export async function openBrowserCache(): Promise<KioskCache | null> {
   };
 }
 
-/**
- * The worker that answers from the store. Without one the page goes on all the same, as long as
- * nobody loads it anew.
- */
+/** The worker that answers from the storage. Without it, the page works until a reload. */
 export async function startWorker(): Promise<void> {
   try {
     await navigator.serviceWorker?.register("/kiosk-worker.js", { scope: kPageKey });
   } catch (error) {
-    // a browser that has none, or whose owner forbids it
+    // a browser without workers, or with workers disabled
     console.info("no service worker:", String(error));
   }
 }

@@ -1,10 +1,10 @@
-// A finger that is drawn sideways over something. Up and down it scrolls as ever.
+// Detects horizontal swipes. Vertical movement scrolls as usual.
 
 const kReach = 48; // CSS pixels
 
 /**
- * Tells +1 for what lies to the right, which is drawn in by going left; −1 for the other side.
- * Returns how to stop.
+ * Calls `swiped` with +1 for a swipe to the left, which shows the next item on the right; −1 for
+ * the opposite. Returns a function that stops the detection.
  */
 export function followSwipes(element: HTMLElement, swiped: (by: 1 | -1) => void): () => void {
   let start: { pointer: number; x: number; y: number } | null = null;
@@ -24,7 +24,7 @@ export function followSwipes(element: HTMLElement, swiped: (by: 1 | -1) => void)
     swiped(dx < 0 ? 1 : -1);
   };
   const cancel = (): void => void (start = null);
-  /** It was no tap on the button beneath. */
+  /** The end of a swipe is not a click on the button below it. */
   const click = (event: Event): void => {
     if (justSwiped) event.stopPropagation();
     justSwiped = false;

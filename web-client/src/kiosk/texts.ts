@@ -1,5 +1,5 @@
-// The words of the kiosk's own buttons and signs. What the stops say comes with the tour, in
-// languages of which this page may have no words of its own.
+// Texts of the kiosk's own buttons and signs. The texts of the stops come with the tour, in
+// languages that this page may not have.
 
 import { pageLanguage, type PageLanguage } from "../core/locale";
 
@@ -34,16 +34,16 @@ const en = {
 export type KioskTexts = typeof en;
 
 const de: KioskTexts = {
-  begin: "Zum Beginnen berühren",
+  begin: "Zum Starten berühren",
   still_there: "Sind Sie noch da?",
   begins_anew: (seconds) =>
-    `Der Rundgang beginnt in ${seconds} ${seconds === 1 ? "Sekunde" : "Sekunden"} von vorn.`,
+    `Die Führung beginnt in ${seconds} ${seconds === 1 ? "Sekunde" : "Sekunden"} von vorn.`,
   here: "Ich bin noch da",
   previous: "Zurück",
   next: "Weiter",
   stop: (number, count) => `Station ${number} von ${count}`,
   languages: "Sprache",
-  layers: "Was gezeigt wird",
+  layers: "Ebenen",
   as_kept: "Überblick",
   records: "Mehr über",
   record: (key) => `Nr. ${key}`,
@@ -52,29 +52,29 @@ const de: KioskTexts = {
   yes: "ja",
   no: "nein",
   stage:
-    "Das Objekt in 3D. Ein Finger dreht es; zwei Finger verschieben, vergrößern und neigen es; ein Tippen erzählt mehr über eine Stelle.",
-  hint: "Mit einem Finger drehen, mit zweien vergrößern. Tippen Sie auf eine Stelle, um mehr zu erfahren.",
-  stored: "Für einen Moment stehende Bilder",
+    "Das Objekt in 3D. Ein Finger dreht es, zwei Finger verschieben, vergrößern und neigen es. Tippen Sie auf eine Stelle, um mehr zu erfahren.",
+  hint: "Mit einem Finger drehen, mit zwei Fingern vergrößern. Tippen Sie auf eine Stelle, um mehr zu erfahren.",
+  stored: "Vorübergehend nur Standbilder",
   waiting: "Einen Moment …",
-  worthless: "Dieser Bildschirm hat keinen Rundgang mehr",
+  worthless: "Dieser Bildschirm hat keine Führung mehr",
   worthless_detail:
-    "Sein Link wurde zurückgezogen oder ist abgelaufen. Wer den Bildschirm betreut, kann in Strata einen neuen anlegen.",
-  nothing: "Dieser Rundgang hat noch nichts zu zeigen",
+    "Sein Link wurde widerrufen oder ist abgelaufen. Erstellen Sie in Strata einen neuen Link.",
+  nothing: "Diese Führung hat noch nichts zu zeigen",
   nothing_detail:
-    "Wer ihn betreut, kann seinen Stationen in Strata Ansichten geben. Dieser Bildschirm beginnt dann von selbst.",
+    "Fügen Sie den Stationen in Strata Ansichten hinzu. Dieser Bildschirm startet dann automatisch.",
 };
 
 const es: KioskTexts = {
-  begin: "Toque para comenzar",
+  begin: "Toque para empezar",
   still_there: "¿Sigue ahí?",
   begins_anew: (seconds) =>
-    `El recorrido vuelve a empezar en ${seconds} ${seconds === 1 ? "segundo" : "segundos"}.`,
+    `El recorrido se reiniciará en ${seconds} ${seconds === 1 ? "segundo" : "segundos"}.`,
   here: "Sigo aquí",
   previous: "Anterior",
   next: "Siguiente",
   stop: (number, count) => `Parada ${number} de ${count}`,
   languages: "Idioma",
-  layers: "Qué se muestra",
+  layers: "Capas",
   as_kept: "Vista general",
   records: "Más sobre",
   record: (key) => `N.º ${key}`,
@@ -83,23 +83,22 @@ const es: KioskTexts = {
   yes: "sí",
   no: "no",
   stage:
-    "El objeto en 3D. Con un dedo se gira; con dos se mueve, se amplía y se inclina; un toque cuenta más sobre un lugar.",
+    "El objeto en 3D. Use un dedo para girarlo y dos para moverlo, ampliarlo e inclinarlo. Toque un lugar para saber más.",
   hint: "Gire con un dedo, amplíe con dos. Toque un lugar para saber más.",
   stored: "Imágenes fijas por un momento",
   waiting: "Un momento…",
   worthless: "Esta pantalla ya no tiene recorrido",
-  worthless_detail:
-    "Su enlace se retiró o ha caducado. Quien cuida la pantalla puede crear otro en Strata.",
-  nothing: "Este recorrido aún no tiene nada que mostrar",
+  worthless_detail: "Su enlace se ha revocado o ha caducado. Cree un enlace nuevo en Strata.",
+  nothing: "Este recorrido todavía no tiene nada que mostrar",
   nothing_detail:
-    "Quien lo cuida puede dar vistas a sus paradas en Strata. Esta pantalla empezará entonces por sí sola.",
+    "Añada vistas a sus paradas en Strata. Esta pantalla empezará entonces automáticamente.",
 };
 
 const all: Record<PageLanguage, KioskTexts> = { en, de, es };
 
 /**
- * In the language of the tour that was chosen, or else in the first of the tour's that this page is
- * written in, or English.
+ * In the chosen language of the tour, or else in the first of the tour's languages that this page
+ * has, or English.
  */
 export const textsIn = (language: string, languages: readonly string[]): KioskTexts =>
   all[pageLanguage(language, languages)];

@@ -1,14 +1,14 @@
-// What the service worker answers in the server's place, and from where. The page puts things into
-// the cache (store.ts); the worker only takes them out. Nothing of the page is imported here: a
-// worker is one file, and has no part in common with it.
+// The rules of the service worker: the requests that it answers in place of the server, and the
+// source of each answer. The page stores items in the cache (store.ts); the worker only reads them.
+// This file imports no code of the page: a worker is a single file without shared chunks.
 
 /**
- * page: any kiosk's address; it is the same page. file: named by its content, and never another.
- * data: as the server has it now, if it is there.
+ * page: any kiosk's address; all have the same page. file: immutable, named by its content. data:
+ * the server's current answer if it is reachable.
  */
 export type Answered = "page" | "file" | "data" | "not";
 
-/** `own`: the address beneath which the worker has a say: that of all kiosks. */
+/** `own`: the worker's scope, which is the path of all kiosks. */
 export function answered(
   { method, mode, url }: { method: string; mode: string; url: string },
   own: string,
@@ -17,7 +17,7 @@ export function answered(
   if (method !== "GET" || origin !== new URL(own).origin) return "not";
   if (mode === "navigate") return url.startsWith(own) ? "page" : "not";
   if (pathname.startsWith("/assets/") || pathname === "/favicon.svg") return "file";
-  // Whether the link is still good only the server knows.
+  // Only the server can decide whether the link is valid.
   const isData =
     pathname.startsWith("/api/v1/") &&
     pathname !== "/api/v1/kiosk" &&
@@ -25,6 +25,6 @@ export function answered(
   return isData ? "data" : "not";
 }
 
-/** The answer is none of the server's, but of what stands before it. */
+/** The answer comes from a proxy and not from the server. */
 export const saysAway = (status: number): boolean =>
   status === 502 || status === 503 || status === 504;

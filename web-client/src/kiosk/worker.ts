@@ -1,5 +1,5 @@
-// The service worker of the kiosks' page: while the server is away it answers with what the page
-// has stored. It has no say over any other page.
+// The service worker of the kiosk page: while the server is unreachable, it answers with stored
+// items. Other pages are out of its scope.
 
 import { answered, saysAway } from "./worker-rules";
 
@@ -19,7 +19,7 @@ interface WorkerScope {
 }
 const scope = globalThis as unknown as WorkerScope;
 
-const kPatienceMs = 10_000; // a picture takes a moment; a server that is away takes for ever
+const kPatienceMs = 10_000; // pictures need a moment; an unreachable server never answers
 
 scope.addEventListener("install", (event) => event.waitUntil(scope.skipWaiting()));
 scope.addEventListener("activate", (event) => event.waitUntil(scope.clients.claim()));
@@ -28,7 +28,7 @@ scope.addEventListener("fetch", (event) => {
   const own = scope.registration.scope;
   switch (answered(request, own)) {
     case "page":
-      return event.respondWith(newest(request, own)); // one page, whatever the secret
+      return event.respondWith(newest(request, own)); // the same page for every secret
     case "file":
       return event.respondWith(stored(request.url).then((found) => found ?? fetch(request)));
     case "data":
@@ -40,10 +40,10 @@ scope.addEventListener("fetch", (event) => {
 const stored = (key: string): Promise<Response | undefined> =>
   caches.match(key, { ignoreVary: true });
 
-/** The server's, or what is stored where it has none within a moment. */
+/** The server's answer, or the stored one if the server does not answer within kPatienceMs. */
 async function newest(request: Request, key: string): Promise<Response> {
   const asked = fetch(request);
-  asked.catch(() => {}); // it may fail after the moment, when nobody waits for it any more
+  asked.catch(() => {}); // a failure after the time limit is ignored
   let timer: ReturnType<typeof setTimeout> | undefined;
   const late = new Promise<null>(
     (resolve) => (timer = setTimeout(() => resolve(null), kPatienceMs)),

@@ -1,6 +1,6 @@
-// The viewer's camera: a turntable around the model's up axis. All in world coordinates and double;
-// the server subtracts the model's origin. Pixels are of the window (width × height), origin top
-// left, y down.
+// The viewer's camera: a turntable around the model's up axis, in world coordinates and double
+// precision; the server subtracts the model's origin. Pixels belong to the window (width × height),
+// with the origin at the top left and y down.
 
 import type { Plane } from "../core/protocol.gen";
 import { add, cross, dot, length, scale, subtract, transform, type Vec3 } from "./vector";
@@ -22,7 +22,7 @@ export interface CameraMessage {
   section?: Plane[];
 }
 
-const kFieldOfView = (35 * Math.PI) / 180; // vertical
+const kFieldOfView = (35 * Math.PI) / 180; // vertical field of view
 export const kHalfFieldTangent = Math.tan(kFieldOfView / 2);
 const kMinZoom = 1e-4; // smallest and largest distance, relative to the model's radius
 const kMaxZoom = 40;
@@ -34,8 +34,8 @@ interface Frame {
   up: Vec3;
 }
 
-// Right-handed frames of the front view: `right` of the picture, `into` the picture, `up`. That of
-// an axis' opposite is turned about `right` by half a turn, as the server has it
+// Right-handed frames of the front view: `right` of the picture, `into` the picture, `up`. The
+// frame of the opposite axis is rotated about `right` by half a turn, as on the server
 // (server/core/up.h).
 export const kFrames: Record<UpAxis, Frame> = {
   z: { right: [1, 0, 0], into: [0, 1, 0], up: [0, 0, 1] },
@@ -64,13 +64,13 @@ export class OrbitCamera {
   elevation = 0; // radians above the horizon, −π/2…π/2
   perspective = true;
   /**
-   * Tangent of half the vertical field of view; another than the usual one while this camera sees
-   * what somebody else sees, or what was kept in another window.
+   * Tangent of half the vertical field of view; it differs from the default while this camera shows
+   * another participant's view, or a view saved in another window.
    */
   halfField = kHalfFieldTangent;
   width = 1; // window pixels
   height = 1;
-  /** What the planes cut away is not there for this camera. */
+  /** This camera does not see parts that the planes cut away. */
   section: Plane[] = [];
 
   private _bounds: Bounds = { min: [-1, -1, -1], max: [1, 1, 1] };
@@ -93,7 +93,7 @@ export class OrbitCamera {
     this.height = Math.max(1, Math.round(height));
   }
 
-  /** Whole model in the picture, seen from where the camera stands. */
+  /** Shows the whole model from the current direction. */
   fit(): void {
     const { min, max } = this._bounds;
     const { right, up, back } = this.axes();
@@ -116,24 +116,24 @@ export class OrbitCamera {
   }
 
   /**
-   * A box that is a part of the model, seen from where its surface faces; where that is not said,
-   * from its own side of the model, of which the model's middle has none.
+   * Shows a part of the model, from the side that its surface faces. Without `normal`: from the
+   * part's side of the model; a part near the middle has no side.
    */
   lookAt(box: Bounds, normal?: Vec3): void {
     const middle = centre(box);
     const outwards = normal ?? subtract(middle, centre(this._bounds));
     const { back } = this.axes();
     const hasSide = normal !== undefined || length(outwards) > 0.15 * boundingRadius(this._bounds);
-    // What faces away is turned to; what is seen already is left as it is.
+    // Rotates only to a part that faces away; a visible one keeps the direction.
     if (hasSide && dot(outwards, back) < 0.3 * length(outwards)) this.face(outwards);
     this.target = middle;
-    const least = boundingRadius(this._bounds) * 0.08; // some of what is around a small thing
+    const least = boundingRadius(this._bounds) * 0.08; // includes some surroundings of a small part
     const radius = Math.max(boundingRadius(box), least);
     const halfWidth = (this.halfField * this.width) / this.height;
     this.distance = (radius * 1.25) / Math.sin(Math.atan(Math.min(this.halfField, halfWidth)));
   }
 
-  /** Turns so that `outwards` points to the viewer. */
+  /** Rotates so that `outwards` points to the viewer. */
   private face(outwards: Vec3): void {
     const frame = kFrames[this._up];
     const [x, y, z] = [
@@ -146,7 +146,7 @@ export class OrbitCamera {
     this.elevation = Math.min(1.2, Math.max(-1.2, Math.atan2(z, level)));
   }
 
-  /** A little from the right and above: shows that the thing is solid. */
+  /** From slightly right and above, which shows that the object is solid. */
   firstView(): void {
     this.azimuth = 0.4;
     this.elevation = 0.18;
@@ -167,7 +167,7 @@ export class OrbitCamera {
     this.fit();
   }
 
-  /** Unit vectors of the window in the world: right, up, and backwards to the viewer. */
+  /** Unit vectors of the window in the world: right, up, and back to the viewer. */
   axes(): { right: Vec3; up: Vec3; back: Vec3 } {
     const frame = kFrames[this._up];
     const [sa, ca] = [Math.sin(this.azimuth), Math.cos(this.azimuth)];
@@ -182,26 +182,27 @@ export class OrbitCamera {
     return add(this.target, scale(this.axes().back, this.distance));
   }
 
-  /** World lengths of one window pixel at a depth before the eye. */
+  /** World length of one window pixel at a depth in front of the eye. */
   unitPerPixel(depth = this.distance): number {
     return (2 * this.halfField * (this.perspective ? depth : this.distance)) / this.height;
   }
 
-  /** World length of a window pixel at a place, for the camera as it is now. */
+  /** World length of a window pixel at a place, for the current camera. */
   pixelSize(): (place: Vec3) => number {
     const [eye, { back }, unit] = [this.eye(), this.axes(), this.unitPerPixel(1)];
     const { perspective } = this;
     return (place) => (perspective ? unit * dot(subtract(eye, place), back) : unit);
   }
 
-  /** The usual field again; what is as far away as the target stays as large. */
+  /** Restores the default field; objects at the target's distance keep their size. */
   resetField(): void {
     this.distance *= this.halfField / kHalfFieldTangent;
     this.halfField = kHalfFieldTangent;
   }
 
   /**
-   * From now on it turns around what is in the middle of the window at a depth. The picture stays.
+   * Sets the center of rotation to the middle of the window at this depth. The picture does not
+   * change.
    */
   turnAround(depth: number): void {
     this.target = subtract(this.eye(), scale(this.axes().back, depth));
@@ -217,7 +218,7 @@ export class OrbitCamera {
     this.elevation = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, this.elevation + elevationDelta));
   }
 
-  /** Drag of one pixel turns the model by the same share of the window in both directions. */
+  /** A drag of one pixel rotates the model by the same angle in both directions. */
   orbitPixels(dx: number, dy: number): void {
     const turn = Math.PI / Math.min(this.width, this.height);
     this.orbit(-dx * turn, dy * turn);
@@ -229,7 +230,7 @@ export class OrbitCamera {
     this.target = add(this.target, add(scale(right, -dx * unit), scale(up, dy * unit)));
   }
 
-  /** factor < 1 comes nearer. What is under the window pixel (x, y) stays there. */
+  /** factor < 1 zooms in. The point under the window pixel (x, y) stays there. */
   zoomAt(factor: number, x: number, y: number): void {
     const radius = boundingRadius(this._bounds);
     const distance = Math.min(
@@ -329,7 +330,7 @@ export class OrbitCamera {
     };
   }
 
-  /** Window position of a world point, or null behind the eye. */
+  /** Window position of a world point; null behind the eye. */
   project(point: Vec3): { x: number; y: number; depth: number } | null {
     const seen = transform(this.viewMatrix(), [point[0], point[1], point[2], 1]);
     const clip = transform(this.projectionMatrix(), seen);
@@ -341,7 +342,7 @@ export class OrbitCamera {
     };
   }
 
-  /** The same, or null outside the window, too. */
+  /** The same; also null outside the window. */
   projectInside(point: Vec3): { x: number; y: number; depth: number } | null {
     const at = this.project(point);
     return at && at.x >= 0 && at.y >= 0 && at.x <= this.width && at.y <= this.height ? at : null;
@@ -362,7 +363,7 @@ export class OrbitCamera {
   }
 }
 
-/** Where a camera stands; `between` two of them, at a share of the way. */
+/** The position of a camera; `between` interpolates two of them. */
 export type Place = Pick<
   OrbitCamera,
   "target" | "distance" | "azimuth" | "elevation" | "perspective" | "halfField"

@@ -1,4 +1,4 @@
-// Looking with somebody else: where a camera must stand to see what another one sees.
+// Following another camera: the position from which this window shows the same.
 
 import {
   boundingRadius,
@@ -12,15 +12,16 @@ import {
 } from "./camera";
 import { add, dot, length, scale, subtract, type Vec3 } from "./vector";
 
-// the target before the eye, relative to the model's radius, where the model's middle is behind
+// distance of the target from the eye, relative to the model's radius, if the model's middle is
+// behind the eye
 const kNearest = 0.02;
-// lengths relative to the distance, radians: less than a pixel of most windows
+// lengths relative to the distance, and radians: less than a pixel in most windows
 const kArrived = 5e-4;
 
 /**
- * For `own`: the eye and the direction of the other camera, and a field that holds all of its
- * window, whatever shape the own one has. A tilted horizon and a window beside the axis, which this
- * page's cameras never have, are not taken over.
+ * For `own`: the eye and direction of the other camera, and a field that includes its whole window,
+ * for any shape of the own window. A tilted horizon and an off-axis window, which cameras of this
+ * page never have, are ignored.
  */
 export function placeLike(
   theirs: Pick<CameraMessage, "view" | "projection">,
@@ -52,7 +53,7 @@ export function placeLike(
   };
 }
 
-/** No difference that could be seen is left of the way to `place`. */
+/** Whether the remaining distance to `place` is too small to see. */
 export function hasArrived(camera: OrbitCamera, place: Place): boolean {
   const here = placeOf(camera);
   const close = (a: number, b: number): boolean => Math.abs(a - b) <= kArrived;

@@ -1,5 +1,5 @@
-// Where raking light comes from, as a point of a round pad: the middle is the viewer's own
-// direction, the rim the side.
+// The direction of raking light, as a point of a round pad: the middle is the viewing direction,
+// the rim the side.
 
 import type { Point3 } from "../core/protocol.gen";
 
@@ -8,7 +8,7 @@ export interface PadPoint {
   y: number; // up, −1…1
 }
 
-/** Light that only grazes the picture's plane shows nothing but edges. */
+/** Light nearly parallel to the picture plane shows only edges. */
 const kLowestDegrees = 6;
 const kRim = Math.cos((kLowestDegrees * Math.PI) / 180);
 
@@ -28,7 +28,7 @@ export function padPoint(direction: Point3): PadPoint {
   return onPad({ x: direction[0] / length, y: direction[1] / length });
 }
 
-/** Degrees clockwise from the top, 0…360, and above the picture's plane. */
+/** Degrees clockwise from the top, 0…360, and above the picture plane. */
 export function anglesOf(point: PadPoint): { from: number; above: number } {
   const { x, y } = onPad(point);
   return {

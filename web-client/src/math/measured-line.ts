@@ -1,10 +1,10 @@
-// What is told of places that somebody set on a surface, from the places alone: lengths in their
-// unit, areas in its square. What lies between them on the surface is told by domain/profile.
+// Measures of places that a user has set on a surface, computed from the places alone: lengths in
+// their unit, areas in its square. domain/profile describes the surface between them.
 
 import { kFrames, type UpAxis } from "./camera";
 import { add, cross, dot, length, scale, subtract, type Vec3 } from "./vector";
 
-/** From place to place, straight: one length a leg. */
+/** The straight lengths from place to place, one for each leg. */
 export const legsOf = (places: readonly Vec3[]): number[] =>
   places.slice(1).map((place, index) => length(subtract(place, places[index]!)));
 
@@ -17,20 +17,20 @@ export const heightOf = (place: Vec3, up: UpAxis): number => dot(place, kFrames[
 export interface FlatPolygon {
   area: number;
   perimeter: number;
-  /** How far the places lie from its plane, at most: 0 where all are in one. */
+  /** Largest distance of a place from the plane: 0 where all are in one plane. */
   off_plane: number;
 }
 
 /**
  * The flat area of the polygon through the places, in their order (Newell's formula): exact for
- * places in one plane; otherwise of their projection along the normal in which it is largest. A
- * polygon that crosses itself counts what it goes round the other way as negative. Null: fewer than
- * three.
+ * places in one plane; otherwise the area of the projection along the normal with the largest area.
+ * In a self-intersecting polygon, parts with the opposite orientation count as negative. Null:
+ * fewer than three places.
  */
 export function flatPolygon(places: readonly Vec3[]): FlatPolygon | null {
   const [first, ...others] = places;
   if (!first || others.length < 2) return null;
-  // coordinates of a site may be large, and its polygons small
+  // coordinates of a site may be large and its polygons small
   const fromFirst = others.map((place) => subtract(place, first));
   const twice = fromFirst
     .slice(1)

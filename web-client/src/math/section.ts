@@ -1,6 +1,6 @@
-// Planes that cut a model open, from what a person chooses: a cut across one axis, or a box.
-// Positions are shares of the model's bounds, so that they mean the same for a coin and for a
-// quarry. Planes that are neither come with a named view, and stay as they are.
+// Planes that cut a model open, from a user's choice: a cut across one axis, or a box. Positions
+// are shares of the model's bounds, so that they have the same meaning for a coin and a quarry.
+// Other planes come from named views and are not changed.
 
 import type { Bounds } from "./camera";
 import type { Plane } from "../core/protocol.gen";
@@ -13,13 +13,13 @@ export interface SectionChoice {
   position: number; // of a cut, 0…1
   flipped: boolean; // the other side is kept
   box: { min: [number, number, number]; max: [number, number, number] }; // 0…1
-  planes: Plane[]; // as they are, of the mode that is called so
+  planes: Plane[]; // unchanged, for the mode "planes"
 }
 
 export const kAxes: readonly Axis[] = ["x", "y", "z"];
-/** So much of the model stays in a box at least. */
+/** Smallest share of the model that remains in a box. */
 export const kThinnestBox = 0.01;
-const kRounded = 1e-9; // a share that went through the world
+const kRounded = 1e-9; // rounding error of a share in world coordinates
 
 export const noSection = (): SectionChoice => ({
   mode: "off",
@@ -34,7 +34,7 @@ export function worldPosition(bounds: Bounds, axis: number, share: number): numb
   return bounds.min[axis]! + (bounds.max[axis]! - bounds.min[axis]!) * share;
 }
 
-/** [a, b, c, d] keeps what has a x + b y + c z + d ≥ 0. */
+/** [a, b, c, d] keeps the half space a x + b y + c z + d ≥ 0. */
 export function sectionPlanes(choice: SectionChoice, bounds: Bounds): Plane[] {
   const plane = (axis: number, share: number, keepsAbove: boolean): Plane => {
     const sign = keepsAbove ? 1 : -1;
@@ -55,8 +55,8 @@ export function sectionPlanes(choice: SectionChoice, bounds: Bounds): Plane[] {
 }
 
 /**
- * The choice that makes these planes: a cut or a box where they are one within the bounds, else the
- * planes themselves.
+ * The choice for these planes: a cut or a box within the bounds where possible, else the planes
+ * themselves.
  */
 export function sectionChoice(planes: readonly Plane[], bounds: Bounds): SectionChoice {
   if (planes.length === 0) return noSection();
@@ -82,7 +82,7 @@ export function sectionChoice(planes: readonly Plane[], bounds: Bounds): Section
   return isInsideOut ? kept : { ...noSection(), mode: "box", box };
 }
 
-/** Of a plane across an axis that goes through the bounds; null: it is another. */
+/** For a plane across an axis and through the bounds; null: any other plane. */
 function sideOf(
   [a, b, c, d]: Plane,
   { min, max }: Bounds,
@@ -91,7 +91,7 @@ function sideOf(
   const axis = normal.findIndex((part) => part !== 0);
   if (axis < 0 || normal.filter((part) => part !== 0).length > 1) return null;
   const share = (-d / normal[axis]! - min[axis]!) / (max[axis]! - min[axis]!);
-  // nor of a flat model, where it is no number
+  // also for a flat model, where it is NaN
   if (!(share >= -kRounded && share <= 1 + kRounded)) return null;
   return { axis, share: Math.min(1, Math.max(0, share)), keepsAbove: normal[axis]! > 0 };
 }

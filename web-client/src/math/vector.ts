@@ -1,4 +1,4 @@
-// Vectors and 4×4 matrices in double. Matrices are column-major, as the protocol sends them.
+// Vectors and 4×4 matrices in double precision. Matrices are column-major, as in the protocol.
 
 export type Vec3 = readonly [number, number, number];
 export type Vec4 = readonly [number, number, number, number];

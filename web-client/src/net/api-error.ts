@@ -1,4 +1,4 @@
-// Every failure of a call, also a lost network, as an error that carries a problem for people.
+// Each failure of a call, including a lost network, as an error with a problem for people.
 
 import { ownProblems } from "../core/problems";
 import type { ProblemBody } from "../core/types";
@@ -20,9 +20,7 @@ export function unreachable(): ApiError {
   return new ApiError({ status: 0, title, detail });
 }
 
-/**
- * The problem in an answer's text; where the text is not one, what the status means in plain words.
- */
+/** The problem in an answer's text; for other texts, the meaning of the status in plain words. */
 export function problemOfText(status: number, text: string): ProblemBody {
   try {
     const body = JSON.parse(text) as Partial<ProblemBody> | null;
@@ -37,7 +35,7 @@ export function problemOfText(status: number, text: string): ProblemBody {
       };
     }
   } catch {
-    // Not JSON: a proxy's page, or nothing. The status says enough.
+    // Not JSON: a proxy's page, or empty. The status is sufficient.
   }
   const words = ownProblems();
   const [title, detail] = words.statuses[status] ?? [

@@ -37,7 +37,7 @@ export class Api {
     return parsed(await this.request(call, options));
   }
 
-  /** With its ETag; "" where it has none. */
+  /** Returns the value with its ETag; "" without one. */
   async versioned<C extends Call>(
     call: C,
     ...[options]: Given<Options<C>>
@@ -46,12 +46,12 @@ export class Api {
     return { value: await parsed(response), etag: response.headers.get("ETag") ?? "" };
   }
 
-  /** Of a call whose answer says nothing more. */
+  /** For a call without content in its answer. */
   async send<C extends Call>(call: C, ...[options]: Given<Options<C>>): Promise<void> {
     await this.request(call, options);
   }
 
-  /** Deletes what has a version as it is now. */
+  /** Deletes the current version. */
   async deleteAsRead<C extends Call & `DELETE ${string}`>(
     call: C,
     options: Pick<Options<C>, "path" & keyof Options<C>>,
@@ -62,8 +62,8 @@ export class Api {
   }
 
   /**
-   * Every entry of a list, page by page: each begins where the one before ended, whatever others
-   * write meanwhile.
+   * All entries of a list, page by page: each page begins after the last entry of the previous one,
+   * regardless of writes in between.
    */
   async all<C extends Call, K extends ListName<Answer<C>>>(
     call: C,
@@ -82,10 +82,10 @@ export class Api {
     return found;
   }
 
-  /** A file whose request may be given up, also while it comes. */
+  /** A file; its request can be canceled, also during the transfer. */
   async blob<C extends Call>(call: C, ...[options]: Given<Options<C>>): Promise<Blob> {
     const given: AnyOptions | undefined = options;
-    // a read that takes JSON alone is refused where a file of another kind would answer it
+    // the server refuses a request that accepts only JSON if the answer is a file of another type
     const response = await this.request(call, { accept: "*/*", ...given });
     try {
       return await response.blob();
@@ -94,7 +94,7 @@ export class Api {
     }
   }
 
-  /** As a form, or the only file as the body. */
+  /** Sends files as a form, or a single file as the body. */
   upload<C extends Call>(
     call: C,
     options: Omit<Options<C>, "body">,
@@ -107,7 +107,7 @@ export class Api {
     return uploadFiles(request, files, progress, asForm);
   }
 
-  /** Where browsers get what a call answers with. */
+  /** The address of a call, for links and downloads. */
   url<C extends Call>(call: C, ...[options]: Given<Options<C>>): string {
     const given: AnyOptions | undefined = options;
     return kBase + targetOf(call, given ?? {});
@@ -151,7 +151,7 @@ export class Api {
 const kAnyFile = "application/octet-stream";
 
 /**
- * What is sent or answered there is not for the server to keep, as it does for an
+ * Calls with secrets in the request or answer: the server must not store these, as it does for an
  * `Idempotency-Key`.
  */
 const kWithSecrets =
@@ -159,7 +159,7 @@ const kWithSecrets =
 
 const methodOf = (call: Call): string => call.slice(0, call.indexOf(" "));
 
-/** Its path with what stands in for its parts, and its query. */
+/** The path with its parameters filled in, and the query. */
 function targetOf(call: Call, { path = {}, query = {} }: AnyOptions): string {
   const parts = path as Record<string, unknown>;
   const filled = call
@@ -169,11 +169,11 @@ function targetOf(call: Call, { path = {}, query = {} }: AnyOptions): string {
   return asked.length > 0 ? `${filled}?${new URLSearchParams(asked as string[][])}` : filled;
 }
 
-/** Of what is changed, as it was read. */
+/** For a change of the version that was read. */
 export const ifVersion = (version: number): { "If-Match": string } => ({
   "If-Match": `"v${version}"`,
 });
-/** For a change that stands on its own, of whatever is there now. */
+/** For a change that applies to any version. */
 export const kAsItIs = { "If-Match": "*" };
 
 async function parsed<T>(response: Response): Promise<T> {
@@ -185,8 +185,8 @@ async function parsed<T>(response: Response): Promise<T> {
 }
 
 /**
- * Where the next page of a list is, below `kBase`, by the `Link` of this one (RFC 8288); null: it
- * is the last.
+ * Address of the next page of a list, below `kBase`, from the `Link` of this one (RFC 8288); null:
+ * this is the last page.
  */
 export function nextPage(link: string | null): string | null {
   const target = /<([^>]*)>\s*;\s*rel="?next"?/.exec(link ?? "")?.[1];

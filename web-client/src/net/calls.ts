@@ -1,4 +1,4 @@
-// What each call of the HTTP interface takes and gives, by the contract. Types alone.
+// The parameters and answers of each call of the HTTP interface, from the contract. Types only.
 
 import type { paths } from "./contract.gen";
 
@@ -15,14 +15,14 @@ type Operation<C extends Call> = C extends `${infer M} ${infer P}`
   ? paths[P & keyof paths][Lowercase<M> & Method]
   : never;
 
-/** An id, or a slug in its place. */
+/** An id or a slug. */
 export type Id = number | string;
 
 type Parameters<C extends Call> =
   Operation<C> extends { parameters: infer P extends { query?: object; header?: object } }
     ? Pick<P, "query"> & Path<P> & Header<C, Exclude<P["header"], undefined>>
     : never;
-/** What has a version is changed as it was read: the compiler finds a change that names none. */
+/** Changes of versioned resources require `If-Match`: the compiler rejects a call without it. */
 type Header<C, H> = [H] extends [never]
   ? unknown
   : [C, "If-Match"] extends [`${"PATCH" | "DELETE"} ${string}`, keyof H]
@@ -33,31 +33,31 @@ type Path<P> = P extends { path: infer I } ? { path: { [K in keyof I]: Id } } : 
 type Body<O> = O extends { requestBody: { content: infer T } }
   ? { body: T extends { "application/json": infer J } ? Sent<J> | FileIn<T> : FileIn<T> }
   : { body?: undefined };
-/** What is only read is taken as well. */
+/** Also accepts read-only values. */
 export type Sent<T> = T extends object ? { readonly [K in keyof T]: Sent<T[K]> } : T;
 type FileIn<T> = Exclude<keyof T, "application/json"> extends never ? never : Blob;
 
 export type Options<C extends Call> = Parameters<C> &
   Body<Operation<C>> & {
-    /** Of a file that is sent. */
+    /** The media type of a file to send. */
     type?: string;
-    /** In place of JSON. */
+    /** Instead of JSON. */
     accept?: string;
     signal?: AbortSignal;
-    /** Sent also when its page is left. */
+    /** Continues after the page is closed. */
     keepalive?: boolean;
   };
 export type Query<C extends Call> = NonNullable<Options<C>["query"]>;
 
-/** No options at all where the call needs none. */
+/** Makes the options optional where the call requires none. */
 export type Given<O> = object extends O ? [options?: O] : [options: O];
 
 type Json<R> = R extends { content: { "application/json": infer T } } ? T : never;
-/** Of a call that is answered with JSON. */
+/** The JSON answer of a call. */
 export type Answer<C extends Call> =
   Operation<C> extends { responses: infer R } ? Json<R[keyof R]> : never;
 
-/** Of an answer that is a list: what it calls its entries. */
+/** For an answer with a list: the member that contains it. */
 export type ListName<A> = {
   [K in keyof A]: A[K] extends readonly unknown[] ? K : never;
 }[keyof A] &

@@ -1,12 +1,12 @@
-// The camera on its way to the server. Latest wins: at most one camera per drawn picture leaves,
-// always the newest.
+// Sends the camera to the server. The latest wins: at most one camera for each drawn picture,
+// always the latest one.
 
 import type { CameraMessage } from "../math/camera";
 import type { ClientMessage } from "../core/protocol.gen";
 
 export interface CameraHost {
   maySend(): boolean;
-  /** So much is unsent that cameras wait. */
+  /** Whether so much is unsent that cameras must wait. */
   isBusy(): boolean;
   send(message: ClientMessage): void;
   /** Calls back before the next picture is drawn. */
@@ -14,7 +14,7 @@ export interface CameraHost {
 }
 
 export class CameraSender {
-  /** Number of the newest camera sent; frames echo it. */
+  /** Number of the last camera sent; frames echo it. */
   seq = 0;
   private _newest: { camera: CameraMessage; moving: boolean } | null = null;
   private _isScheduled = false;
@@ -30,11 +30,11 @@ export class CameraSender {
     this._newest = null;
   }
 
-  /** The newest, once more after a reconnect. */
+  /** Sends the latest camera, also after a reconnection. */
   sendNow(): void {
     if (!this._newest) return;
     const { camera, moving } = this._newest;
-    this._newest = { camera, moving: false }; // after a reconnect the picture is a still one
+    this._newest = { camera, moving: false }; // after a reconnection the camera is not moving
     this.seq += 1;
     this._host.send({ op: "camera", seq: this.seq, ...camera, moving });
   }

@@ -1,6 +1,6 @@
-// The WebSocket of one open model: says hello, keeps the newest camera, resends what is not saved,
-// and comes back by itself after a lost connection. The socket can be replaced by a fake; nothing
-// here touches the page.
+// The WebSocket of one open model: sends hello, keeps the latest camera, resends unsaved changes,
+// and reconnects automatically. Tests can replace the socket by a fake; this file does not use the
+// DOM.
 
 import { newId } from "../core/ids";
 import type { CameraMessage } from "../math/camera";
@@ -40,12 +40,12 @@ import {
   type Welcome,
 } from "../core/protocol.gen";
 
-/** lost: waits for the next attempt. open: the server said welcome. */
+/** lost: waits for the next attempt. open: the server has sent welcome. */
 export type ConnectionState = "connecting" | "open" | "lost" | "closed";
 
 export interface SavingState {
   waiting: number; // changes that are not durable
-  failing: boolean; // the server could not keep some of them; they are sent again
+  failing: boolean; // the server could not save some of them; they are sent again
 }
 
 export interface ConnectionCallbacks {
@@ -66,13 +66,13 @@ export interface ConnectionCallbacks {
   view(message: ViewEvent): void;
   presence(message: Presence): void;
   picked(message: Picked): void;
-  /** A refusal. What was refused for good is no longer waiting. */
+  /** A refusal. A permanently refused change is not waiting anymore. */
   problem(problem: Omit<ProblemMessage, "op">): void;
-  /** So many changes that an earlier page could not have saved are sent again. */
+  /** Number of changes that an earlier page could not save and that this page sends again. */
   takenUp(changes: number): void;
 }
 
-/** Where changes wait that are to outlive the page (offline-queue.ts). */
+/** Storage of waiting changes that survives the page (offline-queue.ts). */
 export interface ChangeQueue {
   read(): Promise<ChangeMessage[]>;
   put(message: ChangeMessage): void;
@@ -84,20 +84,18 @@ export interface ConnectionOptions {
   client: string;
   devicePixelRatio: number;
   makeSocket?: (url: string, protocol: string) => SocketLike;
-  /**
-   * Of the person who paints here; without it what is not saved lives as long as the connection.
-   */
+  /** For the person who paints here; without it, unsaved changes live as long as the connection. */
   makeQueue?: (user: string, model: number) => ChangeQueue;
   /** Calls back before the next picture is drawn. */
   nextFrame?: (callback: () => void) => void;
   random?: () => number;
 }
 
-// for the handshake and the welcome; the server may be reading the model
+// for the handshake and the welcome; the server may be loading the model
 const kOpeningMs = 30_000;
-const kBusySocketBytes = 256 * 1024; // cameras wait while so much is unsent
-const kAdvice = "advice"; // of messages that may fail: what is wrong is told by what they are about
-const kMostWaiting = 5000; // changes; new strokes are refused above
+const kBusySocketBytes = 256 * 1024; // cameras wait above this number of unsent bytes
+const kAdvice = "advice"; // id of messages that may fail without a report
+const kMostWaiting = 5000; // changes; with more, new strokes are refused
 
 export class Connection {
   private _socket: SocketLike | null = null;
@@ -114,7 +112,7 @@ export class Connection {
 
   private _queue: ChangeQueue | null = null;
   private readonly _outbox = new Outbox((ids) => this._queue?.remove(ids));
-  // ids whose answers say nothing new: given up, or signs of life
+  // ids whose answers are ignored: discarded changes, and signs of life
   private readonly _silenced = new Set<string>();
 
   private readonly _camera: CameraSender;
@@ -129,7 +127,7 @@ export class Connection {
       isBusy: () => (this._socket?.bufferedAmount ?? 0) > kBusySocketBytes,
       send: (message) => {
         this.send(message);
-        this.expectAnswer(); // a frame
+        this.expectAnswer(); // a frame will follow
       },
       nextFrame: _options.nextFrame ?? ((callback) => void requestAnimationFrame(callback)),
     });
@@ -141,11 +139,11 @@ export class Connection {
   get waiting(): number {
     return this._outbox.waiting;
   }
-  /** So much waits to be saved that new strokes are refused. */
+  /** Whether so many changes are unsaved that new strokes are refused. */
   get full(): boolean {
     return this._outbox.waiting > kMostWaiting;
   }
-  /** Number of the newest camera sent; frames echo it. */
+  /** Number of the last camera sent; frames echo it. */
   get cameraSeq(): number {
     return this._camera.seq;
   }
@@ -173,11 +171,11 @@ export class Connection {
     socket.onclose = () => {
       if (socket === this._socket) this.onLost();
     };
-    socket.onerror = () => {}; // a close follows
+    socket.onerror = () => {}; // a close event follows
     this._silence.limit(kOpeningMs);
   }
 
-  /** For good; what is not saved stays in the queue. */
+  /** Closes permanently; unsaved changes stay in the queue. */
   close(): void {
     this.forgetTimers();
     const socket = this._socket;
@@ -187,8 +185,8 @@ export class Connection {
   }
 
   /**
-   * The network changed, the page came back, or a person asked: reconnects without waiting, and
-   * finds out whether a connection that looks open still is.
+   * Call this when the network has changed, the page is visible again, or a person asks: reconnects
+   * without delay, and checks whether an open connection still works.
    */
   check(): void {
     if (this._state === "open") this._silence.askNow();
@@ -198,10 +196,7 @@ export class Connection {
     this.open();
   }
 
-  /**
-   * Nobody looks any more: no camera goes out again after a reconnect. What is not saved still
-   * does.
-   */
+  /** Ends viewing: no camera is sent after a reconnection. Unsaved changes are still sent. */
   stopViewing(): void {
     this._camera.forget();
     this._settings.forgetShown();
@@ -220,7 +215,7 @@ export class Connection {
     if (this._settings.setAppearance(looks, light)) this.sendSettings();
   }
 
-  /** Null: the server's own. */
+  /** Null: the server's default. */
   setBackground(background: Background | null): void {
     if (this._settings.setBackground(background)) this.sendSettings();
   }
@@ -237,17 +232,17 @@ export class Connection {
     if (this._state === "open") this.send({ op: "pick", id, x, y, ...(camera ? { camera } : {}) });
   }
 
-  /** What this person shows of themselves; replaces what was shown before. */
+  /** The presence of this person; replaces the previous one. */
   presence(shown: Omit<PresenceUpdate, "op">): void {
     if (this._state === "open") this.send({ op: "presence", ...shown });
   }
 
-  /** That this person writes into a record, or no longer. */
+  /** Reports that this person edits a record, or has stopped. */
   editRecord(what: { table: number; key: number; editing: boolean; take_over?: boolean }): void {
     if (this._state === "open") this.send({ op: "record.edit", id: kAdvice, ...what });
   }
 
-  /** Null while edits cannot be taken: not connected, or too much waits to be saved. */
+  /** Null while edits are not possible: not connected, or too many unsaved changes. */
   beginStroke(options: StrokeOptions): StrokeHandle | null {
     if (this._state !== "open" || this.full) return null;
     const begin = beginOf(options);
@@ -257,7 +252,7 @@ export class Connection {
     });
   }
 
-  /** An edit, undo or redo. Returns its id, or null while edits cannot be taken. */
+  /** An edit, undo or redo. Returns its id, or null while edits are not possible. */
   sendChange(message: SingleChange): string | null {
     if (this._state !== "open") return null;
     this.change(message);
@@ -273,8 +268,7 @@ export class Connection {
   }
 
   private send(message: ClientMessage): void {
-    // The other side may have begun to close it. What must not be lost is sent again over the next
-    // one.
+    // The server may have begun to close the connection. Changes are sent again over the next one.
     if ((this._socket?.readyState ?? kOpenSocket) > kOpenSocket) return;
     this._socket?.send(JSON.stringify(message));
   }
@@ -345,7 +339,7 @@ export class Connection {
         if (message.id !== undefined && this._silenced.delete(message.id)) return;
         return this._callbacks.picked(message);
       default:
-        message satisfies never; // parse_server_message throws on an op it does not know
+        message satisfies never; // parse_server_message throws on an unknown op
     }
   }
 
@@ -371,7 +365,7 @@ export class Connection {
     }
   }
 
-  /** What this person's earlier pages could not have saved. */
+  /** Sends changes that this person's earlier pages could not save. */
   private async takeUp(queue: ChangeQueue, known: Welcome["strokes"]): Promise<void> {
     const messages = await queue.read();
     if (this._state === "closed") return;
@@ -394,7 +388,7 @@ export class Connection {
       this._callbacks.problem(problem);
       return;
     }
-    // A batch is out of order when the one before it was refused for the moment: both go again.
+    // A batch is out of order if the previous one was refused temporarily: both are sent again.
     const outOfOrder = message.status === 409 && this._outbox.followsWaitingBatch(message.ref);
     const passing = message.status === 429 || message.status >= 500 || outOfOrder;
     if (passing) {
@@ -410,7 +404,7 @@ export class Connection {
     this._callbacks.problem(problem);
   }
 
-  /** The model is gone, and with it what waits. */
+  /** The model was deleted, so its waiting changes are discarded. */
   forget(): void {
     this._queue?.remove(this._outbox.messages().map((message) => message.id));
   }
@@ -434,7 +428,7 @@ export class Connection {
     this._socket = null;
     this.setState("lost");
     this.reportSaving();
-    // a listener closed it or asked for another attempt
+    // a listener has closed the connection or requested another attempt
     if (this._retryTimer || this._state !== "lost") return;
     const random = (this._options.random ?? Math.random)();
     const delayMs =
@@ -450,7 +444,7 @@ export class Connection {
     if (this._state === "open") this._silence.expectAnswer();
   }
 
-  /** Something that the server always answers. */
+  /** Sends a request that the server always answers. */
   private askForLife(): void {
     const id = newId();
     this._silenced.add(id);

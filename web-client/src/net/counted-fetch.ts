@@ -1,5 +1,5 @@
-// How many requests of the page are under way stands in `data-requests` of the root element, so
-// that tests in browsers wait for none in place of a time.
+// `data-requests` of the root element is the number of pending requests of the page, so that
+// browser tests wait for zero instead of a fixed time.
 
 let underWay = 0;
 
@@ -8,7 +8,7 @@ function count(by: number): void {
   document.documentElement.dataset["requests"] = String(underWay);
 }
 
-/** As `fetch`; the request counts until its answer begins or fails. */
+/** Like `fetch`; a request counts until its answer begins or fails. */
 export async function countedFetch(input: string, init?: RequestInit): Promise<Response> {
   count(+1);
   try {

@@ -1,4 +1,4 @@
-// Long work on the server, watched until it ends.
+// Follows a job on the server until it ends.
 
 import { ApiError } from "./api-error";
 import type { Api } from "./api";
@@ -6,13 +6,13 @@ import type { Job } from "../core/types";
 
 const kPollMs = 400;
 const kLongestPollMs = 5000;
-const kMostFailedPolls = 60; // some minutes: a server that restarts answers what became of the job
+const kMostFailedPolls = 60; // some minutes: a restarted server still reports the job's result
 
 export const jobIsOver = (job: Job): boolean => job.state !== "queued" && job.state !== "running";
 
 /**
- * Tells every state of the job, and returns the last. A server that is away for a moment is asked
- * again.
+ * Calls `tell` with each state of the job, and returns the last one. Retries while the server is
+ * temporarily unreachable.
  */
 export async function followJob(api: Api, first: Job, tell: (job: Job) => void): Promise<Job> {
   let job = first;

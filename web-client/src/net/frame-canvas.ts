@@ -1,5 +1,5 @@
-// Draws the parts of streamed frames into a canvas, in order, and says when a frame is whole.
-// Decoding is the browser's own and does not block the page.
+// Draws the parts of streamed frames into a canvas, in order, and reports complete frames. The
+// browser decodes them without blocking the page.
 
 import type { FrameMessage } from "./frame-header";
 
@@ -39,12 +39,12 @@ export class FrameCanvas {
 
   /**
    * Decoding starts at once; drawing keeps the order of calls. A part that cannot be decoded counts
-   * as drawn, so that the server's credit never runs dry.
+   * as drawn, so that the server's credit does not run out.
    */
   push(part: FrameMessage): void {
     const generation = this._generation;
     const decoded = this._decode(part);
-    decoded.catch(() => {}); // reported where it is awaited, in order
+    decoded.catch(() => {}); // reported at the await below, in order
     this._queue = this._queue.then(async () => {
       try {
         const bitmap = await decoded;
@@ -57,7 +57,7 @@ export class FrameCanvas {
     });
   }
 
-  /** Forgets what is on its way: the connection it came over is gone. */
+  /** Discards pending parts: their connection was lost. */
   reset(): void {
     this._generation += 1;
   }

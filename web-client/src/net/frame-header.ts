@@ -1,7 +1,7 @@
 /**
  * Reads the binary messages that carry one rectangle of a picture. The layout and the numbered
- * rules are in protocol/frame.md; the server's twin is protocol/cpp/protocol/frame_header.cpp, and
- * both read the same golden vectors.
+ * rules are in protocol/frame.md; the server's counterpart is
+ * protocol/cpp/protocol/frame_header.cpp, and both read the same golden vectors.
  */
 
 export const kFrameHeaderBytes = 56;
@@ -19,9 +19,9 @@ export interface FrameHeader {
   codec: FrameCodec;
   /** The rectangle is the whole picture. */
   keyframe: boolean;
-  /** Full quality; nothing better follows until something changes. */
+  /** Full quality; no better frame follows until something changes. */
   still: boolean;
-  /** Last rectangle of this frame: show it, then ack. */
+  /** Last rectangle of this frame: show it, then acknowledge. */
   last: boolean;
   view_id: number;
   frame: number;
@@ -59,7 +59,9 @@ function demand(holds: boolean, field: string, detail: string): asserts holds {
   if (!holds) throw new FrameError(field, detail);
 }
 
-/** Header and payload of a whole message. Throws FrameError on every message that breaks a rule. */
+/**
+ * Header and payload of a whole message. Throws FrameError for every message that breaks a rule.
+ */
 export function decodeFrame(message: ArrayBuffer): FrameMessage {
   demand(message.byteLength >= kFrameHeaderBytes, "message", "it has at least 56 bytes");
   const view = new DataView(message);
@@ -103,7 +105,7 @@ function safeInteger(view: DataView, offset: number, field: string): number {
   return Number(value);
 }
 
-/** Rules 5 to 10: what must hold between the members. */
+/** Rules 5 to 10: conditions between the members. */
 function check(h: FrameHeader): void {
   demand(h.view_id <= 15, "view_id", "a view is 0 to 15");
   demand(

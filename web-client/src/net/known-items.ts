@@ -1,5 +1,5 @@
-// Things of one kind that the server lists, each with a version, and tells changes of: all are read
-// at first, and what happens meanwhile holds.
+// Listed items of one kind, each with a version, about which the server sends events: all are read
+// at first, and events during the read take precedence.
 
 import { ApiError } from "./api-error";
 
@@ -9,12 +9,12 @@ interface Item {
 }
 
 export class KnownItems<T extends Item> {
-  /** They could not be read. */
+  /** The last read failed. */
   failed = false;
   loaded = false;
 
   private _known = new Map<number, T>();
-  // what happens meanwhile
+  // events during the read
   private _reading: { gone: Set<number>; come: Set<number> } | null = null;
 
   get all(): T[] {
@@ -24,7 +24,7 @@ export class KnownItems<T extends Item> {
     return this._known.get(id) ?? null;
   }
 
-  /** All of them anew. False: they are being read once more, whose answer counts. */
+  /** Reads all items. Returns false if a later read has started, whose answer counts. */
   async load(read: () => Promise<readonly T[]>): Promise<boolean> {
     const reading = (this._reading = { gone: new Set<number>(), come: new Set<number>() });
     let items: readonly T[];
@@ -48,7 +48,7 @@ export class KnownItems<T extends Item> {
     return true;
   }
 
-  /** False: what is known is newer, or it is gone. */
+  /** Returns false if the known item is newer, or was deleted. */
   put(item: T): boolean {
     const known = this._known.get(item.id);
     if ((known && known.version > item.version) || this._reading?.gone.has(item.id)) return false;

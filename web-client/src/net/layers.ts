@@ -1,4 +1,4 @@
-// Layers as calls send and answer them, with palettes that are complete.
+// Calls about layers, with complete palettes.
 
 import {
   completeLayer,
@@ -18,8 +18,9 @@ export async function readLayer(api: Api, model: Id, layer: Id): Promise<Version
 }
 
 /**
- * With the version that the change was thought out for: another's change in between is an ApiError
- * of status 412. Without, the change stands on its own, and goes onto whatever the layer is now.
+ * With `etag`, the version that the change was made for: if another person has changed the layer
+ * since, the function throws an ApiError with status 412. Without it, the change applies to any
+ * version.
  */
 export async function changeLayer(
   api: Api,
@@ -37,8 +38,8 @@ export async function changeLayer(
 }
 
 /**
- * With `expression`: the layer, or a job where the surface's shape has to be worked out first. With
- * `compute`: a job, and the layer is there once it is done. Otherwise the layer.
+ * With `expression`: the layer, or a job if the surface's shape must be computed first. With
+ * `compute`: a job, whose result is the layer. Otherwise the layer.
  */
 export async function createLayerOrJob(
   api: Api,
@@ -49,13 +50,13 @@ export async function createLayerOrJob(
   return "slug" in answer ? { layer: completeLayer(answer) } : { job: answer };
 }
 
-/** Neither by `compute` nor by `expression`. */
+/** For layers without `compute` and `expression`. */
 export async function createLayer(api: Api, model: Id, layer: LayerCreate): Promise<Layer> {
   const answer = await api.json("POST /models/{model}/layers", { path: { model }, body: layer });
   return completeLayer(answer as Layer);
 }
 
-/** The layer of an expression, from what it reads as it is now. */
+/** Computes the layer's expression from its current inputs. */
 export async function recomputeLayer(
   api: Api,
   model: Id,

@@ -1,11 +1,11 @@
-// Changes that are not known to be durable, in the browser's own database, so that they outlive the
-// page: they go out again, under the same ids, when the same person opens the model here the next
-// time. Two pages of one person may send the same change: nothing is painted twice.
+// Changes that are not known to be durable, in the browser's database, so that they survive the
+// page: when the same person opens the model in this browser again, they are sent with the same
+// ids. If two pages of one person send the same change, it is still painted once.
 
 import type { ChangeMessage } from "./outbox";
 
 const kDatabase = "strata";
-const kStore = "unsaved"; // messages by [user, model, when made in µs, id]
+const kStore = "unsaved"; // messages by [user, model, creation time in µs, id]
 const kChanges: readonly string[] = [
   "stroke.begin",
   "stroke.extend",
@@ -30,7 +30,7 @@ function open(): Promise<IDBDatabase> {
   const request = indexedDB.open(kDatabase, 1);
   request.onupgradeneeded = () => void request.result.createObjectStore(kStore);
   database = resultOf(request).then((opened) => {
-    // by the browser: its data were cleared, or the disk failed
+    // by the browser: its data were deleted, or the disk failed
     opened.onclose = () => (database = null);
     return opened;
   });
@@ -47,8 +47,8 @@ const isChange = (row: unknown): row is ChangeMessage =>
   kChanges.includes(row.op as string);
 
 /**
- * What one person asked for on one model. `failed` hears when the browser does not keep it; then it
- * lives as long as the page.
+ * The changes of one person on one model. `failed` is called when the browser cannot store them;
+ * then they live as long as the page.
  */
 export class OfflineQueue {
   private readonly _keys = new Map<string, Key>();
@@ -60,7 +60,7 @@ export class OfflineQueue {
     private readonly _failed: (why: unknown) => void,
   ) {}
 
-  /** In the order it was made. */
+  /** In order of creation. */
   async read(): Promise<ChangeMessage[]> {
     try {
       const store = (await open()).transaction(kStore).objectStore(kStore);
@@ -72,7 +72,7 @@ export class OfflineQueue {
       for (const key of keys as Key[]) this._keys.set(key[3], key);
       return rows.filter(isChange);
     } catch {
-      return []; // told when something is to be kept
+      return []; // reported at the next put()
     }
   }
 
@@ -92,8 +92,8 @@ export class OfflineQueue {
   private change(...changes: ((store: IDBObjectStore) => IDBRequest)[]): void {
     if (changes.length === 0) return;
     const all = async (): Promise<void> => {
-      // Relaxed: it is to outlive the page, not the machine; a tablet's flash need not hear of each
-      // batch of a stroke.
+      // Relaxed: the data must survive the page, not a crash of the machine. This saves a flash
+      // write for each batch of a stroke.
       const store = (await open())
         .transaction(kStore, "readwrite", { durability: "relaxed" })
         .objectStore(kStore);

@@ -1,5 +1,5 @@
-// Everything this page asked the server to change and that is not known to be durable yet, in the
-// order it was asked. Ids never change, so sending a message again paints nothing twice.
+// All requested changes that are not known to be durable yet, in their order. Ids never change, so
+// that a repeated message is painted only once.
 
 import { newId } from "../core/ids";
 import type {
@@ -17,7 +17,7 @@ export type SingleChange = EditRequest | Undo | Redo;
 interface StrokeEntry {
   kind: "stroke";
   begin: StrokeBegin;
-  parts: StrokeExtend[]; // unsaved ones, ascending n
+  parts: StrokeExtend[]; // unsaved parts, ascending n
   end: StrokeEnd | null;
 }
 interface SingleEntry {
@@ -29,7 +29,7 @@ type Entry = StrokeEntry | SingleEntry;
 export class Outbox {
   private _entries: Entry[] = [];
 
-  /** `dropped` hears the ids of what waits no longer. */
+  /** `dropped` is called with the ids of messages that do not wait anymore. */
   constructor(private readonly _dropped: (ids: string[]) => void = () => {}) {}
 
   /** Changes that are not durable. */
@@ -59,8 +59,8 @@ export class Outbox {
   }
 
   /**
-   * What an earlier page left goes before what this one asked for. Strokes that it was drawing end.
-   * Returns how many changes are new here.
+   * Puts the changes of an earlier page before those of this one. Its unfinished strokes end.
+   * Returns the number of changes that are new here.
    */
   adopt(messages: readonly ChangeMessage[]): number {
     const before = this.waiting;
@@ -79,7 +79,7 @@ export class Outbox {
     return this.stroke(stroke) !== undefined;
   }
 
-  /** Whether the id is of a message that waits here. */
+  /** Whether a message with this id waits here. */
   has(id: string): boolean {
     return this._entries.some((entry) =>
       entry.kind === "single"
@@ -107,20 +107,20 @@ export class Outbox {
     });
   }
 
-  /** Whether the message is a stroke's batch, and one before it waits, too. */
+  /** Whether the message is a batch of a stroke, and an earlier batch waits too. */
   followsWaitingBatch(id: string): boolean {
     return this._entries.some(
       (entry) => entry.kind === "stroke" && entry.parts.findIndex((part) => part.id === id) > 0,
     );
   }
 
-  /** The server keeps all batches of the stroke up to n. */
+  /** The server has saved all batches of the stroke up to n. */
   savedThrough(stroke: string, n: number): void {
     const entry = this.stroke(stroke);
     if (entry) this.shrink(() => (entry.parts = entry.parts.filter((part) => part.n > n)));
   }
 
-  /** The server will never take this message. Returns the ids that are given up with it. */
+  /** The server will never accept this message. Returns the ids that are discarded with it. */
   giveUp(id: string): string[] {
     return this.shrink(() => {
       for (const entry of this._entries)
@@ -131,7 +131,7 @@ export class Outbox {
     });
   }
 
-  /** What to send again, in order. */
+  /** The messages to send again, in order. */
   messages(): ChangeMessage[] {
     return this._entries.flatMap((entry): ChangeMessage[] =>
       entry.kind === "single"
@@ -147,8 +147,8 @@ export class Outbox {
   }
 
   /**
-   * Strokes that ended and of which every batch is saved go, too. Returns the ids of what went;
-   * `besides`: came meanwhile.
+   * Also removes ended strokes whose batches are all saved. Returns the ids of the removed
+   * messages; `besides`: messages that arrived in the meantime.
    */
   private shrink(change: () => void, besides: readonly ChangeMessage[] = []): string[] {
     const before = [...this.messages(), ...besides];

@@ -1,14 +1,14 @@
-// When to read anew what is told of before it is saved: soon after the first news, and once more
-// when the last of them has surely been saved.
+// Times to read again after events that precede the saving: soon after the first event, and again
+// when the last one is certainly saved.
 
-const kSoonMs = 1000; // what happens in one go is read once
-const kSavedMs = 3000; // after the last of it
+const kSoonMs = 1000; // events in this time cause one read
+const kSavedMs = 3000; // after the last event
 
 export class ReadAgain {
   private _timer: ReturnType<typeof setTimeout> | null = null;
   private _newestMs = 0;
 
-  /** `last`: nothing follows, unless there is more news. */
+  /** `last`: no further read follows, unless there are new events. */
   constructor(private readonly _read: (last: boolean) => void) {}
 
   news(): void {

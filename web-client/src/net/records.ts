@@ -1,4 +1,4 @@
-// Records as calls send and answer them: of a table, or of the layer that holds its keys.
+// Calls about records: of a table, or of the layer that contains its keys.
 
 import { personLanguages } from "../core/locale";
 import type { RecordInput, RecordList, RecordPatch, TableEdit } from "../core/protocol.gen";
@@ -6,7 +6,7 @@ import type { TableRecord } from "../core/types";
 import { ifVersion, kAsItIs, type Api } from "./api";
 import type { Id } from "./calls";
 
-/** Records of a table, or of the table whose keys a layer holds. */
+/** Records of a table, or of the table whose keys a layer contains. */
 export type RecordPlace = { table: Id } | { model: Id; layer: Id };
 
 export interface RecordQuery {
@@ -16,7 +16,7 @@ export interface RecordQuery {
   offset: number;
 }
 
-/** A page of a table's records; of a layer's, with their areas there. */
+/** A page of a table's records; with a layer, including their areas there. */
 export async function readRecords(
   api: Api,
   place: RecordPlace,
@@ -26,7 +26,7 @@ export async function readRecords(
     limit,
     offset,
     ...(sortby === "" ? {} : { sortby }),
-    // in whose alphabet
+    // language of the alphabetical order
     ...(/^(-?key)?$/.test(sortby) ? {} : { lang: personLanguages()[0]! }),
     ...(filter === "" ? {} : { filter }),
   };
@@ -40,7 +40,7 @@ export const readRecord = (api: Api, place: RecordPlace, key: number): Promise<T
     ? api.json("GET /tables/{table}/records/{key}", { path: { ...place, key } })
     : api.json("GET /models/{model}/layers/{layer}/records/{key}", { path: { ...place, key } });
 
-/** Without a key it gets the next one. */
+/** Without a key, the record gets the next one. */
 export async function createRecord(
   api: Api,
   table: Id,
@@ -50,7 +50,10 @@ export async function createRecord(
   return (await api.json("POST /tables/{table}/records", { path: { table }, body })) as TableRecord;
 }
 
-/** With the version that was read: another's change in between is an ApiError of status 412. */
+/**
+ * Changes the version that was read; after another person's change the result is an ApiError with
+ * status 412.
+ */
 export const changeRecord = (
   api: Api,
   table: Id,
@@ -63,7 +66,7 @@ export const changeRecord = (
     header: change.version === undefined ? kAsItIs : ifVersion(change.version),
   });
 
-/** The newest of one record. */
+/** The latest edit of a record. */
 export async function lastEditOf(api: Api, table: Id, key: number): Promise<TableEdit | undefined> {
   const query = { key, limit: 1 };
   return (await api.json("GET /tables/{table}/edits", { path: { table }, query })).edits[0];

@@ -1,5 +1,5 @@
-// Sends again what the server has not saved: in order, and no faster than it takes messages. What
-// is changed meanwhile queues behind.
+// Sends unsaved changes again, in order, and no faster than the server accepts. New changes wait
+// behind them.
 
 import type { ChangeMessage } from "./outbox";
 
@@ -7,7 +7,7 @@ export const kFirstRetryMs = 250;
 export const kLastRetryMs = 8000;
 
 export class Resender {
-  /** So that the server's limit is kept. */
+  /** Below the server's limit. */
   messagesPerSecond = 100;
   private _left: ChangeMessage[] = [];
   private _delayMs = kFirstRetryMs;
@@ -16,20 +16,20 @@ export class Resender {
 
   constructor(private readonly _send: (message: ChangeMessage) => void) {}
 
-  /** In place of what was left of an earlier start. */
+  /** Replaces the rest of an earlier start. */
   start(messages: ChangeMessage[]): void {
     this._left = messages;
     this.sendSlice();
   }
 
-  /** False: nothing is sent again, and nothing has to wait. */
+  /** Returns false if no resending is active and the message need not wait. */
   queue(message: ChangeMessage): boolean {
     if (this._left.length === 0) return false;
     this._left.push(message);
     return true;
   }
 
-  /** Each time after twice as long, until something was saved. */
+  /** Waits twice as long each time, until a change was saved. */
   later(start: () => void): void {
     if (this._startTimer) return;
     this._startTimer = setTimeout(() => {

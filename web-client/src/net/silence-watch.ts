@@ -1,9 +1,9 @@
-// A dead network does not say so: the server's silence must. Before the connection is given up, the
-// server is asked something that it always answers, because not everything that is sent brings an
-// answer of its own.
+// A dead network does not report itself, so the server's silence is the signal. Before the
+// connection is closed, the server gets a request that it always answers, since not every message
+// has an answer.
 
-const kQuietMs = 10_000; // an answer is due but nothing came: ask for a sign of life
-const kSilenceMs = 10_000; // nor came one: the connection is dead
+const kQuietMs = 10_000; // an answer is due but none came: request a sign of life
+const kSilenceMs = 10_000; // no sign of life: the connection is dead
 
 export interface SilenceHost {
   ask(): void;
@@ -12,7 +12,7 @@ export interface SilenceHost {
 
 export class SilenceWatch {
   private _timer: ReturnType<typeof setTimeout> | null = null;
-  private _due = false; // something was sent that the server answers
+  private _due = false; // a message was sent that the server answers
 
   constructor(private readonly _host: SilenceHost) {}
 
@@ -28,12 +28,12 @@ export class SilenceWatch {
     this._host.ask();
   }
 
-  /** Gives up after so long without a word. */
+  /** Gives up after this time without a message. */
   limit(silenceMs: number): void {
     this.after(silenceMs, () => this._host.giveUp());
   }
 
-  /** The server said something, or nobody waits for it any more. */
+  /** The server sent a message, or no answer is expected. */
   heard(): void {
     this._due = false;
     if (this._timer) clearTimeout(this._timer);

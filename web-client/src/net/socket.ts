@@ -1,11 +1,11 @@
-// What of a WebSocket is used here, so that a fake can stand in for it.
+// The part of WebSocket that this page uses, so that tests can replace it by a fake.
 
 export const kOpenSocket = 1; // WebSocket.OPEN
 
 export interface SocketLike {
   binaryType: BinaryType;
   readonly bufferedAmount: number;
-  readonly readyState?: number; // as a WebSocket has it; absent: open
+  readonly readyState?: number; // as in WebSocket; absent: open
   onopen: ((event: never) => void) | null;
   onmessage: ((event: { data: unknown }) => void) | null;
   onclose: ((event: { code: number; reason: string }) => void) | null;

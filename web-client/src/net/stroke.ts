@@ -1,4 +1,4 @@
-// A stroke that is drawn: how it begins, and the pieces in which its path goes to the server.
+// A stroke during drawing: its beginning, and the pieces of its path that are sent to the server.
 
 import { newId } from "../core/ids";
 import type { CameraMessage } from "../math/camera";
@@ -31,7 +31,9 @@ export const beginOf = (options: StrokeOptions): StrokeBegin => ({
   ...(options.max_angle_deg === undefined ? {} : { max_angle_deg: options.max_angle_deg }),
 });
 
-/** One stroke being drawn. The server sweeps the brush from the last point of the batch before. */
+/**
+ * One stroke during drawing. The server sweeps the brush from the last point of the previous batch.
+ */
 export class StrokeHandle {
   private _n = 0;
   private _ended = false;
@@ -42,7 +44,7 @@ export class StrokeHandle {
     private readonly _change: (message: ChangeMessage) => void,
   ) {}
 
-  /** `widths`: what share of the radius the brush has at each of them; absent: the whole. */
+  /** `widths`: the brush's share of its radius at each point; absent: the whole radius. */
   extend(points: readonly Point[], widths?: readonly number[]): void {
     if (this._ended || points.length === 0) return;
     for (let start = 0; start < points.length; start += this._pathPoints) {

@@ -1,9 +1,9 @@
-// Files on their way to the server, with how far they are: `fetch` does not tell how much is sent.
+// File uploads with progress, since `fetch` does not report the number of sent bytes.
 
 import { newId } from "../core/ids";
 import { ApiError, cancelled, problemOfText, unreachable } from "./api-error";
 
-/** A file and what it is called by the others of its scan, with folders. */
+/** A file with its path, by which the other files of its scan refer to it. */
 export interface UploadFile {
   file: File;
   path: string;
@@ -15,10 +15,10 @@ export interface Upload<T> {
   cancel(): void;
 }
 
-/** Takes the share of the bytes that is sent, from 0 to 1. */
+/** Receives the share of sent bytes, from 0 to 1. */
 export type Progress = (share: number) => void;
 
-/** Sends an opened request with the files as a form, or with the only one as the body. */
+/** Sends an opened request with the files as a form, or with a single file as the body. */
 export function uploadFiles<T>(
   request: XMLHttpRequest,
   files: readonly UploadFile[],

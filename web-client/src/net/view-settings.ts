@@ -1,5 +1,5 @@
-// How this person's view differs from what the server draws for everybody: sent whenever it
-// changes, and again after each welcome.
+// Differences of this person's view from the defaults: sent after each change, and again after each
+// welcome.
 
 import type {
   Background,
@@ -12,18 +12,18 @@ import type {
 
 export class ViewSettings {
   overrides: LayerOverride[] = [];
-  private _looks: LookShown[] | null = null; // null: those that everyone sees at first
-  private _light: Light | null = null; // null: the server's own
-  private _background: Background | null = null; // null: the server's own
+  private _looks: LookShown[] | null = null; // null: the default surface images
+  private _light: Light | null = null; // null: the server's default
+  private _background: Background | null = null; // null: the server's default
 
-  /** Whether there is something new to send. */
+  /** Returns whether there is a change to send. */
   setAppearance(looks: LookShown[] | null, light: Light): boolean {
     const stays = !looks && !this._looks && isUsual(light) && isUsual(this._light);
     if (!stays) [this._looks, this._light] = [looks, light];
     return !stays;
   }
 
-  /** The same. */
+  /** Returns the same. */
   setBackground(background: Background | null): boolean {
     const changes = JSON.stringify(background) !== JSON.stringify(this._background);
     if (changes) this._background = background;
@@ -35,7 +35,10 @@ export class ViewSettings {
     this._looks = this._light = null;
   }
 
-  /** Without what is gone by now: the server refuses all of them for one that it does not know. */
+  /**
+   * Removes deleted layers and surface images: the server refuses a whole message with an unknown
+   * one.
+   */
   keepOnly({ layers, looks }: Pick<Welcome, "layers" | "looks">): void {
     const layerIds = new Set<number | string>(layers.map(({ id }) => id));
     this.overrides = this.overrides.filter(({ layer }) => layerIds.has(layer));

@@ -1,4 +1,5 @@
-// The metadata of the open model: reads and changes it, and previews another unit and up direction.
+// The metadata of the open model: reads and changes them, and previews another unit and up
+// direction.
 
 import type { Api, Versioned } from "../net/api";
 import type { Model, ModelPatch } from "../core/types";
@@ -24,7 +25,7 @@ export class EditableModel {
     return this._value;
   }
 
-  /** Reads the server's version without showing it. */
+  /** Reads the server's version without displaying it. */
   read(): Promise<Versioned<Model>> {
     return this._api.versioned("GET /models/{model}", { path: { model: this._id } });
   }
@@ -40,8 +41,8 @@ export class EditableModel {
   }
 
   /**
-   * Shows the model as if it had this unit and up direction, without keeping them; null: as it has
-   * them.
+   * Displays the model with this unit and up direction, without saving them; null: with its own
+   * ones.
    */
   preview(scale: ModelScale | null): void {
     if (!this.value) return;
@@ -50,7 +51,7 @@ export class EditableModel {
     this._host.changed();
   }
 
-  /** The unit of the lengths on the screen. */
+  /** The unit of the displayed lengths. */
   get shownUnit(): Model["unit"] {
     return this._preview?.unit ?? this.value?.unit ?? "m";
   }
@@ -63,7 +64,7 @@ export class EditableModel {
   put(model: Model): void {
     const turned = this.value !== null && this.value.up !== model.up;
     this._value = model;
-    // What somebody else changes meanwhile does not end the preview.
+    // Changes by other people do not end the preview.
     const { view } = this._host;
     if (this._preview) view.setModel({ ...model, up: this._preview.up }, false);
     else view.setModel(model, turned);

@@ -1,5 +1,5 @@
-// A part of the side panel that folds: a heading, whose button says with aria-expanded whether it
-// is open, and what is shown then. This browser keeps which are open.
+// A folding part of the side panel: a heading with a button, whose aria-expanded has the state, and
+// the content. This browser keeps which parts are open.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { property } from "lit/decorators.js";
@@ -60,10 +60,7 @@ export abstract class FoldingPanel extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   private readonly _open: Kept<boolean>;
 
-  /**
-   * `name`: by which the browser keeps whether it is open. `parts`: of the session, as elements
-   * follow it.
-   */
+  /** `name`: key of the stored state. `parts`: of the session, as in followSession(). */
   constructor(name: string, ...parts: SessionPart[]) {
     super();
     this._open = new Kept(() => localStorage, `strata.${name}_panel_open`, false);
@@ -71,9 +68,9 @@ export abstract class FoldingPanel extends LitElement {
   }
 
   protected abstract readonly heading: string;
-  /** What is drawn only while it is open. */
+  /** Rendered only while open. */
   protected abstract content(): unknown;
-  /** In the button, after its words. */
+  /** In the button, after its text. */
   protected besideHeading(): unknown {
     return nothing;
   }

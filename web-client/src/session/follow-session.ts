@@ -1,12 +1,12 @@
-// Elements that show a ModelSession are drawn again when a part of it changes that they show.
+// Elements that show a ModelSession are rendered again after a change of its parts that they show.
 
 import type { ReactiveController, ReactiveControllerHost } from "lit";
 import type { ModelSession, SessionPart } from "./model-session";
 
 /**
- * To be called in the constructor. Follows the session that the element has, for as long as the
- * element is in the page. `parts`: what it shows, and what that is worked out from; without any it
- * is drawn again after every change.
+ * Call this in the element's constructor. Follows the element's session as long as the element is
+ * in the page. `parts`: the parts on which the display depends; without any, every change causes a
+ * rendering.
  */
 export function followSession(
   host: ReactiveControllerHost & { session: ModelSession },
@@ -32,7 +32,7 @@ class SessionFollower implements ReactiveController {
 
   hostUpdate(): void {
     const { session } = this._host;
-    // an update may still be due after the element has left
+    // an update may be pending after the element was removed
     if (!this._connected || session === this._followed) return;
     this._unsubscribe?.();
     this._followed = session;

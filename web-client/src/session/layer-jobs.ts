@@ -1,7 +1,6 @@
-// Work under way that makes layers or looks of the open model, or files for this person: computing
-// a layer from the shape, bringing some over from another scan, a measured figure. Layers
-// themselves come to the page like anyone's, when they are done; a file stays listed until it is
-// saved.
+// Running jobs that make layers or surface images of the open model, or files for this person: a
+// layer computed from the shape, layers transferred from another scan, a measured figure. Finished
+// layers arrive by events, as for all participants; a file is listed until it is saved.
 
 import { pageLocale } from "../core/locale";
 import { ApiError } from "../net/api-error";
@@ -18,9 +17,9 @@ export interface LayerJob {
   report: TransferReport | null;
 }
 
-/** Work that the server has taken on. */
+/** A job that the server has accepted. */
 export interface StartedJob {
-  /** Ids of the layers it made; none where it was cancelled or failed. */
+  /** Ids of the new layers; empty if the job was canceled or failed. */
   done: Promise<readonly number[]>;
 }
 
@@ -36,7 +35,7 @@ export class LayerJobs {
     private readonly _changed: () => void,
   ) {}
 
-  /** Throws an ApiError where the server refuses it at once. */
+  /** Throws an ApiError if the server refuses the job at once. */
   async compute(layer: LayerCreate): Promise<StartedJob> {
     const job = (await this._api.json("POST /models/{model}/layers", {
       path: { model: this._modelId },
@@ -45,7 +44,7 @@ export class LayerJobs {
     return { done: this.follow(this.add(layer.name, job), job) };
   }
 
-  /** The same. `name`: what the person is told that it is. */
+  /** The same. `name`: the name of the job for the user. */
   async transfer(name: string, wish: Transfer): Promise<StartedJob> {
     const job = await this._api.json("POST /models/{model}/transfer", {
       path: { model: this._modelId },
@@ -54,13 +53,14 @@ export class LayerJobs {
     return { done: this.follow(this.add(name, job), job) };
   }
 
-  /** Work that something else has started; `made` hears of it once it is done. */
+  /** Follows a job that another part has started; `made` is called when it is done. */
   watch(name: string, job: Job, made: (job: Job) => void): void {
     void this.follow(this.add(name, job), job, made);
   }
 
   /**
-   * A file. Returns the key of its entry; `made` hears of it once it is done. Throws as the others.
+   * Makes a file. Returns the key of its entry; `made` is called when it is done. Throws like
+   * compute().
    */
   async makeFigure(
     name: string,

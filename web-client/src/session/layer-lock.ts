@@ -1,4 +1,4 @@
-// Why a layer may not be changed, and what makes it free, in words.
+// The reason why a layer cannot be changed, and how to unlock it, in words.
 
 import { labelOf } from "../domain/cells";
 import { isAsComputed, type Layer } from "../core/types";

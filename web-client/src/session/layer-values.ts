@@ -4,7 +4,7 @@ import { holdsFractions, valueRange, type Layer } from "../core/types";
 import { formatNumber } from "../domain/measure";
 import { texts } from "../texts";
 
-/** Why a value cannot be painted in the layer, in plain words; null when it can. */
+/** The reason why a value cannot be painted in the layer, in plain words; null if it can. */
 export function valueProblem(layer: Layer, value: number): string | null {
   if (!Number.isFinite(value)) return texts.brush.bad_value;
   if (!holdsFractions(layer.type) && !Number.isInteger(value)) return texts.brush.whole_number;
@@ -14,16 +14,16 @@ export function valueProblem(layer: Layer, value: number): string | null {
   return null;
 }
 
-/** What records are called; null where that is not known. */
+/** Names of records; null where unknown. */
 export interface RecordLabels {
   label(table: number, key: number): string | null;
-  /** Of a list of terms, in the person's language; null for other tables. */
+  /** For a list of terms, in the person's language; null for other tables. */
   term(table: number, key: number): string | null;
 }
 
 /**
- * A value as people read it: its term, the label of its class, the name of its record, or the
- * number with its unit.
+ * A value in readable form: its term, the label of its class, the name of its record, or the number
+ * with its unit.
  */
 export function describeValue(
   layer: Layer,

@@ -1,4 +1,4 @@
-// How long the line is that is being drawn, over the picture.
+// The length of a line during drawing, over the picture.
 
 import { html, nothing, type TemplateResult } from "lit";
 import { beside } from "../ui/beside";
@@ -9,11 +9,11 @@ import type { ViewControl } from "./view-control";
 
 const kLength = { width: 96, height: 28 };
 
-// room for how long a line is, CSS pixels
+// distance from the line's end, CSS pixels
 const kGapPx = 14;
 
 /**
- * Beside the end of a line that is being drawn, at a window pixel. Who cannot see it is told when
+ * Places the length next to the line's end, at a window pixel. Screen readers get the length when
  * the line is finished.
  */
 export function lengthSoFar(

@@ -1,6 +1,6 @@
-// How long the line is that is being drawn. The server is asked what lies under the part that is
-// new, one part at a time and not too often: a long line must not cost more with every move of the
-// pointer.
+// Measures a line during drawing. The server returns the surface under each new part, one part at a
+// time and at limited intervals, so that the cost of a long line does not grow with every pointer
+// move.
 
 import type { Point } from "../net/stroke";
 import type { Outline } from "../tools/tool";
@@ -8,34 +8,32 @@ import type { Outline } from "../tools/tool";
 const kAskEveryMs = 80;
 
 export interface LineMeasureHost<Step> {
-  /** What lies under the pixels of a path. */
+  /** The surface under the pixels of a path. */
   lookAlong(path: readonly Point[]): Promise<readonly Step[]>;
   metresAlong(steps: readonly Step[]): number;
   changed(): void;
 }
 
-/** Of the line: from where the part before ended. */
+/** A part of the line, from the end of the previous part. */
 interface Part<Step> {
   path: readonly Point[];
   steps: readonly Step[];
 }
 
 export class LineMeasure<Step> {
-  /**
-   * Newest known; null: nothing is drawn, none of it is on the surface, or that is not known yet.
-   */
+  /** The last known length; null: no line, none of it on the surface, or not known yet. */
   metres: number | null = null;
 
   private _line: Pick<Outline, "points" | "pointer"> | null = null;
-  private _due = false; // it is another than the one that `metres` is about
+  private _due = false; // the line has changed since `metres` was computed
   private _known: Part<Step>[] = [];
   private _asking = false;
   private _timer: ReturnType<typeof setTimeout> | null = null;
-  private _count = 0; // of lines: answers about the one before come too late
+  private _count = 0; // of lines: answers about earlier ones are ignored
 
   constructor(private readonly _host: LineMeasureHost<Step>) {}
 
-  /** The line goes this way now; null: there is none any more. */
+  /** The line's current path; null: no line. */
   follow(line: Pick<Outline, "points" | "pointer"> | null): void {
     this._line = line && { points: [...line.points], pointer: line.pointer };
     this._due = line !== null;
@@ -61,7 +59,7 @@ export class LineMeasure<Step> {
     }
   }
 
-  /** Only what is still drawn so; how many points on the last of it is. */
+  /** Keeps the parts that are still on the line. Returns the index of the last of their points. */
   private keepKnown(points: readonly Point[]): number {
     let at = 0;
     const other = this._known.findIndex(({ path }) => {
@@ -76,7 +74,7 @@ export class LineMeasure<Step> {
     return at;
   }
 
-  /** `stays`: no pointer leads there, it is drawn. */
+  /** `stays`: a drawn part, without the segment to the pointer. */
   private async learn(path: readonly Point[], stays: boolean): Promise<void> {
     const count = this._count;
     this._asking = true;
@@ -84,7 +82,7 @@ export class LineMeasure<Step> {
       this._timer = null;
       this.ask();
     }, kAskEveryMs);
-    // what is wrong is told when the line is finished
+    // problems are reported when the line is finished
     const steps = await this._host.lookAlong(path).catch(() => null);
     this._asking = false;
     if (count === this._count) {

@@ -11,7 +11,7 @@ export interface LockWatchHost {
   selected(): Layer | null;
   tool(): ToolName;
   canCurate(): boolean;
-  /** Cancels the stroke under way. */
+  /** Cancels the current stroke. */
   stop(): void;
 }
 
@@ -54,7 +54,7 @@ export class LockWatch {
     return true;
   }
 
-  /** Always in the same words, so that repeated notices merge. */
+  /** The text is always the same, so that repeated notices merge. */
   private tell(layer: Layer): void {
     notices.show("problem", texts.layers.locked, whyLocked(layer));
   }

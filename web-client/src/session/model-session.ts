@@ -1,7 +1,7 @@
-// One open model on this page, as the elements of all features know it: its parts, each with its own
-// purpose, and what concerns several of them. `shell/open-model-session` puts the parts together.
-// This is the only file outside `shell/` that names the parts of all features; it imports types
-// alone, and no part imports this file (`session/parts` has what parts know of each other).
+// One open model on this page, as the elements of all features see it: its parts, each with one
+// purpose, and members for several of them. `shell/open-model-session` assembles the parts. This is
+// the only file outside `shell/` that names the parts of all features; it imports only types, and
+// no part imports it (the interfaces between parts are in `session/parts`).
 
 import type { Api } from "../net/api";
 import type { ConnectionState, SavingState } from "../net/connection";
@@ -34,8 +34,8 @@ import type { ViewControl } from "./view-control";
 import type { Views } from "../features/views/views";
 
 /**
- * What may change by itself. `session`: the model, the connection, or what this person may do, of
- * which all elements are told.
+ * Parts with separate change signals. `session`: the model, the connection, or this person's
+ * rights; all elements receive it.
  */
 export type SessionPart =
   | "session"
@@ -66,10 +66,10 @@ export type SessionPart =
 export interface ModelSession {
   readonly model: Model | null;
   readonly deleted: boolean;
-  /** The server no longer knows who this is. */
+  /** The server does not recognize this person's session. */
   readonly signedOut: boolean;
   readonly role: Role;
-  /** The name of who looks. */
+  /** The user name of this person. */
   readonly user: string;
   readonly session: string;
   readonly connectionState: ConnectionState;
@@ -99,43 +99,41 @@ export interface ModelSession {
   readonly api: Api;
   readonly modelId: string;
   readonly gestures: GestureHandler;
-  /** Told of every change, or of those of some parts and of the session itself. */
-  subscribe(listener: () => void, parts?: readonly SessionPart[]): () => void;
   /**
-   * Ends the connection; what is not saved is sent when the same person comes back to the model.
+   * Calls `listener` after every change, or only after changes of these parts and of the session
+   * itself.
    */
+  subscribe(listener: () => void, parts?: readonly SessionPart[]): () => void;
+  /** Ends the connection; unsaved changes are sent when the same person opens the model again. */
   discard(): void;
   checkConnection(): void;
   readonly canPaint: boolean;
   readonly canCurate: boolean;
-  /**
-   * To this person: curators change locked layers, too, but for those that are as they were
-   * computed.
-   */
+  /** For this person: curators can change locked layers too, except those that are as computed. */
   isLocked(layer: Layer): boolean;
-  /** The chosen layer, where a tool is in hand that would change its texels but may not. */
+  /** The selected layer, if the active tool would change its texels but must not. */
   readonly lockedTarget: Layer | null;
-  /** The table of the layer that is painted on: shown, or no longer. */
+  /** Opens or closes the table of the selected layer. */
   toggleTable(): void;
   chooseTool(name: ToolName): void;
-  /** What is drawn next goes into this column of the record. */
+  /** Sends the next drawings to this column of the record. */
   drawMarks(layer: Layer, key: number, column: Column): void;
-  /** Strokes; with tools that add to records, changes of the table. */
+  /** Undoes strokes; with tools that add to records, changes of the table. */
   undo(): void;
   redo(): void;
-  /** Behind the model; null: as the server has it. */
+  /** Background of the model; null: the server's default. */
   setBackground(background: Background | null): void;
-  /** A layer that this person made: it is what they paint on next. */
+  /** Selects a layer that this person has created. */
   addCreated(layer: Layer): void;
-  /** Layers that work made for this person: the first is what they look at next. */
+  /** Shows layers that a job made for this person, and selects the first one. */
   showMade(ids: readonly number[]): void;
   changeModel(change: ModelPatch): Promise<void>;
   reloadModel(): Promise<void>;
   /**
-   * Shows the model as if it had this unit and up direction, without keeping them; null: as it has
-   * them.
+   * Displays the model with this unit and up direction, without saving them; null: with its own
+   * ones.
    */
   previewScale(scale: ModelScale | null): void;
-  /** The unit of the lengths on the screen. */
+  /** The unit of the displayed lengths. */
   readonly shownUnit: Model["unit"];
 }

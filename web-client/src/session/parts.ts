@@ -1,5 +1,5 @@
-// What a part of an open model offers to the parts of other features. The classes that do it lie in
-// the folders of their features; who needs another feature's part knows it by these interfaces.
+// Interfaces that the parts of an open model offer to other features. The implementing classes are
+// in the folders of their features; other features use only these interfaces.
 
 import type {
   Highlight,
@@ -20,13 +20,14 @@ export interface LayersPart {
   select(layer: Layer): void;
   visible(layer: Layer): boolean;
   setVisible(layer: Layer, visible: boolean): void;
-  /** Null: no records before others. */
+  /** Null: no highlight. */
   setHighlight(layerId: number, highlight: Highlight | null): void;
-  /** What a named view keeps of all this. */
+  /** The settings that a named view keeps. */
   toKeep(): LayerOverride[];
   /**
-   * As a named view has it, and no records before those of the view; layers that it does not name
-   * as everyone sees them at first. Returns the way back, without the records that were looked at.
+   * Applies the settings of a named view, without other highlights; layers that it does not contain
+   * get their defaults. Returns a function that restores the previous settings, without the
+   * temporary highlights.
    */
   showView(view: { layers: LayerOverride[] }): () => void;
 }
@@ -39,37 +40,37 @@ export interface TablesPart {
     readonly highlight: Highlight | null;
     readonly rows: { put(record: TableRecord): void };
   } | null;
-  /** Null until it is here; it is asked for. */
+  /** Null until it is loaded; the call requests it. */
   find(id: number): Table | null;
-  /** What a record of the table is called; null where it has no name, or none that is known yet. */
+  /** The name of a record; null where it has none, or it is not loaded yet. */
   label(id: number, key: number): string | null;
-  /** Whether it is known that the table has no such record. */
+  /** Whether the record is known not to exist. */
   lacks(id: number, key: number): boolean;
   open(layer: Layer): void;
-  /** Brings the record's row into sight, in the table of its layer. */
+  /** Scrolls to the record's row in the table of its layer. */
   showRow(layer: Layer, key: number): void;
-  /** This person's newest change of the table is taken back, or the one that was comes again. */
+  /** Undoes or redoes this person's latest change of the table. */
   undo(table: number): Promise<void>;
   redo(table: number): Promise<void>;
 }
 
 export interface CommentsPart {
-  /** Opens the thread of a comment and goes there. */
+  /** Opens the thread of a comment and moves the camera to it. */
   goTo(id: number): void;
 }
 
 export interface AppearancePart {
   readonly section: SectionChoice;
-  /** What a named view keeps of all this, apart from the section, which is the camera's. */
+  /** The settings that a named view keeps, without the section, which belongs to the camera. */
   toKeep(): { looks: LookShown[]; light: Light };
-  /** As a named view has it. Returns the way back. */
+  /** Applies the settings of a named view. Returns a function that restores the previous ones. */
   showView(view: { camera: { section?: Plane[] }; looks?: LookShown[]; light: Light }): () => void;
 }
 
 export interface PaintingPart {
   readonly brush: { valueFor(layer: Layer): number };
-  /** Something is drawn: the camera stays. */
+  /** A drawing is in progress, so the camera stays fixed. */
   stroking: boolean;
-  /** It is made visible; null: there is none to add to, and the person was told why. */
+  /** Makes the selected layer visible; null if none is selected. The user was shown the reason. */
   chosenLayer(): Layer | null;
 }

@@ -1,5 +1,5 @@
-// Asks the server what is under the pointer: one question at a time, the newest place wins, and not
-// too often.
+// Asks the server for the values under the pointer: one request at a time and at limited intervals;
+// the latest position wins.
 
 import { newId } from "../core/ids";
 import type { PointerSample } from "../ui/input";
@@ -8,7 +8,7 @@ import type { Picked } from "../core/protocol.gen";
 const kAskEveryMs = 60;
 const kGiveUpAfterMs = 2000;
 
-/** What somebody does there: only points, taps to look closer, or takes the value. */
+/** The action at the position: only pointing, a tap to look closer, or taking the value. */
 export type PickPurpose = "hover" | "look" | "take";
 
 export interface PickProbeHost {
@@ -24,12 +24,12 @@ export class PickProbe {
 
   constructor(private readonly _host: PickProbeHost) {}
 
-  /** No question waits, and no answer is on its way. */
+  /** Whether no request waits and none is pending. */
   get idle(): boolean {
     return this._asked === null && this._waiting === null;
   }
 
-  /** A press that still waits keeps its purpose, wherever the pointer goes meanwhile. */
+  /** A waiting press keeps its purpose, regardless of later pointer moves. */
   ask(sample: PointerSample, purpose: PickPurpose = "hover"): void {
     this._waiting = {
       sample,
@@ -38,12 +38,12 @@ export class PickProbe {
     this.send();
   }
 
-  /** The surface may have changed under a pointer that rests. */
+  /** Asks again when the surface may have changed under a resting pointer. */
   askAgain(sample: PointerSample | null): void {
     if (sample && !this._waiting) this.ask(sample);
   }
 
-  /** True when it was the answer to this probe's question. */
+  /** Returns true for an answer to this probe's request. */
   answer(message: Picked): boolean {
     const asked = this._asked;
     if (!asked || message.id !== asked.id) return false;
@@ -53,14 +53,14 @@ export class PickProbe {
     return true;
   }
 
-  /** True when the refusal is of this probe's question; the next move of the pointer asks anew. */
+  /** Returns true for a refusal of this probe's request; the next pointer move asks again. */
   refused(ref: string | undefined): boolean {
     if (ref === undefined || ref !== this._asked?.id) return false;
     this._asked = null;
     return true;
   }
 
-  /** The connection is gone, and the answer with it. */
+  /** The connection was lost, and with it the answer. */
   reset(): void {
     this._asked = null;
   }
@@ -75,7 +75,7 @@ export class PickProbe {
     const waiting = this._waiting;
     if (!waiting || this._timer || !this._host.ready()) return;
     const nowMs = performance.now();
-    // its answer sends the next
+    // its answer triggers the next request
     if (this._asked && nowMs - this._asked.atMs < kGiveUpAfterMs) return;
     this._waiting = null;
     this._asked = { id: newId(), atMs: nowMs, purpose: waiting.purpose };

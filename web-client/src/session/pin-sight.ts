@@ -1,6 +1,5 @@
-// Which places of the surface are seen, and not behind something. While the camera moves, those
-// that were seen and face it count as seen; once it rests, the server says what it sees at their
-// pixels.
+// The visibility of places on the surface. While the camera moves, places that were visible and
+// face it count as visible; when it rests, the server returns the surface at their pixels.
 
 import { boundingRadius, type CameraMessage, type OrbitCamera } from "../math/camera";
 import type { Point } from "../net/stroke";
@@ -14,29 +13,29 @@ export interface PinPlace {
 
 export interface PinSightHost {
   camera(): OrbitCamera;
-  /** Those that are to be shown. */
+  /** The places to show. */
   places(): PinPlace[];
   /** The surface at each of these window pixels (two or more); null off the model. */
   lookAt(camera: CameraMessage, pixels: Point[]): Promise<(Vec3 | null)[]>;
   changed(): void;
 }
 
-export const kMostLooked = 1000; // pixels that the server looks at in one question
-const kReach = 0.004; // of the model's radius: what is no farther before a place is that place
+export const kMostLooked = 1000; // pixels in one request to the server
+const kReach = 0.004; // share of the model's radius: tolerance of a hit in front of a place
 
 export class PinSight {
-  private _known = new Map<number, boolean>(); // of when the camera rested last
-  private _moved = true; // since then
+  private _known = new Map<number, boolean>(); // at the last rest of the camera
+  private _moved = true; // since that rest
   private _asked = 0;
 
   constructor(private readonly _host: PinSightHost) {}
 
   cameraMoved(): void {
     this._moved = true;
-    this._asked += 1; // an answer that is on its way is of another camera
+    this._asked += 1; // a pending answer belongs to another camera
   }
 
-  /** The camera rests, or there are other places. */
+  /** Call this when the camera rests, or when the places have changed. */
   async look(): Promise<void> {
     const camera = this._host.camera();
     const asked = (this._asked += 1);
@@ -76,7 +75,7 @@ export class PinSight {
   }
 }
 
-/** Whether the surface at the place is turned to the camera. */
+/** Whether the surface at the place faces the camera. */
 export function faces(
   camera: OrbitCamera,
   { position, normal }: Pick<PinPlace, "position" | "normal">,

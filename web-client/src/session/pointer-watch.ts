@@ -1,4 +1,4 @@
-// Where this person's pointer is, what lies under it, and what the others are told of it.
+// This person's pointer, the values under it, and its presence messages to the others.
 
 import type { OrbitCamera } from "../math/camera";
 import type { PointerSample } from "../ui/input";
@@ -12,19 +12,19 @@ export interface PointerHost {
   ready(): boolean;
   ask(id: string, sample: PointerSample): void;
   showOthers(pointer: PointerSample | null): void;
-  /** Somebody pressed here to take the value, or tapped to look closer. */
+  /** A press that takes the value, or a tap to look closer. */
   taken(message: Picked): void;
   looked(message: Picked): void;
-  /** `picked` is newer. */
+  /** `picked` has changed. */
   learned(): void;
   changed(): void;
 }
 
 export class PointerWatch {
   at: PointerSample | null = null; // window pixels
-  picked: Picked | null = null; // under the pointer, newest known
+  picked: Picked | null = null; // under the pointer, last known
 
-  private _depth: number | null = null; // of the last surface point seen under the pointer
+  private _depth: number | null = null; // of the last visible surface point under the pointer
   private _presenceTimer: ReturnType<typeof setTimeout> | null = null;
   private readonly _probe: PickProbe;
 
@@ -36,7 +36,7 @@ export class PointerWatch {
     });
   }
 
-  /** `picked` is of where the pointer is now. */
+  /** Whether `picked` belongs to the pointer's current position. */
   get settled(): boolean {
     return this._probe.idle;
   }
@@ -56,7 +56,7 @@ export class PointerWatch {
     this._probe.ask(sample, "look");
   }
 
-  /** The surface or the view may have changed under a pointer that rests. */
+  /** Call this when the surface or the view may have changed under a resting pointer. */
   askAgain(): void {
     this._probe.askAgain(this.at);
   }
@@ -64,11 +64,11 @@ export class PointerWatch {
   answer(message: Picked): void {
     this._probe.answer(message);
   }
-  /** True when the refusal is of a question of this pointer. */
+  /** Returns true for a refusal of this pointer's request. */
   refused(ref: string | undefined): boolean {
     return this._probe.refused(ref);
   }
-  /** The connection is gone, and the answer with it. */
+  /** The connection was lost, and with it the answer. */
   reset(): void {
     this._probe.reset();
   }
@@ -79,7 +79,7 @@ export class PointerWatch {
     this._probe.stop();
   }
 
-  /** Depth of the surface under the pointer; where it is not known, of the camera's target. */
+  /** Depth of the surface under the pointer; where it is unknown, that of the camera's target. */
   surfaceDepth(): number {
     return this._depth !== null && this._depth > 0 ? this._depth : this._host.camera().distance;
   }
@@ -94,7 +94,7 @@ export class PointerWatch {
     this._host.changed();
   }
 
-  /** How large the brush is on the surface was told with the depth that was known then. */
+  /** The brush radius in the presence message depends on this depth. */
   private seeDepth(depth: number): void {
     const told = this._depth;
     this._depth = depth;

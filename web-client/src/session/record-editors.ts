@@ -1,18 +1,18 @@
-// Who writes into which record just now, and the records that this page has open to be written
-// into. It is advice, so that people do not surprise each other: what protects the data is the
-// record's version, and without a connection everybody writes as they like.
+// The current editors of records, and the records that this page has open for editing. These claims
+// are advice, so that people do not surprise each other: the record's version protects the data,
+// and without a connection everyone can edit.
 
 import type { RecordEditor, RecordEditors as EditorsMessage } from "../core/protocol.gen";
 
 export interface RecordEditorsHost {
-  /** Nothing is sent while there is no connection. */
+  /** Sends nothing without a connection. */
   say(what: { table: number; key: number; editing: boolean; take_over?: boolean }): void;
-  /** What somebody is called. */
+  /** The name of a user. */
   nameOf(user: string): string;
   changed(): void;
 }
 
-/** Somebody else, by what they are called, or this person in another window. */
+/** Another person with their name, or this person in another window. */
 export interface OtherEditor {
   user: string;
   isMe: boolean;
@@ -20,9 +20,9 @@ export interface OtherEditor {
 
 const idOf = (table: number, key: number): string => `${table} ${key}`;
 
-/** A record that is open here, until `release`. */
+/** A record that is open in this page, until `release`. */
 export class RecordClaim {
-  /** It was written into from here. */
+  /** This page was its editor. */
   had = false;
 
   constructor(
@@ -31,11 +31,11 @@ export class RecordClaim {
     readonly key: number,
   ) {}
 
-  /** Null: it is free to be written into here. */
+  /** Null: this page may edit it. */
   get other(): OtherEditor | null {
     return this._editors.other(this.table, this.key);
   }
-  /** Somebody took it over. */
+  /** Another person has taken it over. */
   get lost(): boolean {
     return this.had && this.other !== null;
   }
@@ -71,7 +71,7 @@ export class RecordEditors {
 
   takeOver({ table, key }: RecordClaim): void {
     this._host.say({ table, key, editing: true, take_over: true });
-    this._there.delete(idOf(table, key)); // the server will tell that it is ours
+    this._there.delete(idOf(table, key)); // the server's event will confirm it
     this._host.changed();
   }
 
@@ -81,7 +81,7 @@ export class RecordEditors {
       this._host.say({ table, key, editing: false });
   }
 
-  /** A new connection, which knows nothing of what is open here. */
+  /** A new connection, which has no state of this page. */
   joined(session: string, user: string): void {
     this._me = { session, user };
     this._there.clear();
@@ -94,7 +94,7 @@ export class RecordEditors {
     this._host.changed();
   }
 
-  /** The connection is gone: nobody is known to be anywhere. */
+  /** The connection was lost: all editors are unknown. */
   left(): void {
     this._there.clear();
     this._host.changed();
@@ -108,7 +108,7 @@ export class RecordEditors {
   private take({ table, key, session, user }: RecordEditor): void {
     if (session === undefined) {
       this._there.delete(idOf(table, key));
-      // it is ours now, if nobody was quicker
+      // this page gets it unless another person is faster
       if (this.claimed(table, key)) this._host.say({ table, key, editing: true });
       return;
     }

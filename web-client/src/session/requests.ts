@@ -1,9 +1,9 @@
-// Which dialog an element asks the page for, where several features do.
+// Requests for dialogs of the page that several features send.
 
 import type { Column, TourEntry, View } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
 
-/** `table`: the list that gets them; null: a new one. */
+/** `table`: the list to import into; null: a new one. */
 export type TermsRequest = { dialog: "terms"; table: number | null; file: File | null };
 
 export type TablePanelRequest =
@@ -14,13 +14,13 @@ export type TablePanelRequest =
   | { dialog: "csv"; table: number; file: File }
   | { dialog: "photos"; table: number; files: File[] };
 
-/** The tour's editor (without `tour`, of a new one), or its links for kiosks. */
+/** The editor of a tour (without `tour`: of a new one), or its links for kiosks. */
 export type TourRequest =
   { dialog: "tour"; tour: TourEntry | null } | { dialog: "kiosks"; tour: TourEntry };
 
 /**
- * The dialog that names a view; without `view` what is seen is kept as a new one. Or the one that
- * draws it to scale; without `view` what is seen.
+ * The dialog that saves a view or describes an existing one; without `view`: the current view. Or
+ * the figure dialog; without `view`: for the current view.
  */
 export interface ViewRequest {
   dialog: "view" | "figure";

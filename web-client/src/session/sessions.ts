@@ -1,5 +1,5 @@
-// Every model session that may still have something to save: the one on the page, and those that
-// linger after their page is gone.
+// All model sessions that may have unsaved changes: the one on the page, and earlier ones whose
+// connection is still open.
 
 import type { ModelSession } from "./model-session";
 
@@ -11,14 +11,14 @@ export const forget = (session: ModelSession): void => void sessions.delete(sess
 export const unsavedChanges = (): number =>
   [...sessions].reduce((sum, session) => sum + session.saving.waiting, 0);
 
-/** The network changed, or the page came back to the front. */
+/** Call this when the network has changed, or the page is visible again. */
 export function checkConnections(): void {
   for (const session of sessions) session.checkConnection();
 }
 
 /**
- * Somebody else signed in, in whose name they must not go out. Returns how many changes wait for
- * them to come back.
+ * Another person has signed in; unsaved changes must not be sent in their name. Returns the number
+ * of changes that wait for their author's return.
  */
 export function discardUnsaved(): number {
   const lost = unsavedChanges();
@@ -26,7 +26,7 @@ export function discardUnsaved(): number {
   return lost;
 }
 
-/** The page may be gone in a moment: how this person shows layers is told now. */
+/** The page may close: this person's layer settings are sent now. */
 export function keepViews(): void {
   for (const session of sessions) session.layers.flush();
 }

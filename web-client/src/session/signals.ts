@@ -1,18 +1,15 @@
-// Who is told of which change. Every part of an open model has a signal of its own, so that a
-// change redraws what shows it, and nothing else.
+// Change signals: each part of an open model has a separate signal, so that a change redraws only
+// the elements that show it.
 
 type Listener = () => void;
 
-/**
- * `Part`: names of what may change. `common` concerns everybody: it is told to all listeners,
- * whatever they follow.
- */
+/** `Part`: the names of the parts. `common` concerns all: it is sent to every listener. */
 export class Signals<Part extends string> {
   private readonly _listeners = new Map<Listener, ReadonlySet<Part> | null>();
 
   constructor(private readonly _common: Part) {}
 
-  /** Without parts: told of every change. Returns what ends it. */
+  /** Without parts: listens to every change. Returns a function that unsubscribes. */
   subscribe(listener: Listener, parts: readonly Part[] = []): () => void {
     this._listeners.set(listener, parts.length > 0 ? new Set([...parts, this._common]) : null);
     return () => this._listeners.delete(listener);

@@ -1,5 +1,5 @@
-// The camera of this page's view: it moves while nothing is painted, and the server hears of every
-// move.
+// The camera of this page's view: it moves only while nobody paints, and each move is sent to the
+// server.
 
 import {
   between,
@@ -15,21 +15,21 @@ import type { Plane } from "../core/protocol.gen";
 import type { Model } from "../core/types";
 import type { Vec3 } from "../math/vector";
 
-const kStillAfterMs = 120; // without input the camera counts as still
+const kStillAfterMs = 120; // time without input after which the camera counts as still
 const kFlightMs = 600;
-// in which a followed camera comes nearer by a factor of e
+// time constants of the approach to a followed camera
 const kEaseMs = { least: 70, most: 250 };
 
 export interface ViewHost {
   send(moving: boolean): void;
   /**
-   * Runs the action now, or as soon as no stroke is under way: a stroke's pixels are of the camera
-   * that it began with.
+   * Runs the action now, or after the current stroke, since a stroke's pixels belong to the camera
+   * at its start.
    */
   whenFree(action: () => void): void;
   isPainting(): boolean;
   cameToRest(): void;
-  /** This person moved the view, which looked along with somebody. */
+  /** This person moved the view, which ends the following of another one. */
   wentOwnWay(): void;
   changed(): void;
 }
@@ -45,7 +45,7 @@ export class ViewControl {
   private _stillTimer: ReturnType<typeof setTimeout> | null = null;
   private _flight = 0; // of requestAnimationFrame; 0: none
   private _flightTo: Place | null = null;
-  // whom it looks along with
+  // the followed camera
   private _beside: {
     camera: CameraMessage;
     heardMs: number;
@@ -56,7 +56,7 @@ export class ViewControl {
 
   constructor(private readonly _host: ViewHost) {}
 
-  /** The stage's size in CSS pixels, and window pixels for each of them. */
+  /** The stage's size in CSS pixels, and window pixels per CSS pixel. */
   setViewport(width: number, height: number, scale: number): void {
     this._host.whenFree(() => {
       this.scale = scale;
@@ -67,7 +67,7 @@ export class ViewControl {
     });
   }
 
-  /** The model as it is now known; `turned`: its up direction is another than before. */
+  /** Takes the current model; `turned`: its up direction has changed. */
   setModel(model: Model, turned: boolean): void {
     this._hasModel = true;
     this.camera.setModel(model.bounds, model.up);
@@ -75,12 +75,12 @@ export class ViewControl {
     if (turned) this.moved(false);
   }
 
-  /** Shows the model with another up direction without keeping it. */
+  /** Shows the model with another up direction without saving it. */
   previewUp(model: Model, up: Model["up"]): void {
     if (this.camera.up === up) return;
     this.endFlight();
     this.camera.setModel(model.bounds, up);
-    this.camera.fit(); // another side of it lies before the eye
+    this.camera.fit(); // another side faces the eye
     this.moved(false);
   }
 
@@ -102,7 +102,7 @@ export class ViewControl {
   fit(): void {
     this.moveInUsualField(() => this.camera.fit());
   }
-  /** To a part of the model, as `fly`. */
+  /** Flies to a part of the model, as `fly`. */
   flyTo(box: Bounds, normal?: Vec3): void {
     if (this._host.isPainting()) return;
     const from = placeOf(this.camera);
@@ -113,7 +113,7 @@ export class ViewControl {
     this.fly(to);
   }
   /**
-   * To where a camera stands, in so long; at once for people who want less motion. Any other move
+   * Flies to a place in this time; at once for people who prefer reduced motion. Any other move
    * ends the flight.
    */
   fly(to: Place, flightMs = kFlightMs): void {
@@ -146,19 +146,16 @@ export class ViewControl {
     this._flightTo = null;
   }
 
-  /** Where it stands, or flies to. */
+  /** The camera's place, or the end of its flight. */
   get place(): Place {
     return this._flightTo ?? placeOf(this.camera);
   }
 
-  /**
-   * To where somebody's newest camera is, and along with it until `look_alone`. Strokes are waited
-   * for.
-   */
+  /** Follows another camera until `look_alone`, after the current stroke. */
   lookAlong(camera: CameraMessage): void {
     const now = performance.now();
     if (this._beside) {
-      // As smooth as what comes is frequent.
+      // Smoothing depends on the interval between messages.
       const easeMs = Math.min(kEaseMs.most, Math.max(kEaseMs.least, now - this._beside.heardMs));
       this._beside = { ...this._beside, camera, heardMs: now, easeMs };
     } else {
@@ -168,7 +165,7 @@ export class ViewControl {
     this._host.whenFree(() => this.glide());
   }
 
-  /** What it shows stays, seen with the usual field. */
+  /** Ends the following. The picture stays, with the default field. */
   lookAlone(): void {
     if (!this._beside) return;
     this._beside = null;
@@ -179,12 +176,12 @@ export class ViewControl {
     });
   }
 
-  /** Turns from now on around what is seen in the middle, in this depth. */
+  /** Sets the center of rotation to the middle of the picture at this depth. */
   turnAround(depth: number): void {
     this.camera.turnAround(depth);
   }
 
-  /** On its way to where somebody looks from. */
+  /** Whether the camera is moving to a followed one. */
   get gliding(): boolean {
     return this._glide !== 0;
   }
@@ -204,7 +201,7 @@ export class ViewControl {
       return;
     }
     const to = placeLike(beside.camera, camera);
-    // so that the eye goes straight
+    // for a straight path of the eye
     if (camera.perspective === to.perspective)
       camera.turnAround(to.perspective ? to.distance : camera.depthOf(to.target));
     const now = performance.now();
@@ -230,7 +227,7 @@ export class ViewControl {
     this.moveInUsualField(() => (this.camera.perspective = perspective));
   }
 
-  /** What the planes cut away is not there: for the picture, the brush and the pointer alike. */
+  /** The picture, the brush and the pointer ignore parts that the planes cut away. */
   setSection(planes: Plane[], moving: boolean): void {
     this._host.whenFree(() => {
       this.camera.section = planes;
@@ -254,7 +251,7 @@ export class ViewControl {
     this._stillTimer = null;
   }
 
-  /** Once the model and the stage's size are both known. */
+  /** Runs once, when both the model and the stage's size are known. */
   private fitAtFirst(): void {
     if (this._fitted || !this._hasModel || this.camera.width <= 1) return;
     this._fitted = true;
@@ -262,7 +259,10 @@ export class ViewControl {
     this.moved(false);
   }
 
-  /** A kept view of another window may have brought another field. Small moves go on with it. */
+  /**
+   * Restores the default field of view, which a view saved in another window may have changed;
+   * small moves keep the field.
+   */
   private moveInUsualField(change: () => void): void {
     this.move(() => {
       this.camera.resetField();

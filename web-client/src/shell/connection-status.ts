@@ -1,5 +1,5 @@
-// What the page of a model says of its connection: whether all is saved, and a banner while the
-// server is out of reach.
+// The connection status on a model's page: whether all changes are saved, and a banner while the
+// server is unreachable.
 
 import { html, nothing, type TemplateResult } from "lit";
 import type { ModelSession } from "../session/model-session";

@@ -1,4 +1,4 @@
-// How the dialogs that only tell are laid out: names at the left, what they mean beside them.
+// Layout of dialogs that only display: names at the left, values at the right.
 
 import { css } from "lit";
 
@@ -36,6 +36,12 @@ export const detailStyles = css`
     gap: 1.125rem;
     padding-bottom: 0.4375rem;
     break-inside: avoid;
+  }
+  .guides {
+    display: flex;
+    flex-wrap: wrap;
+    gap: 0.5rem 1.25rem;
+    margin: 1.25rem 0 0;
   }
   .version {
     margin: 1.25rem 0 0;

@@ -16,7 +16,7 @@ export class StrataHelpDialog extends LitElement {
 
   static override styles = [sharedStyles, detailStyles];
 
-  /** Of the server, which brings the page. Empty until it has answered. */
+  /** The server's version, which is also the page's. Empty until the answer arrives. */
   @state() private _version = "";
 
   override connectedCallback(): void {
@@ -29,7 +29,7 @@ export class StrataHelpDialog extends LitElement {
       const answer = await fetch("/api/v1/version");
       if (answer.ok) this._version = ((await answer.json()) as ServerVersion).version;
     } catch {
-      // The help is useful without it.
+      // The help works without the version.
     }
   }
 
@@ -45,12 +45,17 @@ export class StrataHelpDialog extends LitElement {
         ${hasFingersOnly() ? nothing : part(words.mouse, words.mouse_rows)} ${part(words.touch, words.touch_rows)} ${part(words.keys, words.key_rows)}
         ${part(words.brush, words.brush_rows)} ${part(words.terms, words.terms_rows)} ${part(words.table, words.table_rows)} ${part(words.layers, words.layer_rows)}
       </div>
+      <p class="guides">
+        <a href="/guide/" target="_blank">${words.guide}</a>
+        <a href="/guide/reference/keyboard" target="_blank">${words.all_keys}</a>
+        <a href="/docs" target="_blank">${words.contract}</a>
+      </p>
       ${this._version ? html`<p class="version">Strata ${this._version}</p>` : nothing}
       <button slot="actions" @click=${this.showTour}>${texts.tour.again}</button>
     </strata-dialog>`;
   }
 
-  /** Closed first: the tour gives the keyboard back to what opened the help. */
+  /** Closes first, so that the tour later returns the focus to the opener of the help. */
   private showTour(): void {
     this._dialog.close();
     this.dispatchEvent(new CustomEvent("tour"));

@@ -1,5 +1,5 @@
-// Keys of the model page. A key that someone types into a field, or that a dialog is open for, is
-// not one of these (`ui/keyboard`).
+// Shortcuts of the model page. Keys typed into a field or for an open dialog are excluded
+// (`ui/keyboard`).
 
 import type { StandardView } from "../math/camera";
 import { kToolKeys, type ToolName } from "../tools/tool";
@@ -17,7 +17,7 @@ const kArrows: Record<string, [number, number]> = {
 };
 const kArrowStep = 0.04;
 
-/** Does what the key stands for; false when it stands for nothing here. */
+/** Runs the action of the key; returns false if it has none. */
 export function handleKey(
   event: KeyboardEvent,
   session: OpenModelSession,

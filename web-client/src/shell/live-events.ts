@@ -3,7 +3,7 @@
 import type { ConnectionCallbacks } from "../net/connection";
 import type { ModelSession } from "../session/model-session";
 
-/** The session handles the others itself. */
+/** Events for the parts; the session itself handles the others. */
 export type EventsOfParts = Omit<
   ConnectionCallbacks,
   "state" | "welcome" | "frame" | "saving" | "model" | "problem" | "takenUp"
@@ -17,7 +17,7 @@ export function eventsOfParts(session: ModelSession): EventsOfParts {
     },
     saved: () => {
       session.reviews.saved();
-      session.tables.refreshAreas(); // with the areas that this person's own strokes leave
+      session.tables.refreshAreas(); // including the areas that this person's own strokes changed
       session.activity.outdated();
     },
     layer: (event) => {

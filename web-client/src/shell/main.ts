@@ -10,7 +10,7 @@ async function start(): Promise<void> {
   const language = pageLanguage(chosen, navigator.languages);
   document.documentElement.lang = language;
   await loadTexts(language, chosen !== null, navigator.languages);
-  await import("./strata-app"); // whose parts take their words while they are loaded
+  await import("./strata-app"); // its modules read texts at load time
 }
 
 void start();

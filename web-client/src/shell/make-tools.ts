@@ -17,7 +17,7 @@ import type { Tool, ToolName } from "../tools/tool";
 import { ToolManager } from "../tools/tool-manager";
 
 export interface ToolChanges {
-  /** Another tool is active. */
+  /** Another tool was activated. */
   chosen(): void;
   /** The outline of the active tool changed. */
   outline(): void;

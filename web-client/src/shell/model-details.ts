@@ -1,4 +1,5 @@
-// <strata-about-sheet>: what is known about the model, its files, and who may download them.
+// <strata-about-sheet>: information about the model and its files, and the roles that can download
+// them.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -20,7 +21,7 @@ import { detailStyles } from "./detail-styles";
 
 const kDownloaders = ["viewer", "annotator", "curator"] as const;
 
-/** Empty for models that an earlier release imported. */
+/** Empty for models from earlier releases of the import. */
 function openEdgesText({ open_edges: edges }: Model): string {
   const words = texts.model.details_list;
   if (!edges) return "";
@@ -31,8 +32,11 @@ function openEdgesText({ open_edges: edges }: Model): string {
 @customElement("strata-about-sheet")
 export class StrataModelDetails extends LitElement {
   @property({ attribute: false }) model!: Model;
-  @property() viewer: Role = "guest"; // what this person may do
-  /** This person may correct the model's unit and up direction, and say who gets its files. */
+  @property() viewer: Role = "guest"; // this person's role
+  /**
+   * Whether this person can correct the model's unit and up direction, and set the role for
+   * downloads.
+   */
   @property({ type: Boolean }) correctable = false;
 
   static override styles = [sharedStyles, detailStyles];

@@ -1,5 +1,5 @@
-// The dialogs of a model's page, which is shown without them: they come in a piece of their own
-// (`page-parts.ts`).
+// The dialogs of a model's page. The page is shown before they are loaded; they form a separate
+// part (`page-parts.ts`).
 
 import "../features/layers/color-dialog";
 import "../features/tables/column-dialog";

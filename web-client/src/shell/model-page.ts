@@ -1,5 +1,5 @@
-// <strata-model-page>: one model: the stage in the middle, tools at its left, layers and brush at
-// its right (on a phone: a sheet from below).
+// <strata-model-page>: one model: the stage in the middle, tools at the left, layers and brush at
+// the right (on a phone: a sheet at the bottom).
 
 import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -68,7 +68,7 @@ import { Splitter } from "./splitter";
 import { lostBanner, savingStatus } from "./connection-status";
 import "../features/appearance/view-panel";
 
-const kNarrow = 820; // pixels of a window where the panel lies over the model
+const kNarrow = 820; // window width up to which the panel lies over the model
 const kMaxPanelWidth = 620;
 const kNotFound = { heading: texts.model.not_found_title, lead: texts.model.not_found_lead };
 
@@ -77,17 +77,17 @@ export class StrataModelPage extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) me!: Me;
   @property({ attribute: "model_id" }) modelId = "";
-  /** All that this person sees. */
+  /** All projects that this person can see. */
   @property({ attribute: false }) projects: readonly Project[] = [];
   @state() private _dialog: OpenDialog | null = null;
-  // beside dialogs: while a stop is tried, views may be kept
+  // separate from dialogs: views can be saved while a stop is previewed
   @state() private _tourEditor: { tour: TourEntry | null } | null = null;
   @state() private _missing: { heading: string; lead: string } | null = null;
   @state() private _panelShown = window.innerWidth > kNarrow;
   @query("strata-stage") private _stage!: StrataStage | null;
   @query("strata-tour") private _tour!: StrataOnboarding | null;
   @query(".options") private _options!: HTMLElement | null;
-  // in pixels where words have their usual size; it grows with them
+  // in pixels at the default text size; scales with it
   private readonly _panelSplitter = new Splitter(this, {
     label: texts.model.resize_panel,
     key: "strata.panel_width",
@@ -109,9 +109,9 @@ export class StrataModelPage extends LitElement {
   private _session: OpenModelSession | null = null;
   private _askedScale = false;
   private _measures = false;
-  private _tool: ToolName | null = null; // whose options are in sight
-  private _role: Role | null = null; // of the newest welcome
-  private _wantedComment: number | null = null; // by the address
+  private _tool: ToolName | null = null; // the tool whose options are in view
+  private _role: Role | null = null; // in the last welcome
+  private _wantedComment: number | null = null; // from the address
   private _wantedView: string | null = null;
 
   static override styles = [sharedStyles, modelStyles];
@@ -147,21 +147,19 @@ export class StrataModelPage extends LitElement {
   }
 
   override updated(): void {
-    this._tour?.requestUpdate(); // what it speaks of may be elsewhere now
+    this._tour?.requestUpdate(); // its target may have moved
     const session = this._session;
     if (session) this.bringOptions(session.tools.active);
     const narrow = matchMedia(`(max-width: ${kNarrow}px)`).matches;
     if (session?.tables.view) this.liftNotices(narrow ? "52dvh" : `${this._tableSplitter.size}px`);
-    // its sheet lies over the tools
+    // its sheet covers the tools
     else
       this.liftNotices(
         narrow && session && session.comments.card !== null ? "calc(48dvh - 56px)" : null,
       );
   }
 
-  /**
-   * They are an element of the whole page, and would lie over the table, or the sheet of a comment.
-   */
+  /** Notices belong to the whole page and would cover the table or the sheet of a comment. */
   private liftNotices(height: string | null): void {
     const { style } = document.documentElement;
     if (height) style.setProperty("--beneath", height);
@@ -200,7 +198,7 @@ export class StrataModelPage extends LitElement {
     this.requestUpdate();
   }
 
-  /** Somewhere else on the model, or it is drawn for the first time. */
+  /** The place on the model has changed, or its first frame was drawn. */
   private onPlace(session: OpenModelSession): void {
     if (session !== this._session) return;
     this.followAddress(session);
@@ -211,14 +209,14 @@ export class StrataModelPage extends LitElement {
     }
   }
 
-  /** What is measured is told in the panel. */
+  /** Opens the panel with the measurement. */
   private showMeasuring(session: OpenModelSession): void {
     const measures = session.tools.active === "measure";
     if (measures && !this._measures) this._panelShown = true;
     this._measures = measures;
   }
 
-  /** Whoever takes up a tool sees what can be chosen for it, however far the panel was scrolled. */
+  /** Scrolls the panel to the options of a newly chosen tool. */
   private bringOptions(tool: ToolName): void {
     const { _options: options } = this;
     if (tool === this._tool) return;
@@ -229,16 +227,16 @@ export class StrataModelPage extends LitElement {
     });
   }
 
-  /** What can be chosen for the tool in hand, from where the panel lies over the model. */
+  /** Opens the panel, which may lie over the model, at the options of the active tool. */
   private showOptions(session: OpenModelSession): void {
     if (session.tables.view) session.tables.close();
     this._panelShown = true;
-    this._tool = null; // brought into sight with the next update
+    this._tool = null; // the next update scrolls to the options
     this.requestUpdate();
   }
 
   private readonly onHash = (event: HashChangeEvent): void => {
-    if (event.newURL !== location.href) return; // the page was held, and its address put back
+    if (event.newURL !== location.href) return; // the page was held and its address restored
     this.readAddress();
     if (this._session) this.followAddress(this._session);
   };
@@ -249,8 +247,8 @@ export class StrataModelPage extends LitElement {
   }
 
   /**
-   * To the comment or view that the address names, once it can be gone to; from then on the address
-   * names what is looked at.
+   * Opens the comment or view of the address as soon as it is loaded. From then on the address
+   * follows the displayed one.
    */
   private followAddress(session: OpenModelSession): void {
     const { comments, view, views } = session;
@@ -324,7 +322,7 @@ export class StrataModelPage extends LitElement {
       }`;
   }
 
-  /** Something on the model is looked at: a narrow window has no room for the panel as well. */
+  /** Shows the model: in a narrow window the panel closes. */
   private makeRoom(): void {
     if (window.innerWidth <= kNarrow) this._panelShown = false;
   }
@@ -475,15 +473,15 @@ export class StrataModelPage extends LitElement {
     if (event.key === " " && this._stage) this._stage.orbitHeld = false;
   };
 
-  /** The key may come up in another window. */
+  /** The key may be released in another window. */
   private readonly onBlur = (): void => {
     if (this._stage) this._stage.orbitHeld = false;
   };
 }
 
 /**
- * A button that was pressed with the pointer does not keep the keyboard: Space would press it again
- * instead of turning the model. One that was pressed by a key does.
+ * After a click, the button loses the keyboard focus: otherwise Space would press it again instead
+ * of rotating the model. A button pressed by a key keeps the focus.
  */
 function giveBackKeyboard(event: MouseEvent): void {
   if (event.detail === 0) return;

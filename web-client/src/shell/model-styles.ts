@@ -74,7 +74,7 @@ export const modelStyles = css`
   strata-comment-card {
     position: absolute;
     inset: 0;
-    z-index: 4; /* over what tells of the pointer */
+    z-index: 4; /* over the pointer's readout */
     pointer-events: none;
   }
   header button.icon {
@@ -178,7 +178,7 @@ export const modelStyles = css`
     background: var(--surface);
   }
   .scroll {
-    position: relative; /* what is hidden for eyes in it would lengthen the page otherwise */
+    position: relative; /* visually hidden content would lengthen the page otherwise */
     height: 100%;
     overflow: hidden auto;
     padding: 0 0.875rem 1.5rem;

@@ -1,4 +1,4 @@
-// <strata-notices>: messages at the foot of the page.
+// <strata-notices>: messages at the bottom of the page.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, state } from "lit/decorators.js";
@@ -20,8 +20,8 @@ export class StrataNotices extends LitElement {
       :host {
         position: fixed;
         z-index: 50;
-        left: 4.75rem; /* beside the tools and above the scale bar */
-        bottom: calc(4.75rem + var(--beneath, 0px)); /* what the page has below the picture */
+        left: 4.75rem; /* next to the tools and above the scale bar */
+        bottom: calc(4.75rem + var(--beneath, 0px)); /* height of the content below the picture */
         display: grid;
         gap: 0.5rem;
         width: min(27.5rem, calc(100vw - 5.5rem));

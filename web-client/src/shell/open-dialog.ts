@@ -1,5 +1,4 @@
-// Which dialog of a model's page is drawn for what was asked. Their elements come with the part
-// `model_dialogs`.
+// Renders the requested dialog of a model's page. The elements belong to the part `model_dialogs`.
 
 import { html, nothing, type TemplateResult } from "lit";
 import type { Layer, Model } from "../core/types";
@@ -16,12 +15,12 @@ export type OpenDialog =
   | Extract<TourRequest, { dialog: "kiosks" }>
   | { dialog: "scale" | "help" | "about" | "orthophoto" };
 
-/** The page's part in it. */
+/** Callbacks of the page. */
 export interface DialogHost {
   session: ModelSession;
-  /** In place of the one that is open; null: none. */
+  /** Replaces the open dialog; null: none. */
   show(dialog: OpenDialog | null): void;
-  /** Something on the model is looked at. */
+  /** Makes room for the model. */
   aside(): void;
   signedOut(): void;
   startTour(): void;
@@ -124,6 +123,6 @@ export function modelDialog(dialog: OpenDialog, host: DialogHost): TemplateResul
   }
 }
 
-/** The layer as it is now: the request may be older. */
+/** The current layer: the request may have an older version. */
 const newest = (session: ModelSession, layer: Layer): Layer =>
   session.layers.all.find((each) => each.id === layer.id) ?? layer;

@@ -1,12 +1,11 @@
-// One open model on this page: its life, and the messages between its parts. `view` is the camera,
-// `layers` what is painted on, `tables` the records that layers hold the keys of, `comments` what
-// people wrote on the surface, `hovered` the one that the mouse rests on, `appearance` its looks,
-// light and section, `pointer` what lies under the pointer, `painting` the brush and the edits,
-// `together` who else is here and whose view this is, `cursors` where they point, `views` what was
-// kept to come back to, `tours` what curators make of views, `measuring` what is measured,
-// `figures` what is drawn to scale, `face` the one that is asked for. Elements subscribe and draw
-// themselves from their state; they change it only through their methods.
-// Long, because this file alone connects the parts.
+// One open model on this page: its life cycle, and the messages between its parts. `view` is the
+// camera, `layers` the layers, `tables` the records behind the layers' keys, `comments` the
+// comments on the surface, `hovered` the record under the resting mouse, `appearance` the surface
+// images, light and section, `pointer` the values under the pointer, `painting` the brush and the
+// edits, `together` the participants and the followed view, `cursors` their pointers, `views` the
+// named views, `tours` the tours of views, `measuring` the measurement, `figures` the figures to
+// scale, `face` the face to pick. Elements subscribe and render the parts' state; they change it
+// only through methods. The file is long because it alone connects the parts.
 
 import type { Api } from "../net/api";
 import { ApiError } from "../net/api-error";
@@ -62,9 +61,9 @@ import { makeTools } from "./make-tools";
 
 export class OpenModelSession implements ModelSession {
   deleted = false;
-  signedOut = false; // the server no longer knows who this is
+  signedOut = false; // the server does not recognize the session
   role: Role = "viewer";
-  user = ""; // the name of who looks
+  user = ""; // this person's user name
   session = "";
   connectionState: ConnectionState = "connecting";
   saving: SavingState = { waiting: 0, failing: false };
@@ -101,7 +100,7 @@ export class OpenModelSession implements ModelSession {
   private readonly _locks: LockWatch;
   private readonly _signals = new Signals<SessionPart>("session");
   private _wasOpen = false;
-  private _closed = false; // its page is gone
+  private _closed = false; // the page was closed
   private _toldLeft = false;
 
   constructor(
@@ -334,8 +333,7 @@ export class OpenModelSession implements ModelSession {
     );
   }
 
-  // ── life
-  // ──────────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── life cycle ─────────────────────────────────────────────────────────────────────────────────
 
   subscribe(listener: () => void, parts?: readonly SessionPart[]): () => void {
     return this._signals.subscribe(listener, parts);
@@ -350,8 +348,8 @@ export class OpenModelSession implements ModelSession {
   }
 
   /**
-   * Its page is gone. What was painted still goes to the server: the connection lingers until all
-   * of it is saved.
+   * The page was closed. Unsaved edits are still sent: the connection stays open until all are
+   * saved.
    */
   close(): void {
     this._closed = true;
@@ -376,9 +374,7 @@ export class OpenModelSession implements ModelSession {
     this.tellLeftBehind();
   }
 
-  /**
-   * Ends the connection; what is not saved is sent when the same person comes back to the model.
-   */
+  /** Ends the connection; unsaved changes are sent when the same person opens the model again. */
   discard(): void {
     forget(this);
     this.saving = { waiting: 0, failing: false };
@@ -403,7 +399,7 @@ export class OpenModelSession implements ModelSession {
     return this._locks.target;
   }
 
-  /** Another tool, another layer, or another lock. */
+  /** The tool, the layer or its lock has changed. */
   private targetChanged(part: "layers" | "tools"): void {
     this._locks.lookAgain();
     this.changed(part);
@@ -413,28 +409,27 @@ export class OpenModelSession implements ModelSession {
     this._signals.tell(part);
   }
 
-  /** The table of the layer that is painted on: shown, or no longer. */
+  /** Opens or closes the table of the selected layer. */
   toggleTable(): void {
     const layer = this.layers.selected;
     if (this.tables.view) this.tables.close();
     else if (layer) this.tables.open(layer);
   }
 
-  // ── what elements ask for
-  // ─────────────────────────────────────────────────────────────────────────────────────────
+  // ── requests of elements ───────────────────────────────────────────────────────────────────────
 
   chooseTool(name: ToolName): void {
     if (kChangingTools.includes(name) && this.refusesChanges()) return;
     this.tools.choose(name);
   }
 
-  /** Who may only look was told so, once they could look. */
+  /** Shows a notice to viewers, after the model was opened. */
   private refusesChanges(): boolean {
     if (!this.canPaint && this._wasOpen) notices.show("problem", texts.brush.viewer_only);
     return !this.canPaint;
   }
 
-  /** What is drawn next goes into this column of the record. */
+  /** Sends the next drawings to this column of the record. */
   drawMarks(layer: Layer, key: number, column: Column): void {
     if (layer.table === undefined) return;
     this.layers.select(layer);
@@ -443,7 +438,7 @@ export class OpenModelSession implements ModelSession {
     this.tools.choose(column.kind === "line" ? "line" : "point");
   }
 
-  /** Strokes; with tools that add to records, changes of the table. */
+  /** Undoes strokes; with tools that add to records, changes of the table. */
   undo(): void {
     if (this.refusesChanges()) return;
     if (kMarkingTools.includes(this.tools.active)) this.marks.undo();
@@ -455,7 +450,7 @@ export class OpenModelSession implements ModelSession {
     else this.painting.redo();
   }
 
-  /** Behind the model; null: as the server has it. */
+  /** Background of the model; null: the server's default. */
   setBackground(background: Background | null): void {
     this._connection.setBackground(background);
   }
@@ -465,7 +460,7 @@ export class OpenModelSession implements ModelSession {
     this.view.countFrame();
   }
 
-  /** A layer that this person made: it is what they paint on next. */
+  /** Selects a layer that this person has created. */
   addCreated(layer: Layer): void {
     this.layers.put(layer);
     this.layers.select(layer);
@@ -473,12 +468,15 @@ export class OpenModelSession implements ModelSession {
     if (this.tools.active !== "brush" && !this.isLocked(layer)) this.tools.choose("brush");
   }
 
-  /** What was computed does not cover what others look at: who made it sees it at once. */
+  /**
+   * A new computed layer is hidden by default, so that it does not cover other people's view; its
+   * author sees it at once.
+   */
   private showToMaker(layer: Layer): void {
     if (!this.layers.visible(layer)) this.layers.setVisible(layer, true);
   }
 
-  /** Layers that work made for this person: the first is what they look at next. */
+  /** Shows layers that a job made for this person, and selects the first one. */
   showMade(ids: readonly number[]): void {
     const layer = this.layers.find(ids[0] ?? null);
     if (layer) this.layers.select(layer);
@@ -504,8 +502,7 @@ export class OpenModelSession implements ModelSession {
     return this._model.shownUnit;
   }
 
-  // ── messages
-  // ──────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── messages ───────────────────────────────────────────────────────────────────────────────────
 
   private onState(state: ConnectionState): void {
     this.connectionState = state;
@@ -523,7 +520,7 @@ export class OpenModelSession implements ModelSession {
     this.changed();
   }
 
-  /** A refused socket does not say why; the same question over HTTP does. */
+  /** A refused socket gives no reason; the same request over HTTP does. */
   private async findWhyLost(): Promise<void> {
     try {
       await this._model.read();
@@ -553,7 +550,7 @@ export class OpenModelSession implements ModelSession {
     this.changed("saving");
   }
 
-  /** Once, and only when it takes long: usually all is saved in a moment. */
+  /** Once, and only if the saving takes long: usually it takes a moment. */
   private tellLeftBehind(): void {
     if (this._toldLeft || this.connectionState === "open") return;
     this._toldLeft = true;
@@ -597,7 +594,7 @@ export class OpenModelSession implements ModelSession {
     this.views.welcome(message.user);
   }
 
-  /** The brush is told as large as it is on the surface. */
+  /** The brush radius is sent as its size on the surface. */
   private shownAt(pointer: PointerSample | null): Shown {
     if (!pointer) return { pointer: null };
     const { active } = this.tools;
@@ -615,7 +612,7 @@ export class OpenModelSession implements ModelSession {
   }
 
   private reloadAfterChange(): void {
-    // with the version that changes need
+    // with the version that later changes need
     this.reloadModel().catch((error: unknown) => notices.error(error));
   }
 

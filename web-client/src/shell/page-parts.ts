@@ -1,6 +1,6 @@
-// Pieces of the page that are loaded when they are first shown, or once nothing else is to be done.
-// Their elements are rendered when they are here and not before: an element that is defined later
-// is connected before it has what was set on it.
+// Parts of the page that are loaded at their first use, or when the page is idle. Their elements
+// are rendered only after the load: an element that is defined later is connected before its
+// properties are set.
 
 import { notices } from "../ui/notices";
 import { texts } from "../texts";
@@ -16,7 +16,7 @@ export type PagePart =
   | "kiosks"
   | "preferences";
 
-/** The import of each. They are passed in, because a piece may ask for another one itself. */
+/** The import of each part. It is injected, because a part may request another one. */
 export type PartLoads = Readonly<Record<PagePart, () => Promise<unknown>>>;
 
 let loads: PartLoads;
@@ -38,9 +38,9 @@ function load(part: PagePart): Promise<void> {
 }
 
 /**
- * Whether it may be rendered. Where not, it is loaded, and `host` is rendered again when it is
- * here. Files of a build go with it: a page that was opened before an update of the server may miss
- * a piece, and is loaded anew by its person.
+ * Whether the part can be rendered. If not, it is loaded, and `host` is rendered again after that.
+ * Files belong to one build: a page from before an update of the server may miss a part, and its
+ * user must reload it.
  */
 export function hasPart(part: PagePart, host: { requestUpdate(): void }): boolean {
   if (here.has(part)) return true;
@@ -59,12 +59,12 @@ export function hasPart(part: PagePart, host: { requestUpdate(): void }): boolea
   return false;
 }
 
-/** What a part that is here exports. */
+/** The exports of a loaded part. */
 export const partOf = (part: PagePart): unknown => here.get(part);
 
 /**
- * Loads it while the person looks at something else. Nothing is said when it fails: it is asked for
- * again when it is needed.
+ * Loads a part when the page is idle. A failure is not reported: the part is requested again when
+ * it is needed.
  */
 export function loadPartLater(part: PagePart): void {
   const begin = (): void => {

@@ -1,22 +1,22 @@
-// A bar between two parts of a window: dragged, or moved by arrow keys, it gives one of them its
-// size, which the browser keeps.
+// A bar between two parts of a window: dragging it or the arrow keys set the size of one part,
+// which the browser keeps.
 
 import { html, nothing, type ReactiveControllerHost, type TemplateResult } from "lit";
 
-const kStep = 20; // of an arrow key
+const kStep = 20; // by an arrow key
 
 export interface SplitterOptions {
   label: string;
-  /** By this name the size is kept. */
+  /** Key of the stored size. */
   key: string;
   first: number;
   least: number;
   most(): number;
-  /** What a screen reader is told of the largest size. */
+  /** The largest size, for screen readers. */
   largest?: number;
-  /** The bar lies across the window: its part is below it, else at its right. */
+  /** The bar is horizontal, with its part below; otherwise vertical, with its part at the right. */
   isAcross?: boolean;
-  /** The size when the bar is at the pointer. */
+  /** The size for a bar at the pointer. */
   sizeAt(pointer: PointerEvent): number;
 }
 

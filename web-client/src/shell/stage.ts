@@ -1,5 +1,5 @@
-// <strata-stage>: the streamed picture, the pointer's gestures, and what is drawn over it: brush
-// footprint, other people's pointers, scale bar.
+// <strata-stage>: the streamed picture, the pointer's gestures, and the overlay: brush footprint,
+// pointers of other participants, scale bar.
 
 import { css, html, LitElement, nothing, svg, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -84,7 +84,7 @@ export class StrataStage extends LitElement {
         pointer-events: none;
       }
       canvas {
-        object-fit: contain; /* while a picture of the new size is on its way after the stage was resized */
+        object-fit: contain; /* until a picture of the new size arrives after a resize */
       }
       svg.over {
         overflow: visible;
@@ -152,7 +152,7 @@ export class StrataStage extends LitElement {
           left: 12px;
         }
         .scale.lowered {
-          top: 44px; /* beneath the label of <strata-together-bar> */
+          top: 44px; /* below the label of <strata-together-bar> */
         }
       }
     `,
@@ -189,7 +189,7 @@ export class StrataStage extends LitElement {
     if (this._input) this._input.orbitHeld = held;
   }
 
-  /** What the canvas shows is told in its data attributes, for tests and tools. */
+  /** Data attributes describe the canvas, for tests and tools. */
   private onDrawn(part: FrameMessage): void {
     this.session.frameDrawn(part);
     const { dataset } = this._canvas;
@@ -245,7 +245,7 @@ export class StrataStage extends LitElement {
       }`;
   }
 
-  /** The footprint in the picture: what the stroke covers, to the pixel. */
+  /** The footprint in the picture: exactly the pixels that the stroke covers. */
   private brushCursor(): TemplateResult {
     const { session } = this;
     const { at } = session.pointer;
@@ -284,7 +284,10 @@ export class StrataStage extends LitElement {
     </svg>`;
   }
 
-  /** The same for a shape of a picture: a tint with a dark rim, in the layer's colour or clear. */
+  /**
+   * The same for a shape from a picture: a tint with a dark rim, in the layer's color or
+   * transparent.
+   */
   private shapeCursor(
     tool: number,
     x: number,

@@ -1,5 +1,5 @@
-// <strata-app>: who is signed in, which page the address names, and what all pages share: scans
-// dropped anywhere, and changes that still wait to be saved.
+// <strata-app>: the signed-in user, the page of the address, and functions of all pages: import of
+// dropped scans, and the report of unsaved changes.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, state } from "lit/decorators.js";
@@ -58,7 +58,7 @@ export class StrataApp extends LitElement {
   @state() private _route: Route = routeOf(pathNow());
   @state() private _me: Me | null = null;
   @state() private _projects: readonly Project[] = [];
-  @state() private _chosenProject = ""; // for imports
+  @state() private _chosenProject = ""; // slug for imports
   @state() private _session: "unknown" | "signed-in" | "signed-out" | "unreachable" = "unknown";
   @state() private _problem = "";
   @state() private _dialog: "account" | "people" | "kiosks" | "preferences" | null = null;
@@ -141,20 +141,20 @@ export class StrataApp extends LitElement {
     this._me = me;
   }
 
-  /** Others may have changed what this person may do, or signed them out. */
+  /** This person's role may have changed, or the session may have ended. */
   private readonly refreshMe = async (): Promise<void> => {
     if (this._session !== "signed-in") return;
     try {
       await this.takeMe(await this._api.json("GET /me"));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (error.status === 401) this.signedOut(); // anything else is told where it matters
+      if (error.status === 401) this.signedOut(); // others are reported where they matter
     }
   };
 
   /**
-   * `next`: where what was changed is seen. It is gone to with nothing to come back to from there
-   * where the place itself is gone.
+   * `next`: the page that shows the change. If the current page was deleted, it replaces the
+   * history entry.
    */
   private async takeProjects(next: string | null): Promise<void> {
     await this.refreshMe();
@@ -187,7 +187,7 @@ export class StrataApp extends LitElement {
       await this._api.send("POST /logout");
     } catch (error) {
       if (!(error instanceof ApiError) || error.status !== 401) {
-        notices.error(error); // nobody must think that they are signed out while they are not
+        notices.error(error); // the page must not look signed out if the user is not
         return;
       }
     }
@@ -219,10 +219,10 @@ export class StrataApp extends LitElement {
     }
     const isModel = this._route.page === "model";
     if (!hasPart(isModel ? "model" : "home", this)) return nothing;
-    if (!isModel) loadPartLater("model"); // most people open one
+    if (!isModel) loadPartLater("model"); // most people open a model next
     return this._route.page === "model"
       ? keyed(
-          this._route.model, // everything of a model page belongs to its one model
+          this._route.model, // no state is shared between models
           html`<strata-model-page
             .api=${this._api}
             .me=${me}
@@ -262,7 +262,7 @@ export class StrataApp extends LitElement {
         .me=${me}
         @sign-out=${this.signOut}
         @joined=${() => {
-          replaceAddress("/"); // the secret is used up, and none of the history's business
+          replaceAddress("/"); // removes the used secret from the history
           void this.checkSession();
         }}
       ></strata-join-page>`,
@@ -299,14 +299,11 @@ export class StrataApp extends LitElement {
     return this.into ? null : texts.import.not_allowed;
   }
 
-  /** Where they may import scans. */
+  /** Projects in which the person can import scans. */
   private get curated(): readonly Project[] {
     return this._projects.filter(curates);
   }
-  /**
-   * The project that scans are imported into, which is the one that is looked at; null: they may
-   * not import.
-   */
+  /** The project for imports, which is the open one; null: imports are not allowed. */
   private get into(): Project | null {
     const bySlug = (slug: string): Project | undefined =>
       this.curated.find((project) => project.slug === slug);
@@ -345,7 +342,7 @@ export class StrataApp extends LitElement {
     this._imported += 1;
     if (problem && this._route.page !== "home") notices.problem(problem); // the home page lists it
     if (model === null) return;
-    // a person at work on another model is not carried off
+    // does not interrupt work on another model
     const opens = alone && this._route.page === "home";
     const link = { href: pathOfModel(model), label: texts.import.open };
     notices.show("success", texts.import.ready(name), "", opens ? null : link);
@@ -360,9 +357,9 @@ export class StrataApp extends LitElement {
   };
   private readonly onDragOver = (event: DragEvent): void => {
     if (!hasFiles(event)) return;
-    // something on the page may take the file itself
+    // an element of the page may take the file
     this._dropping = !event.defaultPrevented && this.importRefusal === null;
-    event.preventDefault(); // else the browser opens the file in place of the page
+    event.preventDefault(); // otherwise the browser opens the file instead of the page
   };
   private readonly onDragLeave = (): void => {
     this._dragDepth = Math.max(0, this._dragDepth - 1);

@@ -14,7 +14,7 @@ import { texts } from "../texts";
 import type { StepName } from "../features/onboarding/onboarding-steps";
 
 const kTools = Object.entries(kToolKeys) as [keyof typeof kToolKeys, string][];
-/** What a step of the tour speaks of. */
+/** The steps of the tour for tools. */
 const kOfTour: Partial<Record<ToolName, StepName>> = { brush: "brush", pick: "values" };
 const kViews: StandardView[] = ["front", "back", "left", "right", "top", "bottom"];
 
@@ -79,13 +79,13 @@ export class StrataToolRail extends LitElement {
           --fade: 2.125rem;
           --from: 0px;
           --to: 0px;
-          --turns: 0px; /* room of what does not scroll */
-          scroll-padding-inline: var(--fade) calc(var(--fade) + var(--turns)); /* a button that the keyboard comes to is seen whole */
+          --turns: 0px; /* width of the fixed part */
+          scroll-padding-inline: var(--fade) calc(var(--fade) + var(--turns)); /* focus in view */
         }
         :host([paints]) {
           --turns: calc(2 * 2.75rem + 1.125rem);
         }
-        /* What was painted can be taken back at any time: these stay while the tools scroll beneath them. */
+        /* Undo and redo are always needed: they stay while the tools scroll below them. */
         .turns {
           position: sticky;
           z-index: 1;
@@ -204,7 +204,7 @@ export class StrataToolRail extends LitElement {
       </strata-menu>`;
   }
 
-  /** Lines and points have their tools where the layer's table has columns of them. */
+  /** Whether the tool is shown: line and point only if the layer's table has columns for them. */
   private shows(name: ToolName): boolean {
     const { session } = this;
     if (kChangingTools.includes(name) && !session.canPaint) return false;

@@ -1,8 +1,8 @@
-// Numbers of things, in the plural that the language has for them.
+// Numbers of items, with the language's plural forms.
 
 import { formatCount, pageLocale } from "../core/locale";
 
-/** `many`: what some languages take for millions ("1.000.000 de capas"). */
+/** `many`: the form for millions in some languages ("1.000.000 de capas"). */
 export function plural(n: number, one: string, other: string, many = other): string {
   const rule = new Intl.PluralRules(pageLocale()).select(n);
   return rule === "one" ? one : rule === "many" ? many : other;

@@ -1,16 +1,16 @@
-// Every word the page shows, in the language of this person. What the server says (problems, steps
-// of work) is English, whatever the page's language.
+// All texts of the page, in this person's language. Texts of the server (problems, steps of jobs)
+// are English in every language.
 //
-// English is the measure: `Texts` (`shape.ts`) is made from it, so a translation that lacks a text, has one too
-// many or takes other arguments does not compile.
+// English is the reference: `Texts` (`shape.ts`) is derived from it, so a translation that misses a
+// text, has an extra one or takes other arguments does not compile.
 
 import { setLocale, type PageLanguage } from "../core/locale";
 import { sayOwnProblemsIn } from "../core/problems";
 import type { Texts } from "./shape";
 
 /**
- * How many arguments each text takes. TypeScript lets a function leave out arguments; a translation
- * that does has lost something.
+ * The number of arguments of each text. TypeScript allows a function to omit arguments; a
+ * translation that omits one has lost information.
  */
 type Arity<T> = T extends (...args: infer Arguments) => unknown
   ? Arguments["length"]
@@ -29,13 +29,10 @@ const loads: Record<PageLanguage, () => Promise<{ texts: Texts }>> = {
   es: loadEs,
 };
 
-/** Set by loadTexts(), which comes before the import of everything that shows words. */
+/** Set by loadTexts(), which runs before the import of all modules that show texts. */
 export let texts: Texts;
 
-/**
- * Loads the words of that language, and of no other. `chosen`: by the person, not by the languages
- * of their browser.
- */
+/** Loads the texts of one language. `chosen`: by the user, not by the browser's languages. */
 export async function loadTexts(
   language: PageLanguage,
   chosen: boolean,

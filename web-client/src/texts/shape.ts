@@ -1,8 +1,8 @@
-// The shape of the texts of the page. English is the measure.
+// The shape of the page's texts, derived from English.
 
 /**
- * The shape of the texts without their words. Lists keep their length: each line of the help is
- * there in each language.
+ * The shape of the texts without their wording. Lists keep their length: each line of the help
+ * exists in each language.
  */
 type Shape<T> = T extends string
   ? string

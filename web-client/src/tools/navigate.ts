@@ -1,25 +1,25 @@
-// Orbit and pan with the tool's button.
+// Rotates and pans with the tool's button.
 
 import type { PointerSample } from "../ui/input";
 import type { Tool } from "./tool";
 
-/** What moves the camera and tells the server. */
+/** Moves the camera and reports it to the server. */
 export interface Navigator {
   orbit(dx: number, dy: number): void;
   pan(dx: number, dy: number): void;
-  /** Pressed and let go in one place. */
+  /** A press and release at one place. */
   tap(sample: PointerSample): void;
 }
 
-const kTapReach = 7; // window pixels that a hand with a mouse or pen trembles
+const kTapReach = 7; // window pixels of movement by a hand with a mouse or pen
 
 export abstract class DragTool {
   private _last: PointerSample | null = null;
-  private _start: PointerSample | null = null; // null: it was dragged away from there
+  private _start: PointerSample | null = null; // null: dragged out of reach
 
   constructor(
     protected readonly _navigator: Navigator,
-    /** Window pixels from where it was pressed that are still a tap. */
+    /** Window pixels from the press within which a release is a tap. */
     private readonly _tapReach: () => number = () => kTapReach,
   ) {}
 

@@ -1,5 +1,5 @@
-// Polygon and lasso: an outline in the picture, whose inside is painted. While one is drawn the
-// camera stays, because its points are pixels of the camera that it began with. Lines are drawn the
+// Polygon and lasso: an outline in the picture whose inside is painted. During drawing the camera
+// stays fixed, because the points are pixels of the camera at the start. Lines are drawn in the
 // same way.
 
 import type { Point } from "../net/stroke";
@@ -7,11 +7,11 @@ import type { PointerSample } from "../ui/input";
 import type { Outline, Tool } from "./tool";
 
 export interface OutlineHost {
-  /** False when there is nothing to paint on; the host has then told the person why. */
+  /** Returns false if nothing can be painted; the host has then shown the reason. */
   beginOutline(): boolean;
-  /** Of an area at least three points, of a line two. */
+  /** An area has at least three points, a line two. */
   finishOutline(path: Point[]): void;
-  /** After `beginOutline` returned true, finished or given up. */
+  /** Called after `beginOutline` returned true, when the outline was finished or canceled. */
   outlineEnded(): void;
   /** Window pixels per CSS pixel. */
   scale(): number;
@@ -19,7 +19,7 @@ export interface OutlineHost {
 }
 
 export const kMostPoints = 4096;
-export const kSnapPx = 11; // CSS pixels: so near a press counts as on a point
+export const kSnapPx = 11; // CSS pixels within which a press counts as on a point
 const kSpacingPx = 2; // CSS pixels
 
 export abstract class OutlineTool {
@@ -51,7 +51,7 @@ export abstract class OutlineTool {
     return true;
   }
 
-  /** Goes on to where the pointer was dragged. */
+  /** Continues the outline along the drag. */
   protected follow(samples: PointerSample[]): void {
     for (const { x, y } of samples) {
       const [lastX, lastY] = this.points[this.points.length - 1]!;
@@ -82,7 +82,7 @@ export abstract class OutlineTool {
   }
 }
 
-/** A drag goes round what is to be painted. */
+/** A drag around the area to paint. */
 export class LassoTool extends OutlineTool implements Tool {
   readonly name = "lasso";
 
@@ -107,7 +107,7 @@ export class LassoTool extends OutlineTool implements Tool {
   }
 }
 
-/** Of one that is pressed place by place, to which the pointer leads on. */
+/** For an outline set click by click, with a segment to the pointer. */
 export abstract class PlacesTool extends OutlineTool {
   protected pointer: Point | null = null;
 
@@ -128,7 +128,7 @@ export abstract class PlacesTool extends OutlineTool {
   protected enter(): void {
     this.finish();
   }
-  /** To so many places. */
+  /** Keeps the first `points` places. */
   protected takeBack(points: number): void {
     if (points < 1) {
       this.giveUp();
@@ -139,10 +139,13 @@ export abstract class PlacesTool extends OutlineTool {
   }
 }
 
-/** A press sets a corner; one on the first corner, a second one on the last, or Enter closes. */
+/**
+ * A click sets a corner; a click on the first corner, a second one on the last, or Enter closes the
+ * polygon.
+ */
 export class PolygonTool extends PlacesTool implements Tool {
   readonly name = "polygon";
-  private _added = false; // by the press that is under way
+  private _added = false; // by the current press
 
   override get outline(): Outline | null {
     if (this.points.length === 0) return null;
@@ -180,7 +183,7 @@ export class PolygonTool extends PlacesTool implements Tool {
   }
   up(): void {}
 
-  /** A second finger came: its first one's press was none. */
+  /** A second finger touched: the press of the first one is undone. */
   cancel(): void {
     if (this._added) this.takeBack(this.points.length - 1);
     this._added = false;

@@ -1,4 +1,4 @@
-// Keeps one tool active, and sends it the stage's drags.
+// Keeps one tool active, and sends the stage's drags to it.
 
 import type { PointerSample } from "../ui/input";
 import type { Outline } from "./tool";
@@ -7,7 +7,7 @@ import type { Tool, ToolName } from "./tool";
 export class ToolManager {
   private readonly _tools = new Map<ToolName, Tool>();
   private _active: Tool;
-  private _before: Tool | null = null; // that another one is borrowed in place of
+  private _before: Tool | null = null; // the chosen tool while another one is borrowed
   private _dragging = false;
 
   constructor(
@@ -35,7 +35,7 @@ export class ToolManager {
     this._changed(name);
   }
 
-  /** For one thing in between: the chosen tool stays as it is meanwhile. */
+  /** Activates another tool temporarily; the chosen tool is kept. */
   borrow(name: ToolName): void {
     if (this._before) return;
     this.cancel();
@@ -45,7 +45,7 @@ export class ToolManager {
     this._changed(name);
   }
 
-  /** The chosen tool is in hand again. */
+  /** Returns to the chosen tool. */
   giveBack(): void {
     const { _before: before, _active: borrowed } = this;
     if (!before) return;
@@ -68,7 +68,7 @@ export class ToolManager {
     return this._active.key?.(key) ?? false;
   }
 
-  /** Ends what is under way. */
+  /** Cancels the current action. */
   stop(): void {
     this.cancel();
     this.giveBack();

@@ -1,4 +1,4 @@
-// A tool is what the left button, the pen or one finger does on the stage.
+// A tool handles the left button, the pen or one finger on the stage.
 
 import type { PointerSample } from "../ui/input";
 import type { Point } from "../net/stroke";
@@ -18,7 +18,7 @@ export type ToolName =
   | "measure"
   | "face";
 
-/** The tools of the rail, in its order, with the keys that choose them. */
+/** The tools of the tool rail, in its order, with their keys. */
 export const kToolKeys: Readonly<Record<Exclude<ToolName, "face">, string>> = {
   orbit: "V",
   pan: "H",
@@ -33,9 +33,9 @@ export const kToolKeys: Readonly<Record<Exclude<ToolName, "face">, string>> = {
   measure: "M",
   comment: "C",
 };
-/** Those that add to a record of the layer's table. */
+/** Tools that add to a record of the layer's table. */
 export const kMarkingTools: readonly ToolName[] = ["line", "point"];
-/** Those that change what a layer shows. */
+/** Tools that change the content of a layer. */
 export const kPaintingTools: readonly ToolName[] = [
   "brush",
   "eraser",
@@ -44,7 +44,7 @@ export const kPaintingTools: readonly ToolName[] = [
   "bucket",
   ...kMarkingTools,
 ];
-/** Those of whoever may do more than look. */
+/** Tools for people with more rights than a viewer. */
 export const kChangingTools: readonly ToolName[] = [...kPaintingTools, "comment"];
 
 export interface Tool {
@@ -54,25 +54,25 @@ export interface Tool {
   down(sample: PointerSample): void;
   move(samples: PointerSample[]): void;
   up(): void;
-  /** Ends what `down` began without finishing it. */
+  /** Ends the action of `down` without finishing it. */
   cancel(): void;
-  /** The pointer moves with nothing pressed; null: it left. */
+  /** The pointer moves without a pressed button; null: it left. */
   hover?(sample: PointerSample | null): void;
-  /** False when the key means nothing to it now. */
+  /** Returns false if the tool does not use the key now. */
   key?(key: string): boolean;
-  /** What it has drawn so far. */
+  /** The current drawing. */
   readonly outline?: Outline | null;
 }
 
-/** What is drawn over the picture. */
+/** A drawing over the picture. */
 export interface Outline {
   points: readonly Point[];
-  /** Those that were pressed one by one. */
+  /** Points that were clicked one by one. */
   corners: readonly Point[];
-  /** Where the pointer is, if a line leads there. */
+  /** The pointer's position, if a segment leads to it. */
   pointer: Point | null;
-  /** The next press at the first point closes it. */
+  /** A click at the first point closes it. */
   closable: boolean;
-  /** It goes round an area; otherwise it is a line. */
+  /** Whether it encloses an area; otherwise it is a line. */
   area: boolean;
 }

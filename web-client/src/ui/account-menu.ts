@@ -1,5 +1,5 @@
-// <strata-account-menu>: the initials of who is signed in, and what they can ask for. Others hear
-// of it by the event "account".
+// <strata-account-menu>: the initials of the signed-in user, and a menu of account commands. The
+// event "account" reports the chosen one.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -13,7 +13,7 @@ import { texts } from "../texts";
 
 export type AccountRequest = "account" | "people" | "kiosks" | "preferences" | "sign-out";
 
-/** To whatever element of the page takes it. */
+/** Bubbles to the element of the page that handles it. */
 export const askAccount = (from: EventTarget, detail: AccountRequest): boolean =>
   from.dispatchEvent(
     new CustomEvent<AccountRequest>("account", { detail, bubbles: true, composed: true }),
@@ -22,7 +22,7 @@ export const askAccount = (from: EventTarget, detail: AccountRequest): boolean =
 @customElement("strata-account-menu")
 export class StrataAccountMenu extends LitElement {
   @property({ attribute: false }) me!: Me;
-  /** They see to links for kiosks. */
+  /** Whether the user can manage links for kiosks. */
   @property({ type: Boolean }) kiosks = false;
 
   static override styles = [
@@ -76,6 +76,7 @@ export class StrataAccountMenu extends LitElement {
           : nothing
       }
       <button class="quiet" role="menuitem" @click=${() => askAccount(this, "preferences")}>${icon("language")}${texts.settings.open}</button>
+      <button class="quiet" role="menuitem" @click=${() => window.open("/guide/", "_blank", "noopener")}>${icon("book")}${texts.help.guide}</button>
       <hr />
       <button class="quiet" role="menuitem" @click=${() => askAccount(this, "sign-out")}>${icon("leave")}${words.sign_out}</button>
     </strata-menu>`;

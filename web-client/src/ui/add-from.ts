@@ -1,4 +1,4 @@
-// One of several things is chosen, and a button adds it to those that are there.
+// A choice of several items with a button that adds the chosen one.
 
 import { css, html, type TemplateResult } from "lit";
 import { icon } from "./icons";
@@ -16,7 +16,7 @@ export const addFromStyles = css`
   }
 `;
 
-/** `label`: of the choice, and on the button. */
+/** `label`: of the choice and of the button. */
 export function addFrom(
   label: string,
   options: readonly { value: string; name: string }[],

@@ -1,5 +1,4 @@
-// Where something that tells of the place under the pointer goes, so that it lies beside that place
-// and not over it.
+// Places a box with information about a place next to the place, so that the box does not cover it.
 
 export interface Size {
   width: number;
@@ -7,8 +6,8 @@ export interface Size {
 }
 
 /**
- * Top left of a box within a frame: to the right of the place or else to its left, or else below or
- * above it. Null: nowhere without covering it.
+ * Top left corner of a box in a frame: right of the place, else left, else below or above it. Null:
+ * each position covers it.
  */
 export function beside(
   [x, y]: readonly [number, number],
@@ -33,9 +32,9 @@ export interface Box extends Size {
 }
 
 /**
- * Top left of a box beside a bar, at the height (or width) of a thing in that bar: to its right,
- * left, below or above it, wherever it fits first. Where it fits nowhere it gets the larger room
- * below or above, and is `mostHeight` high at most.
+ * Top left corner of a box next to a bar, at the height (or width) of an element in that bar:
+ * right, left, below or above, at the first position that fits. If none fits, the box gets the
+ * larger room of below and above, with at most `mostHeight`.
  */
 export function besideBar(
   thing: Box,

@@ -1,4 +1,4 @@
-// <strata-copy-field>: a text to be taken along, with a button that copies it.
+// <strata-copy-field>: a text to copy, with a button that copies it.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -10,7 +10,7 @@ import { texts } from "../texts";
 export class StrataCopyField extends LitElement {
   @property() label = "";
   @property() text = "";
-  /** Takes the keyboard as it comes: it stands where a form was that is done. */
+  /** Takes the keyboard focus at the start, because it replaces a finished form. */
   @property({ attribute: "follows_form", type: Boolean }) followsForm = false;
   @state() private _told = "";
   @query("input") private _input!: HTMLInputElement;
@@ -19,7 +19,7 @@ export class StrataCopyField extends LitElement {
     sharedStyles,
     css`
       :host {
-        position: relative; /* of what is hidden for eyes */
+        position: relative; /* for visually hidden content */
         display: flex;
         gap: 0.5rem;
       }
@@ -49,15 +49,15 @@ export class StrataCopyField extends LitElement {
   private async copy(): Promise<void> {
     const copied = await copyText(this.text, () => {
       this._input.select();
-      return () => {}; // it stays selected for who copies by hand
+      return () => {}; // keeps the selection for manual copying
     });
     this._told = copied ? texts.copy.copied : texts.copy.by_hand;
   }
 }
 
 /**
- * Returns whether the browser took it. `select`: selects the text in the page, which also works
- * where the page came by plain HTTP; returns what lets go of it.
+ * Returns whether the text was copied. `select`: selects the text in the page, which also works
+ * over plain HTTP; returns a function that removes the selection.
  */
 export async function copyText(text: string, select: () => () => void): Promise<boolean> {
   const bySelection = (): boolean => {

@@ -1,5 +1,5 @@
-// <strata-dialog>: a modal sheet with a heading, content and a row of buttons: the way out of it,
-// then what it does (slot "actions").
+// <strata-dialog>: a modal dialog with a heading, content and a row of buttons: first the one that
+// leaves it, then its actions (slot "actions").
 
 import { css, html, LitElement, nothing, ReactiveElement, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -10,47 +10,49 @@ import { texts } from "../texts";
 
 const openDialogs = new Set<HTMLDialogElement>();
 
-/**
- * Keys that reach the page while a dialog is open, because nothing in it has the focus, are not for
- * the page.
- */
+/** Keys that reach the page while a dialog is open without focus are not shortcuts of the page. */
 export const modalIsOpen = (): boolean => openDialogs.size > 0;
 
 const dockedDialogs = new Set<HTMLDialogElement>();
 
-/** A dialog stands beside the picture: the page goes on, but nothing else asks for attention. */
+/**
+ * A dialog next to the picture is open: the page stays usable, but shows nothing that demands
+ * attention.
+ */
 export const dockedIsOpen = (): boolean => dockedDialogs.size > 0;
 
 @customElement("strata-dialog")
 export class StrataDialog extends LitElement {
   @property() heading = "";
-  /** What the button says that leaves it as it is; empty: only the cross does. */
+  /**
+   * Text of the button that leaves the dialog without a change; empty: only the cross closes it.
+   */
   @property({ attribute: "way_out" }) wayOut = "";
   @property({ type: Boolean, reflect: true }) wide = false;
   /** For tables. */
   @property({ type: Boolean, reflect: true }) broad = false;
   /** For an editor of many parts. */
   @property({ type: Boolean, reflect: true }) vast = false;
-  /** Holds words to read and hardly a control: it is scrolled by keys as well. */
+  /** Mostly text and hardly a control: keys also scroll it. */
   @property({ type: Boolean }) prose = false;
-  /** Has so much to read that it stands in two columns on walls. */
+  /** Long text: two columns on wall displays. */
   @property({ type: Boolean, reflect: true }) long = false;
-  /** Leaves the picture behind it visible: for questions about what is seen. */
+  /** Keeps the picture behind it visible, for questions about it. */
   @property({ type: Boolean, reflect: true }) aside = false;
   /**
-   * Stands beside the picture, which is neither dimmed nor out of reach: for questions that one
-   * answers by looking at the model.
+   * Placed next to the picture, which is neither dimmed nor blocked: for questions that need a look
+   * at the model.
    */
   @property({ type: Boolean, reflect: true }) docked = false;
   /**
-   * Asked before a person closes it by Escape, its cross or beside it; null: it closes. close()
-   * does not ask.
+   * Called before a person closes the dialog by Escape, its cross or a click outside; null: it
+   * closes. close() does not call it.
    */
   @property({ attribute: false }) mayClose: (() => Promise<boolean>) | null = null;
-  @state() private _acts = false; // has buttons of its own
+  @state() private _acts = false; // the "actions" slot has buttons
   private _asking = false;
-  private _closes = false; // what closes it was asked, or need not ask
-  private _used = false; // by keys or the pointer
+  private _closes = false; // `mayClose` agreed, or is not needed
+  private _used = false; // with keys or the pointer
 
   @query("dialog") private _dialog!: HTMLDialogElement;
   @query(".content") private _content!: HTMLElement;
@@ -69,7 +71,7 @@ export class StrataDialog extends LitElement {
         background: var(--surface);
         color: var(--ink);
         box-shadow: var(--shadow);
-        outline: none; /* it has the keyboard where nothing in it takes any */
+        outline: none; /* focused when no content is focusable */
       }
       dialog[open] {
         display: flex;
@@ -126,7 +128,7 @@ export class StrataDialog extends LitElement {
         outline-offset: -2px;
       }
       .content.begun:focus-visible {
-        outline: none; /* it was opened a moment ago: what has the keyboard is the whole of it */
+        outline: none; /* just opened: the focused element is the whole content */
       }
       footer {
         display: flex;
@@ -163,7 +165,7 @@ export class StrataDialog extends LitElement {
         }
         :host([docked]) dialog {
           inset: auto 0 0 0;
-          max-height: 62dvh; /* what it asks about is seen above it */
+          max-height: 62dvh; /* the subject stays visible above it */
         }
       }
     `,
@@ -181,8 +183,8 @@ export class StrataDialog extends LitElement {
   }
 
   /**
-   * Where the keyboard begins: what asks for it, or else the first control, or the way out; never
-   * the cross, which is the browser's choice.
+   * Sets the initial focus: to the element that requests it, else to the first control, else to the
+   * way out; never to the cross, the browser's default.
    */
   private async begin(): Promise<void> {
     const asks = this.querySelector<HTMLElement>("[autofocus]");
@@ -193,7 +195,7 @@ export class StrataDialog extends LitElement {
     (first && !opensKeyboard(first) ? first : this._dialog).focus();
   }
 
-  /** What it had to ask the server for has come. */
+  /** Content from the server has arrived. */
   private onContent(): void {
     if (!this._used && this._dialog.open) void this.begin();
   }
@@ -204,13 +206,13 @@ export class StrataDialog extends LitElement {
     dockedDialogs.delete(this._dialog);
   }
 
-  /** Closes and tells: the owner removes the element on "closed". */
+  /** Closes and fires "closed", on which the owner removes the element. */
   close(): void {
     this._closes = true;
     this._dialog.close();
   }
 
-  /** As a person closes it. */
+  /** Closes as on a person's request. */
   async leave(): Promise<void> {
     if (this._asking) return;
     this._asking = true;
@@ -225,7 +227,7 @@ export class StrataDialog extends LitElement {
     const used = (): void => void (this._used = true);
     const onKey = (event: KeyboardEvent): void => {
       used();
-      // of others the browser takes care
+      // the browser handles other dialogs
       if (!this.docked || event.key !== "Escape" || event.defaultPrevented) return;
       event.preventDefault();
       event.stopPropagation();
@@ -270,7 +272,7 @@ export class StrataDialog extends LitElement {
   }
 
   private onCancel(event: Event): void {
-    // a file field, too, tells that nothing was chosen
+    // a file field also fires "cancel"
     if (!this.mayClose || event.target !== this._dialog) return;
     event.preventDefault();
     void this.leave();
@@ -278,7 +280,7 @@ export class StrataDialog extends LitElement {
 
   private onClose(): void {
     if (this.mayClose && !this._closes) {
-      this._dialog.showModal(); // browsers close it at a second Escape whatever the page says
+      this._dialog.showModal(); // browsers close it at a second Escape, even against the page
       void this.leave();
       return;
     }
@@ -294,9 +296,7 @@ export class StrataDialog extends LitElement {
 
 const kStops = "a[href], button, input, select, textarea, summary, [tabindex]";
 
-/**
- * The first control that the Tab key reaches in it, within elements of their own and slots, too.
- */
+/** The first control in Tab order, including shadow roots and slots. */
 async function firstStop(root: Element): Promise<HTMLElement | null> {
   const isStop =
     root instanceof HTMLElement &&
@@ -315,11 +315,11 @@ async function firstStop(root: Element): Promise<HTMLElement | null> {
   return null;
 }
 
-/** On touch screens fields bring up a keyboard that covers half of the dialog. */
+/** On touch screens, a focused field opens a keyboard that covers half of the dialog. */
 const opensKeyboard = (element: HTMLElement): boolean =>
   hasFingers() && element.matches("input[type=text], input[type=password], textarea");
 
-/** A question with two answers; asked by ask(). */
+/** A question with two answers, for ask(). */
 @customElement("strata-question")
 class StrataQuestion extends LitElement {
   @property() heading = "";
@@ -368,7 +368,7 @@ export function ask(question: {
   });
 }
 
-/** A question for one line of text; asked by askText(). */
+/** A question for one line of text, for askText(). */
 @customElement("strata-text-question")
 class StrataTextQuestion extends LitElement {
   @property() heading = "";
@@ -407,7 +407,7 @@ class StrataTextQuestion extends LitElement {
   }
 }
 
-/** The text; null: none was given. */
+/** The text; null: canceled. */
 export function askText(question: {
   heading: string;
   label: string;

@@ -1,14 +1,14 @@
-// A row of a list that is dragged by its grip to another place. For the mouse; menus or buttons say
-// the same for keys and fingers.
+// Drags a row of a list by its grip to another place. For the mouse; menus or buttons do the same
+// for keys and fingers.
 
 import type { ReactiveController, ReactiveControllerHost } from "lit";
 
 export class DragOrder<Id extends number | string> implements ReactiveController {
   dragged: Id | null = null;
-  /** Index of the row that it would stand before. */
+  /** Index of the row after the drop position. */
   before: number | null = null;
 
-  /** `move`: from an index to one in the list without it. */
+  /** `move`: to an index of the list without the row. */
   constructor(
     private readonly _host: ReactiveControllerHost,
     private readonly _shown: () => readonly Id[],
@@ -21,7 +21,7 @@ export class DragOrder<Id extends number | string> implements ReactiveController
     this.dragged = this.before = null;
   }
 
-  /** Of a row, which has a mark where the dragged one would go. */
+  /** Classes of a row, with a mark at the drop position. */
   classes(id: Id, index: number): string {
     return `${this.dragged === id ? "dragged" : ""} ${this.before === index ? "drop-before" : ""}`;
   }

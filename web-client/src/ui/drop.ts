@@ -1,11 +1,10 @@
-// Files that a person drops, those in folders too, with the folders they lie in; and elements that
-// take them.
+// Dropped files, including those in folders with their paths; and elements that accept drops.
 
 import type { ReactiveController, ReactiveControllerHost } from "lit";
 
 export interface DroppedFile {
   file: File;
-  path: string; // with folders: files of one scan call each other by them
+  path: string; // with folders, by which files of one scan refer to each other
 }
 
 const kMostFiles = 2000;
@@ -16,7 +15,7 @@ export const withoutFolders = (files: readonly File[]): DroppedFile[] =>
 export const hasFiles = (event: DragEvent): boolean =>
   event.dataTransfer?.types.includes("Files") ?? false;
 
-/** Must be called while the event is handled: what it carries is gone afterwards. */
+/** Call this while the event is handled: its data are invalid afterwards. */
 export function droppedFiles(data: DataTransfer): Promise<DroppedFile[]> {
   const entries = [...data.items].map((item) => item.webkitGetAsEntry?.() ?? null);
   if (!entries.some((entry) => entry?.isDirectory))
@@ -28,7 +27,7 @@ async function allFiles(entries: FileSystemEntry[]): Promise<DroppedFile[]> {
   const found: DroppedFile[] = [];
   const waiting = [...entries];
   for (let entry = waiting.shift(); entry && found.length < kMostFiles; entry = waiting.shift()) {
-    if (entry.name.startsWith(".")) continue; // what systems hide among a person's files
+    if (entry.name.startsWith(".")) continue; // hidden system files
     if (entry.isDirectory) waiting.push(...(await entriesIn(entry as FileSystemDirectoryEntry)));
     else
       found.push({
@@ -42,7 +41,7 @@ async function allFiles(entries: FileSystemEntry[]): Promise<DroppedFile[]> {
 const fileOf = (entry: FileSystemFileEntry): Promise<File> =>
   new Promise((resolve, reject) => entry.file(resolve, reject));
 
-/** A reader gives a part at a time, and nothing at the end. */
+/** A reader returns one part at a time, and an empty one at the end. */
 async function entriesIn(folder: FileSystemDirectoryEntry): Promise<FileSystemEntry[]> {
   const reader = folder.createReader();
   const all: FileSystemEntry[] = [];
@@ -55,11 +54,11 @@ async function entriesIn(folder: FileSystemDirectoryEntry): Promise<FileSystemEn
   }
 }
 
-/** Makes an element a place for files. Of places within each other the innermost takes them. */
+/** Makes an element a drop target for files. Among nested targets the innermost one takes them. */
 export class FileDrop implements ReactiveController {
   private _over = false;
 
-  /** `may`: whether it takes any now; files that it does not take are for what is around it. */
+  /** `may`: whether it accepts files now; otherwise an outer target gets them. */
   constructor(
     private readonly _host: ReactiveControllerHost & EventTarget,
     private readonly _take: (files: File[]) => void,
@@ -71,7 +70,7 @@ export class FileDrop implements ReactiveController {
     _host.addEventListener("drop", (event) => this.onDrop(event as DragEvent));
   }
 
-  /** Files are held over it. */
+  /** Whether files are dragged over it. */
   get over(): boolean {
     return this._over;
   }

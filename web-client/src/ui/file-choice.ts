@@ -1,5 +1,5 @@
-// <strata-file-choice>: where a dialog takes files: a button, or they are dropped beside it. Tells
-// them by "files".
+// <strata-file-choice>: the files of a dialog: a button, and a drop target next to it. The event
+// "files" carries them.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -13,14 +13,14 @@ const words = texts.file_choice;
 
 @customElement("strata-file-choice")
 export class StrataFileChoice extends LitElement {
-  /** What is asked for, in words. */
+  /** A description of the expected files. */
   @property() label = "";
-  /** Endings, as an input takes them. */
+  /** File extensions, as in <input accept>. */
   @property() accept = "";
-  /** Files that belong together; otherwise the first one counts. */
+  /** Accepts files that belong together; otherwise the first one counts. */
   @property({ type: Boolean }) multiple = false;
   @property({ type: Boolean }) disabled = false;
-  /** That were taken so far. */
+  /** Names of the accepted files. */
   @property({ attribute: false }) names: readonly string[] = [];
   @query("input") private _input!: HTMLInputElement;
   private readonly _drop = new FileDrop(this, (files) => this.take(files));
@@ -87,7 +87,7 @@ export class StrataFileChoice extends LitElement {
 
   private readonly onChosen = (): void => {
     const files = [...(this._input.files ?? [])];
-    this._input.value = ""; // so that the same one, mended, can be chosen again
+    this._input.value = ""; // so that the same file can be chosen again after a correction
     this.take(files);
   };
 }

@@ -1,11 +1,10 @@
-// Words are larger in the windows of walls (page.css). What is laid out around them in pixels grows
-// with them.
+// Text is larger in the windows of wall displays (page.css). Pixel layouts around it scale with it.
 
 const kUsualSizePx = 16;
 
-/** How much larger than usual. */
+/** Ratio to the default size. */
 export const growth = (): number =>
   parseFloat(getComputedStyle(document.documentElement).fontSize) / kUsualSizePx;
 
-/** A length in pixels where words have their usual size, as CSS has it when it grows with them. */
+/** A CSS length that scales with the text, from pixels at the default text size. */
 export const growing = (lengthPx: number): string => `${lengthPx / kUsualSizePx}rem`;

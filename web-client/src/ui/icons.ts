@@ -1,4 +1,4 @@
-// Line drawings on a 24 × 24 grid; sized and coloured by the style `svg.glyph`.
+// Line drawings on a 24 × 24 grid; the style `svg.glyph` sets size and color.
 
 import { html, svg, type SVGTemplateResult, type TemplateResult } from "lit";
 
@@ -43,6 +43,7 @@ const shapes = {
   people: svg`<circle cx="9" cy="8.5" r="3.2" /><path d="M3 19.500c.3-3.6 2.7-5.5 6-5.500s5.7 1.9 6 5.500M15.5 5.600a3.2 3.2 0 0 1 0 5.800M17.5 14.400c2.1.7 3.3 2.4 3.5 5.1" />`,
   person: svg`<circle cx="12" cy="8.2" r="3.7" /><path d="M4.500 20c.4-4 3.3-6.200 7.500-6.200s7.100 2.200 7.500 6.200" />`,
   language: svg`<circle cx="12" cy="12" r="8.500" /><path d="M3.500 12h17M12 3.500c2.500 2.300 3.700 5.100 3.700 8.500s-1.200 6.200-3.700 8.500c-2.500-2.300-3.700-5.100-3.700-8.500s1.200-6.200 3.700-8.500Z" />`,
+  book: svg`<path d="M12 6.500C10 5 7.500 4.500 4 4.500v13.500c3.500 0 6 .5 8 2 2-1.500 4.500-2 8-2V4.500c-3.500 0-6 .5-8 2ZM12 6.500V20" />`,
   leave: svg`<path d="M13.500 4.500h-7a1.500 1.500 0 0 0-1.500 1.500v12a1.500 1.500 0 0 0 1.500 1.500h7M10 12h10.500M16.500 8l4 4-4 4" />`,
   lock: svg`<rect x="5.5" y="10.500" width="13" height="9.500" rx="2" /><path d="M8.500 10.500V8a3.500 3.500 0 0 1 7 0v2.500M12 14.200v2.200" />`,
   unlock: svg`<rect x="5.5" y="10.500" width="13" height="9.500" rx="2" /><path d="M8.500 10.500V7.500a3.500 3.500 0 0 1 6.800-1.200M12 14.200v2.200" />`,

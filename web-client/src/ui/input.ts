@@ -1,55 +1,56 @@
 // Mouse, touch and pen on the stage → gestures. Positions are window pixels of the camera (CSS
-// pixels × scale), not of the page. Knows nothing of tools: who listens decides what a drag of the
-// tool button means.
+// pixels × scale), not of the page. Independent of tools: the listener decides on the effect of a
+// drag with the tool button.
 //
 // A hand that holds a pen rests on the glass. While a pen touches or is in range, and for a moment
-// afterwards, touches are that hand: those that were there are dropped, new ones are not listened
-// to, and none of them counts before it was lifted. Once a pen has been used, fingers turn what the
-// pen paints.
+// afterwards, all touches count as that hand: existing ones are dropped, new ones ignored, each
+// until it is lifted. After the first use of a pen, only the pen paints and fingers rotate.
 
 export interface PointerSample {
   x: number;
   y: number;
-  /** Of a pen: 0…1. */
+  /** For a pen: 0…1. */
   pressure?: number;
 }
 
 export interface GestureHandler {
-  /** The tool's drag: left button, pen, or one finger. */
+  /** The tool's drag: left button, pen or one finger. */
   toolDown(sample: PointerSample): void;
   toolMove(samples: PointerSample[]): void;
   toolUp(): void;
-  /** A second finger came, or the system took the pointer away. What the tool did so far stands. */
+  /**
+   * A second finger touched, or the system canceled the pointer. The tool's work so far is kept.
+   */
   toolCancel(): void;
   orbit(dx: number, dy: number): void;
   pan(dx: number, dy: number): void;
-  /** factor < 1 comes nearer; (x, y) stays in place. */
+  /** factor < 1 zooms in; (x, y) stays in place. */
   zoom(factor: number, x: number, y: number): void;
-  /** Two fingers turned against each other, radians clockwise on the screen. */
+  /** Rotation by two fingers, radians clockwise on the screen. */
   twist(angle: number): void;
   hover(sample: PointerSample | null): void;
-  /** A mouse is there with nothing pressed; null: no longer, or something else points. */
+  /** A mouse moves without a pressed button; null: it left, or another pointer is in use. */
   freeMouse(sample: PointerSample | null): void;
-  /** Where a pen is in use it alone has this tool, and one finger turns instead. */
+  /** Whether only a pen can use the tool; then one finger rotates instead. */
   toolIsForPen(): boolean;
 }
 
 type Drag = "tool" | "orbit" | "pan";
 
-// A finger's tool starts once it has moved or rested so much: two fingers that land together then
-// paint no dab. A second one that comes later ends the stroke, which stays and can be undone.
+// A finger starts the tool after this movement or time, so that two fingers that touch together
+// paint nothing. A later second finger ends the stroke, which is kept and can be undone.
 const kTouchSlop = 6; // CSS pixels
 const kTouchDelayMs = 140;
-const kPenLingerMs = 400; // between two strokes a pen leaves, and the hand that holds it stays
-// a pen in range tells of itself all the time; one that does not has gone without a word
+const kPenLingerMs = 400; // between two strokes, the pen is lifted and the hand stays
+// a pen in range sends events all the time; without any, it has left without an event
 const kPenSilenceMs = 3000;
-const kWheelStep = 0.0016; // per pixel of scrolling
+const kWheelStep = 0.0016; // per scrolled pixel
 
 export class StageInput {
-  /** Held space turns the tool button into orbit. */
+  /** While space is pressed, the tool button rotates. */
   orbitHeld = false;
 
-  private readonly _pointers = new Map<number, PointerSample>(); // CSS pixels within the element
+  private readonly _pointers = new Map<number, PointerSample>(); // CSS pixels in the element
   private _drag: { kind: Drag; pointer: number; last: PointerSample } | null = null;
   private _waitingTouch: {
     pointer: number;
@@ -57,11 +58,11 @@ export class StageInput {
     timer: ReturnType<typeof setTimeout>;
   } | null = null;
   private _pinch: { distance: number; angle: number; middle: PointerSample } | null = null;
-  private _penNear = false; // or was just now
+  private _penNear = false; // in range now or a moment ago
   private _penTimer: ReturnType<typeof setTimeout> | null = null;
   private _penUsed = false;
-  private readonly _fingers = new Set<number>(); // of _pointers
-  // touches that are not listened to, until they are lifted
+  private readonly _fingers = new Set<number>(); // subset of _pointers
+  // ignored touches, until they are lifted
   private readonly _palms = new Set<number>();
   private readonly _listeners: [string, (event: never) => void, AddEventListenerOptions?][] = [];
 
@@ -92,7 +93,7 @@ export class StageInput {
     if (this._penTimer) clearTimeout(this._penTimer);
   }
 
-  /** `forMs`: unless it is heard of again; null: until then. */
+  /** `forMs`: ends after this time without another event; null: stays. */
   private penIsNear(forMs: number | null): void {
     if (this._penTimer) clearTimeout(this._penTimer);
     this._penTimer = forMs === null ? null : setTimeout(() => (this._penNear = false), forMs);
@@ -101,7 +102,7 @@ export class StageInput {
     this.dropFingers();
   }
 
-  /** They were the hand that brought the pen. What they did so far stands. */
+  /** They belong to the hand with the pen. Their effect so far is kept. */
   private dropFingers(): void {
     if (this._fingers.size === 0) return;
     this.forgetWaitingTouch();
@@ -137,7 +138,7 @@ export class StageInput {
     return { x: css.x * scale, y: css.y * scale };
   }
 
-  /** Where it is, and how strongly a pen is pressed on. */
+  /** Position and, for a pen, pressure. */
   private pressed(event: PointerEvent): PointerSample {
     const at = this.toWindow(this.cssPosition(event));
     return event.pointerType === "pen" ? { ...at, pressure: event.pressure } : at;
@@ -242,7 +243,7 @@ export class StageInput {
     }
     if (this._waitingTouch?.pointer === event.pointerId) {
       if (cancelled) this.forgetWaitingTouch();
-      else this.startTouchTool(); // a tap: the tool's dab
+      else this.startTouchTool(); // a tap: one dab of the tool
     }
     if (this._drag?.pointer !== event.pointerId) return;
     const { kind } = this._drag;
@@ -283,7 +284,7 @@ export class StageInput {
     event.preventDefault();
     const at = this.toWindow(this.cssPosition(event));
     const pixels = event.deltaY * (event.deltaMode === 1 ? 33 : event.deltaMode === 2 ? 400 : 1);
-    const pinchBoost = event.ctrlKey ? 6 : 1; // a touchpad's pinch comes as small ctrl-wheel steps
+    const pinchBoost = event.ctrlKey ? 6 : 1; // a touchpad pinch arrives as small ctrl-wheel steps
     const step = Math.max(-240, Math.min(240, pixels * pinchBoost));
     this._handler.zoom(Math.exp(step * kWheelStep), at.x, at.y);
   }

@@ -1,4 +1,4 @@
-// <strata-labels-field>: what a thing is called in other languages, a row for each.
+// <strata-labels-field>: the names of an item in other languages, a row for each.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -24,13 +24,13 @@ const offered = kCommonLanguages
 
 @customElement("strata-labels-field")
 export class StrataLabelsField extends LitElement {
-  /** As they were; what is written since is kept by the field. */
+  /** The initial labels; the field keeps later input. */
   @property({ attribute: false }) labels: Labels = {};
-  /** Of things that have a description in each language, too. */
+  /** For items with a description in each language. */
   @property({ attribute: false }) descriptions: Labels | null = null;
   @state() private _rows: LabelRow[] = [];
   @state() private _problem = "";
-  @state() private _wrong: number[] = []; // rows that the problem is about
+  @state() private _wrong: number[] = []; // indexes of the rows with the problem
 
   static override styles = [
     sharedStyles,
@@ -120,12 +120,12 @@ export class StrataLabelsField extends LitElement {
     </div>`;
   }
 
-  /** Of what read() takes. */
+  /** The descriptions that belong to read(). */
   get writtenDescriptions(): Labels {
     return descriptionsOf(this._rows);
   }
 
-  /** Null: something is wrong with a row, and said there. */
+  /** Null: a row is invalid and shows the problem. */
   read(): Labels | null {
     this.tell("", []);
     const read = labelsOf(this._rows);
@@ -135,8 +135,8 @@ export class StrataLabelsField extends LitElement {
   }
 
   /**
-   * What the server says against them. It takes no tag that is none, so the rows with such ones are
-   * meant.
+   * Shows the server's problem. It marks the rows with an invalid language tag, since the server
+   * refuses those.
    */
   refuse(problem: string): void {
     this.tell(

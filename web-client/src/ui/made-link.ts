@@ -1,5 +1,5 @@
-// <strata-made-link>: a link or a secret that was just made, to be copied now: it is not shown again.
-// What is slotted stands below it. Says "done" where it is put away, with a button named `done`.
+// <strata-made-link>: a new link or secret to copy, which is shown only once. Slotted content is
+// below it. A button named `done` closes it and fires "done".
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

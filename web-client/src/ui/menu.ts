@@ -1,5 +1,5 @@
-// <strata-menu>: a button that opens a list of commands, given as slotted buttons. What is slotted
-// as "face" stands on the button in place of the glyph.
+// <strata-menu>: a button that opens a list of commands, given as slotted buttons. Content in the
+// slot "face" replaces the button's glyph.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -59,7 +59,7 @@ export class StrataMenu extends LitElement {
         white-space: normal !important;
       }
       ::slotted([slot="face"]) {
-        pointer-events: none; /* the button's own */
+        pointer-events: none; /* clicks belong to the button */
       }
       ::slotted(hr) {
         margin: 5px 0;
@@ -103,13 +103,13 @@ export class StrataMenu extends LitElement {
   };
 
   /**
-   * Commands come and go while it is open: in a narrower window it takes up what stood beside it.
+   * Commands change while the list is open: in a narrower window the menu includes more of them.
    */
   private readonly _grown = new ResizeObserver(this.place);
 
   /**
-   * Before the command hears of it: a dialog that it opens gives the focus back to this menu's
-   * button, which has it by then.
+   * Runs before the command's handler: a dialog that the command opens later returns the focus to
+   * this menu's button, which must have it by then.
    */
   private readonly _closing = { handleEvent: (): void => this._list.hidePopover(), capture: true };
 
@@ -118,7 +118,7 @@ export class StrataMenu extends LitElement {
   }
 
   /**
-   * The browser does not give the focus back from slotted buttons, which are no descendants of the
+   * The browser does not return the focus from slotted buttons, which are not descendants of the
    * list.
    */
   private onBeforeToggle(event: ToggleEvent): void {

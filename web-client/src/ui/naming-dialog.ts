@@ -1,4 +1,4 @@
-// <strata-naming-dialog>: asks what something is called, and what there is to say about it.
+// <strata-naming-dialog>: asks for a name and a description.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -14,14 +14,14 @@ export interface Called {
   text: string;
 }
 
-/** Something that is so or not, beside name and text. */
+/** A yes/no option, in addition to name and text. */
 export interface NamingOption {
   label: string;
   hint: string;
   checked: boolean;
 }
 
-/** What the fields are called, and what is said where there is no name. */
+/** Labels of the fields, and the message for a missing name. */
 export interface NamingWords {
   name: string;
   name_hint: string;
@@ -38,17 +38,17 @@ const optionField = ({ label, hint, checked }: NamingOption): TemplateResult =>
 export class StrataNamingDialog extends LitElement {
   @property() heading = "";
   @property() lead = "";
-  /** On the button. */
+  /** Text of the button. */
   @property() yes = "";
-  /** As of <strata-dialog>. */
+  /** As in <strata-dialog>. */
   @property({ type: Boolean }) aside = false;
   @property({ attribute: false }) words!: NamingWords;
-  /** What it is called so far; null: it is new. */
+  /** The current name and text; null: a new item. */
   @property({ attribute: false }) called: Called | null = null;
   @property({ attribute: false }) option: NamingOption | null = null;
   /**
-   * Answers what is wrong; nothing: it is done, and the dialog closes. `key` is the same for each
-   * attempt at the same words.
+   * Returns the problem; an empty text: success, and the dialog closes. `key`: the idempotency key,
+   * the same for all attempts at the same input.
    */
   @property({ attribute: false }) save!: (
     called: Called,

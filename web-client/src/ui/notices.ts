@@ -1,4 +1,4 @@
-// Messages to the person, shown by <strata-notices>. A notice says what happened and what to do.
+// Messages to the person, shown by <strata-notices>. A notice states the event and the next step.
 
 import { ApiError } from "../net/api-error";
 import type { ProblemBody } from "../core/types";
@@ -14,7 +14,7 @@ export interface Notice {
   link: NoticeLink | null;
 }
 
-/** Where it leads, or what it does. */
+/** A link or an action. */
 export type NoticeLink = { label: string } & ({ href: string } | { act: () => void });
 
 type Listener = (notices: readonly Notice[]) => void;
@@ -34,9 +34,9 @@ class Notices {
     return () => this._listeners.delete(listener);
   }
 
-  /** Returns its id. */
+  /** Returns the notice's id. */
   show(kind: NoticeKind, title: string, detail = "", link: NoticeLink | null = null): number {
-    // what one may do stays
+    // notices with actions are kept
     const same = this._notices.find(
       (notice) =>
         notice.title === title &&

@@ -1,27 +1,26 @@
-// A field for one number, written as in the language of the page. The browser's own number fields
-// follow the language of the browser instead, and drop what they do not take: "1,5" typed into an
-// English one becomes 15.
+// A field for one number in the format of the page's language. The browser's number fields use the
+// browser's language and discard invalid characters: "1,5" typed into an English one becomes 15.
 
 import { html, noChange, type TemplateResult } from "lit";
 import { ifDefined } from "lit/directives/if-defined.js";
 import { readNumber, typedNumber } from "../core/locale";
 
 export interface NumberInput {
-  /** A text: as it was typed. NaN leaves what is in the field. */
+  /** A text: as typed. NaN keeps the field's content. */
   value: number | string;
   name?: string;
-  /** Where no <label> is around it. */
+  /** For a field without a surrounding <label>. */
   label?: string;
   title?: string;
   placeholder?: string | number;
-  /** Where the arrow keys end; what may be typed is for the listener to judge. */
+  /** Limit for the arrow keys; the listener checks typed values. */
   min?: number;
   max?: number;
   wrong?: boolean;
   disabled?: boolean;
-  /** With what is in the field, to be read by readNumber(). */
+  /** Called with the field's text, for readNumber(). */
   typed?(text: string): void;
-  /** Once it is left, or Enter is pressed. */
+  /** Called after the field loses the focus, or on Enter. */
   changed?(text: string, input: HTMLInputElement): void;
 }
 
@@ -45,7 +44,7 @@ export function numberInput(field: NumberInput): TemplateResult {
   />`;
 }
 
-/** The arrow keys count up and down by one. */
+/** The arrow keys change the number by one. */
 function onStep(event: KeyboardEvent, { min = -Infinity, max = Infinity }: NumberInput): void {
   const step = event.key === "ArrowUp" ? 1 : event.key === "ArrowDown" ? -1 : 0;
   const input = event.target as HTMLInputElement;

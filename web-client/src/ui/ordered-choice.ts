@@ -1,5 +1,5 @@
-// <strata-ordered-choice>: some of several things, in an order of one's own. What more there is to
-// say of each is given by its owner.
+// <strata-ordered-choice>: some of several items, in a chosen order. The owner provides further
+// content for each.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -21,14 +21,14 @@ const words = texts.ordered_choice;
 @customElement("strata-ordered-choice")
 export class StrataOrderedChoice extends LitElement {
   @property() label = "";
-  /** On the button. */
+  /** Text of the button. */
   @property({ attribute: "add_label" }) addLabel = "";
   @property({ attribute: false }) things: readonly OrderedThing[] = [];
   @property({ attribute: false }) chosen: readonly string[] = [];
   @property({ type: Number }) most = Infinity;
-  /** Values of which something is wrong. */
+  /** Values with a problem. */
   @property({ attribute: false }) wrong: readonly string[] = [];
-  /** Below the name of each that is chosen. */
+  /** Content below the name of each chosen item. */
   @property({ attribute: false }) more: ((value: string) => unknown) | null = null;
 
   static override styles = [

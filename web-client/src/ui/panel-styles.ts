@@ -1,8 +1,8 @@
-// What lists in the side panel look like.
+// Styles of the lists in the side panel.
 
 import { css } from "lit";
 
-/** Lines in a panel, each a button of three columns: whose it is, what, and when. */
+/** Lines in a panel, each a button with three columns: person, content and time. */
 export const panelLineStyles = css`
   ul {
     display: grid;
@@ -28,7 +28,7 @@ export const panelLineStyles = css`
   }
 `;
 
-/** Heading of a list within a panel, with its buttons. */
+/** Heading of a list in a panel, with its buttons. */
 export const listHeadStyles = css`
   :host {
     display: grid;

@@ -1,4 +1,4 @@
-// The initials of a person, in their colour.
+// The initials of a person, in their color.
 
 import { css, html, type TemplateResult } from "lit";
 import { initials, type Named } from "../domain/people";

@@ -1,11 +1,8 @@
-// What a person points with at this device.
+// The available pointing devices.
 
-/** Fingers, first of all. */
+/** Whether touch is the main pointing device. */
 export const hasFingers = (): boolean => matchMedia("(pointer: coarse)").matches;
 
-/**
- * Fingers and nothing finer: words on the mouse and its buttons would be about something that is
- * not there.
- */
+/** Whether touch is the only pointing device, so that texts about mouse buttons do not apply. */
 export const hasFingersOnly = (): boolean =>
   hasFingers() && !matchMedia("(any-pointer: fine)").matches;

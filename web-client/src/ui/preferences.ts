@@ -1,5 +1,5 @@
-// What this person chose for the page at this browser: its language and its theme, and that they
-// have seen the tour. Nothing of it is told to the server.
+// This person's settings for the page in this browser: language, theme, and whether they have seen
+// the tour. The server does not receive them.
 
 import { kPageLanguages, type PageLanguage } from "../core/locale";
 import type { Background } from "../core/protocol.gen";
@@ -12,13 +12,13 @@ const kTourKey = "strata.tour_over";
 export const kThemes = ["system", "light", "dark", "contrast"] as const;
 export type Theme = (typeof kThemes)[number];
 
-/** Null: as the browser. */
+/** Null: the browser's language. */
 export function chosenLanguage(): PageLanguage | null {
   const kept = localStorage.getItem(kLanguageKey);
   return kPageLanguages.find((language) => language === kept) ?? null;
 }
 
-/** Counts from the next time the page is loaded. */
+/** Takes effect at the next load of the page. */
 export function keepLanguage(language: PageLanguage | null): void {
   if (language === null) localStorage.removeItem(kLanguageKey);
   else localStorage.setItem(kLanguageKey, language);
@@ -29,14 +29,14 @@ export function chosenTheme(): Theme {
   return kThemes.find((theme) => theme === kept) ?? "system";
 }
 
-/** Is seen at once. */
+/** Takes effect at once. */
 export function keepTheme(theme: Theme): void {
   if (theme === "system") localStorage.removeItem(kThemeKey);
   else localStorage.setItem(kThemeKey, theme);
   showTheme();
 }
 
-/** The one that holds: who asks their system for more contrast gets it, also from a dark one. */
+/** The effective theme: a system setting for more contrast takes precedence over a dark one. */
 export const themeOf = (
   chosen: Theme,
   system: { dark: boolean; contrast: boolean },
@@ -54,13 +54,13 @@ function showTheme(): void {
 
 const listeners = new Set<() => void>();
 
-/** Calls it whenever another theme is shown; returns what ends that. */
+/** Calls `listener` after each change of the theme; returns a function that unsubscribes. */
 export function onTheme(listener: () => void): () => void {
   listeners.add(listener);
   return () => listeners.delete(listener);
 }
 
-/** What the theme has behind the model; null: as the server has it. */
+/** The theme's background of the model; null: the server's default. */
 export function stageBackground(): Background | null {
   const style = getComputedStyle(document.documentElement);
   const [top, bottom] = [
@@ -70,7 +70,7 @@ export function stageBackground(): Background | null {
   return top && bottom ? { top, bottom } : null;
 }
 
-/** Shows the theme, and follows the system from then on. */
+/** Shows the theme, and follows the system setting from then on. */
 export function followTheme(): void {
   for (const query of [dark, contrast]) matchMedia(query).addEventListener("change", showTheme);
   showTheme();
@@ -79,7 +79,7 @@ export function followTheme(): void {
 const keptTour = (): Kept<boolean> => new Kept(() => localStorage, kTourKey, false);
 const tourOfPage = keptTour();
 
-/** Skipped or seen to its end, here or in another window. */
+/** Skipped or completed, in this or another window. */
 export const tourIsOver = (): boolean => tourOfPage.value || keptTour().value;
 export function keepTourOver(): void {
   tourOfPage.value = true;

@@ -1,4 +1,4 @@
-// One choice among several, as buttons: one stop of the Tab key, and the arrow keys choose.
+// One choice among several, as buttons: a single Tab stop, with arrow keys to choose.
 
 import { html, type TemplateResult } from "lit";
 import { arrowStep } from "./keyboard";
@@ -10,7 +10,7 @@ export interface RadioChoice<T> {
 }
 
 export interface RadioGroup<T> {
-  /** What is asked: in words, or the id of the element that says it. */
+  /** The question: a text, or the id of the element with the text. */
   label: string | { id: string };
   class: string;
   choices: readonly RadioChoice<T>[];
@@ -25,7 +25,7 @@ export function radioGroup<T>({
   chosen,
   choose,
 }: RadioGroup<T>): TemplateResult {
-  // also while none is chosen
+  // also without a chosen value
   const stop = Math.max(
     0,
     choices.findIndex((choice) => choice.value === chosen),

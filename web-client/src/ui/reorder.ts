@@ -1,4 +1,4 @@
-// Moving one of a list to another place, for everyone.
+// Moves an item of a list to another place, for everyone.
 
 interface Ordered {
   id: number;
@@ -6,11 +6,11 @@ interface Ordered {
 }
 
 export interface ReorderHost<T> {
-  /** Shown at once, before the server knows. */
+  /** Shown before the server confirms. */
   show(all: T[]): void;
-  /** Tells the server where this one stands now. */
+  /** Saves the item's new order on the server. */
   save(each: T): Promise<void>;
-  /** What the server has; some may have moved already when one could not. */
+  /** The server's list; after a failure some items may have moved already. */
   reload(): Promise<T[]>;
 }
 

@@ -1,7 +1,7 @@
-// The page's addresses: /, /projects/{slug}, /models/{id}, and /join#SECRET for who is invited;
+// The page's addresses: /, /projects/{slug}, /models/{id}, and /join#SECRET for invited people;
 // /kiosk/SECRET is another page (kiosk/).
 
-/** `project`: the one whose models are looked at; null: all that there is. */
+/** `project`: the project with the listed models; null: all. */
 export type Route =
   { page: "home"; project: string | null } | { page: "join" } | { page: "model"; model: string };
 
@@ -19,7 +19,7 @@ export function routeOf(path: string): Route {
   }
 }
 
-/** For a screen in an exhibition, which loads nothing of this page. */
+/** For a screen in an exhibition; loads nothing of this page. */
 export const isKiosk = (path: string): boolean => path.startsWith("/kiosk/");
 
 export const pathNow = (): string => location.pathname;
@@ -27,14 +27,14 @@ const addressNow = (): string => location.pathname + location.search + location.
 export const pathOfProject = (slug: string): string => `/projects/${encodeURIComponent(slug)}`;
 export const pathOfModel = (id: number | string): string => `/models/${encodeURIComponent(id)}`;
 
-/** The comment that an address leads to. */
+/** The comment of an address. */
 export function commentOf(hash: string): number | null {
   const found = /^#comment=([1-9]\d{0,15})$/.exec(hash);
   return found ? Number(found[1]) : null;
 }
 export const hashOfComment = (id: number): string => `#comment=${id}`;
 
-/** The named view that an address leads to: its slug or id. */
+/** The named view of an address: its slug or id. */
 export function viewOf(hash: string): string | null {
   const found = /^#view=([^&]{1,400})$/.exec(hash);
   try {
@@ -48,7 +48,7 @@ export const hashOfView = (slug: string): string => `#view=${encodeURIComponent(
 type Question = () => Promise<boolean>;
 
 const listeners = new Set<() => void>();
-let shown = ""; // the address of what is on the page
+let shown = ""; // the address of the displayed content
 let held: Question | null = null;
 let asking = false;
 
@@ -57,7 +57,7 @@ function arrive(): void {
   listeners.forEach((each) => each());
 }
 
-/** The address tells what is looked at; nobody has to go there. */
+/** Sets the address of the displayed content, without navigation. */
 export function putHash(hash: string): void {
   if (hash === location.hash) return;
   history.replaceState(history.state, "", `${location.pathname}${location.search}${hash}`);
@@ -73,8 +73,8 @@ export function onNavigate(listener: () => void): void {
 }
 
 /**
- * `mayLeave`: asked before the page shows something else, by which what is written there would be
- * lost. Returns what lets go of it.
+ * `mayLeave`: called before the page shows something else and loses unsaved input. Returns a
+ * function that removes it.
  */
 export function holdPage(mayLeave: Question): () => void {
   held = mayLeave;
@@ -83,7 +83,7 @@ export function holdPage(mayLeave: Question): () => void {
   };
 }
 
-/** For what takes the page away without going anywhere. */
+/** For reasons other than navigation to close the page. */
 export const mayLeavePage = async (): Promise<boolean> => held === null || held();
 
 async function leave(go: () => void): Promise<void> {
@@ -91,7 +91,7 @@ async function leave(go: () => void): Promise<void> {
   asking = true;
   try {
     if (!(await mayLeavePage())) return;
-    held = null; // it is lost already
+    held = null; // the input is already given up
     go();
   } finally {
     asking = false;
@@ -102,7 +102,7 @@ const withoutPlace = (address: string): string => address.split(/[?#]/)[0]!;
 const isHeldFrom = (path: string): boolean =>
   held !== null && withoutPlace(path) !== withoutPlace(shown);
 
-/** Forward and back: the browser went there before it told. */
+/** Back and forward: the browser navigates before the event. */
 function onHistory(): void {
   if (!isHeldFrom(location.pathname)) return arrive();
   history.pushState(null, "", shown);
@@ -118,13 +118,13 @@ export function navigate(path: string): void {
   else go();
 }
 
-/** Goes there, and nothing leads back to the address before. */
+/** Navigates and replaces the history entry. */
 export function replaceAddress(path: string): void {
   history.replaceState(null, "", path);
   arrive();
 }
 
-/** For links: goes there without loading the page anew, unless a new tab is asked for. */
+/** For links: navigates without a reload, except for requests of a new tab. */
 export function follow(event: MouseEvent): void {
   if (
     event.defaultPrevented ||

@@ -1,5 +1,5 @@
-// The list of a dialog: of each thing what it is called, what is said of it, what can be done with
-// it, and what became of that.
+// The list of a dialog: the name, description and commands of each item, and the result of the last
+// command.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { repeat } from "lit/directives/repeat.js";
@@ -11,19 +11,21 @@ export interface Note {
 
 export interface ListedRow {
   name: unknown;
-  /** For who hears of the row as a whole. */
+  /** Accessible name of the row. */
   label?: string;
   /** Before the name. */
   glyph?: unknown;
   /** After the name. */
   beside?: unknown;
-  /** Below it. */
+  /** Below the name. */
   about?: unknown;
   tools?: unknown;
   note?: Note | null;
 }
 
-/** With `rowListStyles`. `label`: the list's own name, or that of an element by its id. */
+/**
+ * With `rowListStyles`. `label`: the list's accessible name, or the id of an element with the name.
+ */
 export const rowList = <T extends { id: number | string }>(
   things: readonly T[],
   row: (thing: T) => ListedRow,

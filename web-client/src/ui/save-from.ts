@@ -1,4 +1,4 @@
-/** Has the browser save what is at an address of the server as a file. */
+/** Downloads the content at an address of the server as a file. */
 export function saveFrom(address: string, name: string): void {
   const link = document.createElement("a");
   link.href = address;
@@ -6,9 +6,9 @@ export function saveFrom(address: string, name: string): void {
   link.click();
 }
 
-/** The same of what the page has. */
+/** The same for data of the page. */
 export function saveBlob(blob: Blob, name: string): void {
   const address = URL.createObjectURL(blob);
   saveFrom(address, name);
-  setTimeout(() => URL.revokeObjectURL(address), 60_000); // once the browser has begun to read it
+  setTimeout(() => URL.revokeObjectURL(address), 60_000); // after the browser has begun to read it
 }

@@ -1,10 +1,10 @@
-// A row of buttons that scrolls fades at each end beyond which there is more of it.
+// A scrolling row of buttons fades at each end with more content.
 
 import type { LitElement, ReactiveController } from "lit";
 
-const kReachedPx = 2; // nearer to an end it is there: browsers round
+const kReachedPx = 2; // tolerance at the ends: browsers round
 
-/** Ends beyond which there is more, of what has `all` and shows `seen` of it from `at` on. */
+/** The ends with more content, for a length `all` with `seen` visible from `at` on. */
 export const hiddenEnds = (
   at: number,
   seen: number,
@@ -15,8 +15,8 @@ export const hiddenEnds = (
 });
 
 /**
- * Follows how far an element is scrolled across, and marks it by the attributes `more-before` and
- * `more-after`: what they look like is its own.
+ * Tracks the horizontal scroll position of an element in the attributes `more-before` and
+ * `more-after`; the element's own styles draw the fade.
  */
 export class ScrollFade implements ReactiveController {
   private readonly _sized = new ResizeObserver(() => this.mark());
@@ -33,7 +33,7 @@ export class ScrollFade implements ReactiveController {
     this._host.removeEventListener("scroll", this.mark);
     this._sized.disconnect();
   }
-  /** Buttons may have come or gone. */
+  /** The buttons may have changed. */
   hostUpdated(): void {
     this.mark();
   }

@@ -1,4 +1,4 @@
-// Files that a dialog sends: how far they are, and what is wrong.
+// Uploads of a dialog: progress and problems.
 
 import type { ReactiveController, ReactiveControllerHost } from "lit";
 import { ApiError } from "../net/api-error";
@@ -8,12 +8,12 @@ import { texts } from "../texts";
 export type Begin<T> = (progress: (share: number) => void) => Upload<T>;
 
 /**
- * One at a time: a new one takes the place of the one before. What is under way when the element
- * leaves is given up where `givesUp` says so.
+ * One upload at a time: a new one replaces the previous one. An upload is canceled when the element
+ * is removed, if `givesUp` is set.
  */
 export class Sending implements ReactiveController {
   busy = false;
-  share: number | null = null; // of the bytes; null: not known
+  share: number | null = null; // of the bytes; null: unknown
   problem = "";
   givesUp = true;
   private _upload: Upload<unknown> | null = null;
@@ -36,7 +36,7 @@ export class Sending implements ReactiveController {
     this.put({ problem });
   }
 
-  /** Null: it was refused, or another one took its place. */
+  /** Null: refused, or replaced by another upload. */
   async run<T>(begin: Begin<T>): Promise<T | null> {
     this.cancel();
     this.put({ busy: true, problem: "" });

@@ -1,4 +1,4 @@
-// <strata-blank>: a whole page that only says something: not found, not reachable.
+// <strata-blank>: a whole page with only a message: not found, unreachable.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

@@ -306,8 +306,8 @@ export const formStyles = css`
 `;
 
 /**
- * A form inside a dialog that makes a link, and the link, which is shown once. How many fields are
- * beside each other is the dialog's.
+ * A form inside a dialog that makes a link, and the link, which is shown once. The dialog sets the
+ * number of fields in a row.
  */
 export const linkMakingStyles = css`
   form {
@@ -323,7 +323,7 @@ export const linkMakingStyles = css`
   }
 `;
 
-/** Fields of a dialog, two beside each other. */
+/** Fields of a dialog, two in a row. */
 export const choicesStyles = css`
   .choices {
     display: grid;
@@ -336,10 +336,7 @@ export const choicesStyles = css`
   }
 `;
 
-/**
- * A number with its unit inside the field, however long the unit is: the field is drawn around
- * both.
- */
+/** A number with its unit inside the field, for a unit of any length: the border is around both. */
 export const numberFieldStyles = css`
   .number {
     display: flex;
@@ -395,7 +392,7 @@ export const numberFieldStyles = css`
   }
 `;
 
-/** A list whose rows are dragged to another place (`DragOrder`). */
+/** A list with rows that can be dragged (`DragOrder`). */
 export const dragStyles = css`
   li {
     position: relative;
@@ -423,7 +420,7 @@ export const dragStyles = css`
   }
 `;
 
-/** A word or two about what stands beside it. */
+/** A word or two about the adjacent content. */
 export const chipStyles = css`
   .chip {
     padding: 1px 0.5rem;
@@ -436,7 +433,7 @@ export const chipStyles = css`
   }
 `;
 
-/** A dialog that sends files: what they hold, the numbers of their place, how far it is. */
+/** A dialog that uploads files: their contents, the numbers of their placement, the progress. */
 export const filesStyles = css`
   .part {
     display: grid;

@@ -1,5 +1,5 @@
-// <strata-thumbnail>: one small rendered picture of a model, or of what a named view shows, asked
-// for when it comes into sight.
+// <strata-thumbnail>: a small rendered picture of a model or a named view, requested when it
+// becomes visible.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -13,10 +13,10 @@ import { whenSeen } from "./when-seen";
 
 const kWidth = 640;
 const kHeight = 480;
-const kSmallWidth = 240; // on screens with two pixels for one, too
+const kSmallWidth = 240; // also for screens with two device pixels per CSS pixel
 const kSmallHeight = 180;
 const kViewSide = 256;
-// one picture at a time, so that a gallery never crowds out people at work
+// one picture at a time, so that a gallery does not slow down other users
 let busy: Promise<void> = Promise.resolve();
 
 @customElement("strata-thumbnail")
@@ -29,11 +29,11 @@ export class StrataThumbnail extends LitElement {
       now?.id !== before?.id || now?.version !== before?.version,
   })
   view: View | null = null;
-  /** Small, and with this direction up in place of the model's own. */
+  /** Small, and with this up direction instead of the model's own. */
   @property() up: Model["up"] | null = null;
   @state() private _state: "waiting" | "drawn" | "failed" = "waiting";
   @query("canvas") private _canvas!: HTMLCanvasElement;
-  private _wanted: AbortController | null = null; // ends the wait for its picture, or the request
+  private _wanted: AbortController | null = null; // cancels the wait or the request
   private _settled = false; // drawn, or failed
 
   static override styles = [
@@ -67,7 +67,7 @@ export class StrataThumbnail extends LitElement {
     `,
   ];
 
-  /** Elements that a list moves to another place leave the page for a moment. */
+  /** Elements that a list moves leave the page for a moment. */
   override connectedCallback(): void {
     super.connectedCallback();
     if (this._wanted && !this._settled) this.want();
@@ -102,8 +102,8 @@ export class StrataThumbnail extends LitElement {
       bitmap.close();
       this._state = "drawn";
     } catch {
-      if (signal.aborted) return; // nobody waits for it any more
-      this._state = "failed"; // the card says so; the model itself may still open
+      if (signal.aborted) return; // the picture is not needed now
+      this._state = "failed"; // the card shows it; the model itself may still open
     }
     if (!signal.aborted) this._settled = true;
   }

@@ -1,4 +1,4 @@
-// <strata-bin-dialog>: what was deleted in a project, to restore or to delete for ever. Opened by
+// <strata-bin-dialog>: the trash of a project: deleted items, to restore or to erase. Opened by
 // openTrash().
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
@@ -115,7 +115,7 @@ export class StrataTrashDialog extends LitElement {
       path: { project: this.project.slug },
       query: { limit: kAtOnce, offset: known.length },
     });
-    const ids = new Set(known.map(({ id }) => id)); // something came to the trash meanwhile
+    const ids = new Set(known.map(({ id }) => id)); // new items may have shifted the page
     this._trash = {
       ...next,
       entries: [...known, ...next.entries.filter(({ id }) => !ids.has(id))],
@@ -149,7 +149,7 @@ export class StrataTrashDialog extends LitElement {
     });
   }
 
-  /** Who went through the list by keys goes on at what was done. */
+  /** Moves the focus to the result, for keyboard users. */
   private takeOut({ id }: BinEntry, text: string): void {
     if (this._trash)
       this._trash = {
@@ -173,7 +173,7 @@ export class StrataTrashDialog extends LitElement {
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this._note = { kind: "error", text: error.message };
-      // somebody else was faster
+      // another person was faster
       if (error.status === 404 && this._trash) await this.read().catch(() => {});
     } finally {
       this._busy = false;
@@ -186,7 +186,7 @@ export class StrataTrashDialog extends LitElement {
   }
 }
 
-/** Whether something was restored or deleted for ever. */
+/** Resolves to whether an item was restored or erased. */
 export function openTrash(api: Api, project: Pick<Project, "slug" | "name">): Promise<boolean> {
   return new Promise((resolve) => {
     const element = new StrataTrashDialog();
@@ -195,7 +195,7 @@ export function openTrash(api: Api, project: Pick<Project, "slug" | "name">): Pr
   });
 }
 
-/** That of the open model's project. */
+/** The trash of the open model's project. */
 export async function openTrashOf({
   api,
   model,

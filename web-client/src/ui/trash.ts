@@ -1,4 +1,4 @@
-// Deleting what goes to the trash of a project: the question before, and the way back after.
+// Deletion to the trash of a project: the question before, and the offer to undo it.
 
 import { ApiError } from "../net/api-error";
 import type { Api } from "../net/api";
@@ -15,8 +15,8 @@ export interface Deletable {
 }
 
 /**
- * Whether to go on, told what can be undone: for how long things stay in the trash is the server's to
- * say.
+ * Resolves to the person's decision. The question includes the server's retention time of the
+ * trash.
  */
 export async function askToTrash(
   api: Api,
@@ -29,7 +29,7 @@ export async function askToTrash(
       (trash) => trash.days,
       (error: unknown) => {
         if (!(error instanceof ApiError)) throw error;
-        return null; // whoever deletes is told what is wrong
+        return null; // the deletion itself reports the problem
       },
     );
   return ask({
@@ -40,7 +40,10 @@ export async function askToTrash(
   });
 }
 
-/** Says that it was deleted, with a button that brings it back. `cameBack`: once it did. */
+/**
+ * Shows a notice about the deletion, with a button that restores the item. `cameBack`: called after
+ * that.
+ */
 export function tellTrashed(
   api: Api,
   gone: Deletable,

@@ -1,5 +1,5 @@
-// Who sees a layer, a column or a file: the choice in dialogs, and the badge where not everybody
-// does.
+// The visibility of a layer, column or file: the choice in dialogs, and the badge for a restricted
+// one.
 
 import { html, nothing, type TemplateResult } from "lit";
 import type { Visibility } from "../core/protocol.gen";
@@ -10,7 +10,7 @@ import { texts } from "../texts";
 export const kVisibilities: readonly Visibility[] = ["public", "team", "private"];
 const kIcons: Record<Visibility, IconName> = { public: "eye", team: "people", private: "shield" };
 
-/** With what is chosen said in plain words below. */
+/** Includes an explanation of the choice. */
 export function visibilityChoice(
   chosen: Visibility,
   choose: (visibility: Visibility) => void,
@@ -32,7 +32,7 @@ export function visibilityChoice(
   </div>`;
 }
 
-/** Nothing for what everybody sees. */
+/** Empty for public items. */
 export function visibilityBadge(visibility: Visibility): TemplateResult | typeof nothing {
   if (visibility === "public") return nothing;
   const says = texts.visibility.says[visibility];

@@ -1,6 +1,8 @@
-// What costs the server something is asked for once somebody can see where it goes.
+// Delays requests that cost the server work until the element is visible.
 
-/** `seen` is called once, when the element comes into sight. Returns what ends the wait. */
+/**
+ * Calls `seen` once, when the element becomes visible. Returns a function that cancels the wait.
+ */
 export function whenSeen(element: Element, seen: () => void): () => void {
   const observer = new IntersectionObserver((entries) => {
     if (!entries.some((entry) => entry.isIntersecting)) return;

@@ -1,5 +1,4 @@
-// What is done with a table of numbers: it is copied, to be pasted into a spreadsheet, or saved as
-// a file.
+// Commands for a table of numbers: copy it for a spreadsheet, or save it as a file.
 
 import { html, type TemplateResult } from "lit";
 import { csvSeparator, pageLocale } from "../core/locale";
@@ -15,7 +14,10 @@ export const workbookQuery = (f: WorkbookQuery["f"]): WorkbookQuery => ({
   separator: csvSeparator(),
 });
 
-/** `rows`: of texts. Cells that hold tabs or lines would fall apart where they are pasted. */
+/**
+ * `rows`: of texts. Tabs and line breaks in cells are replaced, since they would split the cells at
+ * the paste.
+ */
 export const asPasted = (rows: readonly (readonly string[])[]): string =>
   rows.map((row) => row.map((cell) => cell.replaceAll(/[\t\r\n]+/g, " ")).join("\t")).join("\n");
 
@@ -26,7 +28,7 @@ async function copy(rows: readonly (readonly string[])[], holder: HTMLElement): 
     field.value = text;
     field.style.position = "fixed";
     field.style.opacity = "0";
-    holder.after(field); // within the dialog, outside of which nothing can be selected
+    holder.after(field); // in the dialog: outside of it, nothing can be selected
     field.select();
     return () => field.remove();
   });

@@ -27,7 +27,7 @@ describe("the language of the page", () => {
     expect(pageLanguage("es", ["de"])).toBe("es");
     expect(pageLanguage(null, ["fr"])).toBe("en");
     expect(pageLanguage(null, [])).toBe("en");
-    expect(pageLanguage("tlh", ["de"])).toBe("de"); // kept by a page that had more languages
+    expect(pageLanguage("tlh", ["de"])).toBe("de"); // stored by a page with more languages
   });
 
   it("is written as in the browser's variety of it, and data are called by it first where it was chosen", () => {
@@ -110,7 +110,7 @@ describe("moments and lists", () => {
   });
 });
 
-/** Every text with where it stands; of those that take arguments what they make of them. */
+/** All texts with their paths; for functions, their results. */
 function leaves(from: unknown, path = ""): [string, string][] {
   if (typeof from === "string") return [[path, from]];
   if (typeof from === "function") {
@@ -148,7 +148,7 @@ describe("the texts", () => {
   it("are there in each language, none empty, and none left in English", async () => {
     const english = await inLanguage("en");
     expect(english.size).toBeGreaterThan(900);
-    // Written alike in two languages: names, signs, examples of what is typed.
+    // Texts that are the same in two languages: names, symbols, examples of input.
     const alike =
       /^(product|brush\.width_|account\.token_line|expressions\.functions|areas\.grammar|tables\.examples|view\.sections|labels\.language_example|help\.\w+\.\d+\.0)/;
     for (const language of ["de", "es"] as const) {

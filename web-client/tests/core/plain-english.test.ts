@@ -1,21 +1,26 @@
+import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 import { textsIn } from "../../src/kiosk/texts";
 import { texts } from "../../src/texts/en";
 
-/** What people do not say to each other, with what to write instead. */
+interface Phrase {
+  avoid: string;
+  write: string;
+  case?: boolean;
+}
+
+const kPhrases = new URL("../../../tests/words/avoid.json", import.meta.url);
+
+/** Phrases to avoid in all texts (tests/words), and those for the short texts of a page. */
 const kAvoided: readonly [RegExp, string][] = [
-  [/\banew\b/i, "again, or name what happens"],
-  [/\bmeanwhile\b/i, "has changed"],
+  ...(JSON.parse(readFileSync(kPhrases, "utf8")) as Phrase[]).map((phrase): [RegExp, string] => [
+    new RegExp(phrase.avoid, phrase.case ? "m" : "im"),
+    phrase.write,
+  ]),
   [/\bby itself\b/i, "automatically"],
-  [/\bbeside\b/i, "next to"],
-  [/\btells?\b|\btold\b/i, "shows, lists"],
-  [/\bbears?\b|\bhears?\b/i, "the verb for what happens"],
   [/\btak(e|es|en) (it )?(back|out|away)\b/i, "undo, remove"],
   [/\bbr(ing|ings|ought) (it )?(back|over)\b/i, "restore, transfer"],
   [/\bgives? up\b/i, "cancel, discard"],
-  [/\bworthless\b|\bof no use\b/i, "no longer works"],
-  [/\bmended?\b/i, "repaired"],
-  [/\bwhoever\b|\bwhatever\b/i, "anyone, the person, the role"],
   [/\bof (his|her|their) own\b|\ba \w+ of its own\b/i, "own"],
   [/\bis (not )?here any more\b/i, "was deleted"],
   [/\bis (called|said) that\b/i, "no matching …"],
@@ -28,7 +33,7 @@ const kAvoided: readonly [RegExp, string][] = [
 
 type Texts = { readonly [name: string]: unknown };
 
-/** Nothing where the text takes another kind of argument. */
+/** Undefined if the function takes another kind of argument. */
 function textOf(make: unknown, argument: unknown): unknown {
   try {
     return (make as (...all: unknown[]) => unknown)(...Array(5).fill(argument));
@@ -37,7 +42,7 @@ function textOf(make: unknown, argument: unknown): unknown {
   }
 }
 
-/** Every text with where it stands, as it is for one thing and for several. */
+/** All texts with their paths, for one item and for several. */
 function* sentences(of: unknown, at: string): Generator<[string, string]> {
   if (typeof of === "string") yield [at, of];
   else if (typeof of === "function")

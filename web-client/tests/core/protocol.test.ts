@@ -1,5 +1,5 @@
-// The fixtures are read by the server's tests, too (tests/unit/protocol_messages_test.cpp): both
-// must agree.
+// The server's tests read the same fixtures (tests/unit/protocol_messages_test.cpp): both must
+// agree.
 import Ajv from "ajv";
 import { readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -14,7 +14,7 @@ interface Fixture {
   schema: string;
   json?: unknown;
   text?: string;
-  /** Refused by the server although the schema cannot say why (singular matrices). */
+  /** Refused by the server although the schema cannot express the reason (singular matrices). */
   schema_passes?: boolean;
 }
 

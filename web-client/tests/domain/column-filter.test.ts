@@ -1,4 +1,4 @@
-// What is chosen in the filter of a column, and the text that says so.
+// The choices in the filter of a column, and their text form.
 import { describe, expect, it } from "vitest";
 import {
   chosenIn,

@@ -66,7 +66,7 @@ describe("people at a model", () => {
       false,
       true,
     ]);
-    // two messages met: it does not hang
+    // two messages crossed; the function must not hang
     const ring = [viewer("b", "bea", { following: "c" }), viewer("c", "carl", { following: "b" })];
     expect(leadsBack(ring, "b", "a")).toBe(false);
   });

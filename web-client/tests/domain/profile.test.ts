@@ -176,7 +176,7 @@ describe("a plot", () => {
     ];
     const plot = plotOf({ yUnit: "", parts });
     expect(plot.curves).toHaveLength(3);
-    expect(plot.curves[1]).toMatch(/^M[\d.]+ [\d.]+h0\.01$/); // a point of its own is seen
+    expect(plot.curves[1]).toMatch(/^M[\d.]+ [\d.]+h0\.01$/); // a single point is visible
     expect(plot.breaks).toEqual([plot.xAt(3)]);
   });
 

@@ -3,8 +3,8 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { fillScreen, keepOnPage, stayAwake } from "../../src/kiosk/guard";
 
 /**
- * As browsers have it: on the document, who listens to wheels and fingers can refuse them only
- * after having said so.
+ * As in browsers: on the document, wheel and touch listeners can cancel events only if they are
+ * registered with `passive: false`.
  */
 class FakeDocument extends EventTarget {
   visibilityState = "visible";
@@ -25,7 +25,7 @@ let page: FakeDocument;
 beforeEach(() => vi.stubGlobal("document", (page = new FakeDocument())));
 afterEach(() => void vi.unstubAllGlobals());
 
-/** Whether the page keeps an event of this name and these properties from the browser. */
+/** Whether the page prevents the default of an event with this name and these properties. */
 function refuses(name: string, properties: object = {}, cancelable = true): boolean {
   const event = Object.assign(new Event(name, { cancelable }), properties);
   const prevent = vi.spyOn(event, "preventDefault");
@@ -57,7 +57,7 @@ describe("what keeps visitors on the page", () => {
 
   it("refuses two fingers that zoom, where they can be refused, and lets one scroll", () => {
     expect(refuses("touchmove", { touches: [1, 2] })).toBe(true);
-    // of which browsers complain
+    // browsers would report an error
     expect(refuses("touchmove", { touches: [1, 2] }, false)).toBe(false);
     expect(refuses("touchmove", { touches: [1] })).toBe(false);
   });

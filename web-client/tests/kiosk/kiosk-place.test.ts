@@ -1,4 +1,4 @@
-// What a tap in a kiosk names.
+// The name that a tap in a kiosk shows.
 import { describe, expect, it } from "vitest";
 import type { Layer } from "../../src/core/types";
 import { layerThere, wordsOfPlace } from "../../src/kiosk/place";

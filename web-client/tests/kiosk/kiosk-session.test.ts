@@ -1,5 +1,5 @@
-// The kiosk's whole life without a browser: a server of answers, sockets without a network, and a
-// clock that jumps.
+// The life cycle of a kiosk without a browser: a server of fixed answers, sockets without a
+// network, and a fake clock.
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { Api } from "../../src/net/api";
@@ -362,7 +362,7 @@ describe("the kiosk", () => {
     site.away = true;
     const { session } = make(site, told());
     await settle();
-    // no worker here that has the views
+    // no worker here that stores the views
     expect([session.tour?.name, session.ready]).toEqual(["T", false]);
     site.away = false;
     await vi.advanceTimersByTimeAsync(31_000);
@@ -421,10 +421,10 @@ describe("the kiosk", () => {
       session.touched();
       session.step(1);
       session.chooseLanguage("de");
-      await vi.advanceTimersByTimeAsync(300_000); // asked, gone, and the tour by itself
+      await vi.advanceTimersByTimeAsync(300_000); // question, timeout, automatic tour
       expect(session.resting).toBe(true);
       sockets[0]!.sent.length = 0;
-      // The server's signs of life, without which the connection rightly ends.
+      // Without the server's signs of life, the connection correctly ends.
       if (sockets.length > 1) sockets.splice(0, sockets.length - 1);
       rounds.push(vi.getTimerCount());
     }

@@ -331,7 +331,7 @@ describe("the card of a record", () => {
         { label: "What is wrong", text: "Verlust" },
       ],
     });
-    // no browser shows the other, and it would lead away
+    // browsers cannot display the other, and its link would leave the page
     expect(card?.pictures.map(({ name }) => name)).toEqual(["b.jpg"]);
     expect(card?.pictures[0]?.small).toBe("/api/v1/attachments/6?thumbnail=256&as=kiosk");
   });

@@ -12,7 +12,7 @@ import {
   type Vec4,
 } from "../../src/math/vector";
 
-// A building in UTM coordinates: doubles must hold millimetres there.
+// A building in UTM coordinates: doubles must resolve millimeters there.
 const site = { min: [500_000, 4_100_000, 600] as Vec3, max: [500_040, 4_100_020, 612] as Vec3 };
 const middle: Vec3 = [500_020, 4_100_010, 606];
 
@@ -35,7 +35,7 @@ function expectClose(actual: readonly number[], wanted: readonly number[], toler
 }
 
 describe("standard views", () => {
-  // Per up axis: the world direction from which "front" looks, and what is right and up in its
+  // For each up axis: the world direction from which "front" looks, and right and up in its
   // picture.
   const fronts: Record<UpAxis, { eye: Vec3; right: Vec3; up: Vec3 }> = {
     z: { eye: [0, -1, 0], right: [1, 0, 0], up: [0, 0, 1] },

@@ -24,7 +24,7 @@ let callbacks: {
   [Name in keyof ConnectionCallbacks]: ReturnType<typeof vi.fn<ConnectionCallbacks[Name]>>;
 };
 let connection: Connection;
-let shelved: ChangeMessage[]; // what the browser keeps beyond the page
+let shelved: ChangeMessage[]; // the browser's storage, which survives the page
 
 const socket = (): FakeSocket => sockets[sockets.length - 1]!;
 const draw = (): void => frames.splice(0).forEach((frame) => frame());
@@ -168,7 +168,7 @@ describe("cameras", () => {
     socket().lose();
     vi.advanceTimersByTime(300);
     socket().open();
-    // 8 was deleted meanwhile: it would have all refused
+    // 8 was deleted in the meantime: the server would have refused the whole message
     socket().receive({ ...welcome(), layers: [{ id: 7 } as Layer] });
     expect(
       socket()
@@ -314,7 +314,7 @@ describe("a lost connection", () => {
     before.lose();
     expect(saving()).toEqual({ waiting: 3, failing: false });
     vi.advanceTimersByTime(300);
-    connect([{ stroke: stroke.stroke, n: 1 }]); // the answer for 1 was lost on its way
+    connect([{ stroke: stroke.stroke, n: 1 }]); // the answer for 1 was lost
     const again = socket().sent.filter((message) => message.op !== "hello");
     const wanted = before.sent.filter(
       (message) => message.op !== "hello" && !(message.op === "stroke.extend" && message.n <= 1),
@@ -378,7 +378,7 @@ describe("a lost connection", () => {
       { op: "stroke.extend", id: "e1", stroke: "s", n: 1, path: [[2, 2]] },
       { op: "undo", id: "u", layer: 7 },
     ];
-    connect([{ stroke: "s", n: 0 }]); // whose answer the earlier page never heard
+    connect([{ stroke: "s", n: 0 }]); // the earlier page did not receive its answer
     connection.sendChange({ op: "redo", id: "mine", layer: 7 });
     await vi.advanceTimersByTimeAsync(0);
     expect(callbacks.takenUp.mock.calls).toEqual([[3]]);
@@ -498,7 +498,7 @@ describe("a lost connection", () => {
     });
     vi.advanceTimersByTime(600_000);
     expect(connection.state).toBe("open");
-    expect(socket().of("pick").length).toBe(2); // what is idle is left alone
+    expect(socket().of("pick").length).toBe(2); // an idle connection sends no requests
     expect(callbacks.picked).not.toHaveBeenCalled();
     expect(callbacks.problem).not.toHaveBeenCalled();
   });

@@ -1,5 +1,4 @@
-// The golden vectors are read by the server's tests, too
-// (tests/unit/protocol_frame_header_test.cpp).
+// The server's tests read the same golden vectors (tests/unit/protocol_frame_header_test.cpp).
 import { describe, expect, it } from "vitest";
 
 import golden from "../../../protocol/golden/frame_headers.json";

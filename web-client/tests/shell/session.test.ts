@@ -48,7 +48,7 @@ let answers: Map<string, [status: number, body: unknown]>; // by method and path
 let session: OpenModelSession;
 let told: string[];
 let unsubscribe: () => void;
-let kept: unknown[]; // of how layers are shown
+let kept: unknown[]; // the layers' settings
 
 const socket = (): FakeSocket => sockets[sockets.length - 1]!;
 const settle = (): Promise<unknown> => vi.advanceTimersByTimeAsync(0);
@@ -62,7 +62,7 @@ function join(role: Role = "owner", layers = [layer(7, 0), layer(8, 1)]): void {
   socket().open();
   socket().receive({ ...welcome(), role, model, layers });
 }
-/** A dab in the newest layer, not saved yet. Returns what saves it. */
+/** A dab in the selected layer, not saved yet. Returns a function that saves it. */
 function paint(): () => void {
   session.chooseTool("brush");
   session.gestures.toolDown({ x: 5, y: 5 });
@@ -96,14 +96,14 @@ beforeEach(() => {
 });
 afterEach(() => {
   discardUnsaved();
-  vi.advanceTimersByTime(60_000); // notices go
+  vi.advanceTimersByTime(60_000); // closes notices
   unsubscribe();
   vi.unstubAllGlobals();
   vi.useRealTimers();
 });
 
 describe("a change", () => {
-  /** How often an element that follows these parts is drawn again. */
+  /** Counts the redraws of an element that follows these parts. */
   function follower(...parts: SessionPart[]): { redraws: number; leave(): void } {
     let controller: ReactiveController | null = null;
     const drawn = { redraws: 0, leave: () => controller?.hostDisconnected?.() };
@@ -432,7 +432,7 @@ describe("roles", () => {
     expect(changes()).toEqual(untilNow);
     expect(untilNow.at(-1)).toBe("stroke.end");
     expect(told).toEqual([texts.layers.locked]);
-    // What was on its way is refused in the server's words: they say nothing new.
+    // The server also refuses the pending messages; these problems show nothing new.
     socket().receive({
       op: "problem",
       title: "Locked, says the server",
@@ -445,7 +445,7 @@ describe("roles", () => {
     session.layers.select(session.layers.find(7)!);
     expect(session.lockedTarget).toBe(null);
     session.layers.select(session.layers.find(8)!);
-    session.chooseTool("orbit"); // who only looks is not in the way of a lock
+    session.chooseTool("orbit"); // a viewing tool is not affected by a lock
     expect(session.lockedTarget).toBe(null);
     lock(8, false);
     paint()();
@@ -555,7 +555,7 @@ describe("how a person shows the layers", () => {
     ]);
     expect(toldServer()).toEqual([{ layer: 7, visible: false, order: 4 }]);
     session.layers.setVisible(session.layers.find(7)!, true);
-    await vi.advanceTimersByTimeAsync(1000); // refused: the server is away
+    await vi.advanceTimersByTimeAsync(1000); // refused: the server is unreachable
     socket().lose();
     await vi.advanceTimersByTimeAsync(1000);
     answers.set(kKeep, [200, { layers: [] }]);

@@ -6,14 +6,14 @@ import { themeOf } from "../../src/ui/preferences";
 
 const kSource = join(__dirname, "../../src");
 const css = readFileSync(join(kSource, "shell", "theme.css"), "utf8");
-/** The files of the page; the kiosk has colours of its own. */
+/** The files of the page; the kiosk has separate colors. */
 const pageFiles = ["ui", "session", "features", "shell"].flatMap((folder) =>
   readdirSync(join(kSource, folder), { recursive: true, encoding: "utf8" }).map((name) =>
     join(kSource, folder, name),
   ),
 );
 
-/** The colours of a theme, those that it takes from the light one included. */
+/** The colors of a theme, including those inherited from the light one. */
 function colorsOf(theme: "light" | "dark" | "contrast"): Map<string, string> {
   const block = (head: string): [string, string][] => {
     const start = css.indexOf(head);

@@ -83,7 +83,7 @@ describe("brush", () => {
       { x: 10, y: 0, pressure: 0.2 },
     ]);
     brush.up();
-    expect(widths()).toEqual([[0.25], [0.5, 0.1]]); // pressed otherwise in place, too
+    expect(widths()).toEqual([[0.25], [0.5, 0.1]]); // also with a pressure change in place
     messages = [];
     brush.down({ x: 0, y: 0 });
     brush.up();
@@ -366,7 +366,7 @@ describe("outlines", () => {
   it("a drag is a line, finished when it is let go", () => {
     const tool = new LineTool(outlineHost);
     tool.down({ x: 0, y: 0 });
-    tool.move([{ x: 4, y: 0 }]); // a hand trembles
+    tool.move([{ x: 4, y: 0 }]); // a trembling hand
     tool.move([
       { x: 30, y: 0 },
       { x: 31, y: 0 },

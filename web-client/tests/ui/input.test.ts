@@ -2,7 +2,7 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { StageInput, type GestureHandler } from "../../src/ui/input";
 
-// An element without a page: remembers listeners, and gives them events.
+// A fake element: keeps listeners and sends events to them.
 class FakeElement {
   listeners = new Map<string, (event: unknown) => void>();
   addEventListener = (name: string, listener: (event: unknown) => void): void =>
@@ -299,7 +299,7 @@ describe("pen", () => {
 
   it("once used has the tools that change something: one finger turns then, and a tap paints nothing", () => {
     palmDrags(1);
-    expect(handler.toolDown).toHaveBeenCalledTimes(1); // a finger paints where there is no pen
+    expect(handler.toolDown).toHaveBeenCalledTimes(1); // without a pen, a finger paints
     stroke(10);
     leaves();
     vi.advanceTimersByTime(1000);

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
-/** The history of a browser's tab, which tells what it did when it has done it. */
+/** The history of a browser tab, which reports a navigation only after it is done. */
 class FakeHistory {
   entries = ["/"];
   at = 0;

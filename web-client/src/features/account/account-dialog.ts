@@ -1,5 +1,4 @@
-// <strata-account-dialog>: what somebody is called, their password, where they are signed in, and
-// their tokens for scripts.
+// <strata-account-dialog>: a person's names, password, sign-in sessions and tokens for scripts.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -35,13 +34,13 @@ type Section = "name" | "password" | "sessions" | "tokens";
 export class StrataAccountDialog extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) me!: Me;
-  @state() private _projects: Project[] = []; // that they see
+  @state() private _projects: Project[] = []; // visible to this person
   @state() private _sessions: SignInSession[] = [];
   @state() private _tokens: ScriptToken[] | null = null;
   @state() private _made: ScriptTokenMade | null = null;
   @state() private _adding = false;
-  @state() private _role: Role = "viewer"; // of the token that is added
-  @state() private _only = ""; // slug of the project that it is for; empty: all
+  @state() private _role: Role = "viewer"; // of the new token
+  @state() private _only = ""; // slug of the new token's project; empty: all
   @state() private _fieldProblems: Partial<Record<Field, string>> = {};
   @state() private _note: { section: Section; kind: "error" | "done"; text: string } | null = null;
   @state() private _busy = false;
@@ -122,7 +121,7 @@ export class StrataAccountDialog extends LitElement {
   override render(): TemplateResult {
     const { me } = this;
     const rank = (role: Role | undefined): number => kRoles.indexOf(role ?? "guest");
-    // than everywhere
+    // than the role for all projects
     const withMore = this._projects.filter(({ role }) => rank(role) > rank(me.role));
     return html`<strata-dialog wide heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <section>
@@ -211,7 +210,7 @@ export class StrataAccountDialog extends LitElement {
     </form>`;
   }
 
-  /** Where a role comes from, too, so that they know whom to ask. */
+  /** Includes the groups that give the role, so that the user can ask the right person. */
   private projectRow({ name, role, groups }: Project): ListedRow {
     const told = texts.roles[role ?? "guest"];
     const where = groups ? words.role_by_groups(told, formatList(groups)) : told;
@@ -463,7 +462,7 @@ export class StrataAccountDialog extends LitElement {
 const textOf = (event: Event, name: string): string =>
   String(new FormData(event.target as HTMLFormElement).get(name) ?? "");
 
-/** What was to be ended has ended by itself. */
+/** Ignores a 404: the session or token has already ended. */
 function unlessGone(error: unknown): void {
   if (!(error instanceof ApiError) || error.status !== 404) throw error;
 }

@@ -1,4 +1,4 @@
-// Of the pages before the sign-in: a card in the middle.
+// Styles of the pages before the sign-in: a card in the middle.
 
 import { css } from "lit";
 

@@ -1,5 +1,5 @@
-// <strata-kiosks-dialog>: the links for screens that show tours: of one tour, with a form that
-// makes one, or all that this person sees to.
+// <strata-kiosks-dialog>: the links for screens that show tours: the links of one tour, with a form
+// for a new one, or all links that this person manages.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -26,7 +26,7 @@ type Field = "name" | "days";
 @customElement("strata-kiosks-dialog")
 export class StrataKiosksDialog extends LitElement {
   @property({ attribute: false }) api!: Api;
-  /** Null: those of all tours. By slugs. */
+  /** By slugs. Null: the links of all tours. */
   @property({ attribute: false }) tour: {
     project: string;
     model: string;
@@ -82,7 +82,7 @@ export class StrataKiosksDialog extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     void this.attempt(() => this.read());
-    // what could not be read is read the next time
+    // a failed read is repeated at the next interval
     this._timer = window.setInterval(() => void this.read().catch(() => {}), kSilentMs / 6);
   }
 
@@ -148,7 +148,7 @@ export class StrataKiosksDialog extends LitElement {
 
   private onLink(event: MouseEvent): void {
     follow(event);
-    // or it opens in another tab
+    // otherwise the link opens in another tab
     if (event.defaultPrevented) this.dispatchEvent(new CustomEvent("closed"));
   }
 
@@ -162,8 +162,7 @@ export class StrataKiosksDialog extends LitElement {
     return [seen, ends, words.made_by(user, toldDate(created))].join(" · ");
   }
 
-  // ── a new one
-  // ─────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── new link ───────────────────────────────────────────────────────────────────────────────────
 
   private form(): TemplateResult {
     const wrong = (field: Field): string => (this._wrong?.field === field ? this._wrong.text : "");
@@ -236,8 +235,7 @@ export class StrataKiosksDialog extends LitElement {
     });
   }
 
-  // ── one that there is
-  // ─────────────────────────────────────────────────────────────────────────────────────────────
+  // ── existing links ─────────────────────────────────────────────────────────────────────────────
 
   private async reload(kiosk: Kiosk): Promise<void> {
     await this.change(kiosk, async () => {
@@ -264,7 +262,7 @@ export class StrataKiosksDialog extends LitElement {
     });
   }
 
-  /** What is refused is said in the kiosk's row. */
+  /** Runs a change; a refusal is shown in the kiosk's row. */
   private async change({ id }: Kiosk, task: () => Promise<void>): Promise<void> {
     this._note = null;
     try {

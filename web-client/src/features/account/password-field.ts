@@ -1,5 +1,5 @@
-// A field for a password that can be looked at while it is written. A template and no element:
-// password managers look for fields beside each other in one form.
+// A field for a password that can be made visible. It is a template and not an element: password
+// managers look for fields in the same form.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { icon } from "../../ui/icons";
@@ -10,7 +10,7 @@ export interface PasswordField {
   label: string;
   autocomplete: "current-password" | "new-password";
   problem?: string;
-  /** The id of what says that it is wrong, where that stands elsewhere. */
+  /** The id of the error message, if it is elsewhere. */
   wrongBy?: string;
   hint?: string;
 }

@@ -1,4 +1,4 @@
-// What <strata-people-dialog> looks like.
+// Styles of <strata-people-dialog>.
 
 import { css } from "lit";
 
@@ -6,7 +6,7 @@ export const peopleDialogStyles = css`
   .bar {
     position: sticky;
     z-index: 1;
-    top: -0.875rem; /* over the padding of the dialog */
+    top: -0.875rem; /* covers the padding of the dialog */
     display: flex;
     flex-wrap: wrap;
     align-items: center;

@@ -1,5 +1,5 @@
-// <strata-people-dialog>: who has an account, and what they may do; invites people by a link that
-// is shown once. Beside them the groups.
+// <strata-people-dialog>: the accounts and their roles; invites people by a link that is shown
+// once. A second tab has the groups.
 
 import { peopleDialogStyles } from "./people-dialog-styles";
 import { html, LitElement, nothing, type TemplateResult } from "lit";
@@ -33,16 +33,16 @@ export class StrataPeopleDialog extends LitElement {
   @property({ attribute: false }) me!: Me;
   @state() private _people: Person[] | null = null;
   @state() private _part: Part = "people";
-  @state() private _groups: readonly Group[] = []; // that who is invited may be put into
+  @state() private _groups: readonly Group[] = []; // groups that a new user can join
   @state() private _filter = "";
   @state() private _inviting = false;
-  @state() private _role: Role = kUsualRole; // of who is invited
+  @state() private _role: Role = kUsualRole; // of the new user
   @state() private _invitation: Invitation | null = null;
   @state() private _fieldProblems: Partial<Record<Field, string>> = {};
   @state() private _rowNote: { id: number; kind: "error" | "done"; text: string } | null = null;
   @state() private _problem = "";
   @state() private _busy = false;
-  @state() private _inProjects: Person | null = null; // whose roles in projects are shown
+  @state() private _inProjects: Person | null = null; // the person whose project roles are shown
 
   static override styles = [sharedStyles, chipStyles, linkMakingStyles, peopleDialogStyles];
 
@@ -164,7 +164,7 @@ export class StrataPeopleDialog extends LitElement {
       </td>
       <td class="state">
         ${
-          role === "owner" && state === "invited" // nobody has invited them
+          role === "owner" && state === "invited" // an owner has no invitation
             ? html`<span class="chip" title=${words.no_password_hint}>${words.no_password}</span>`
             : html`<span class="chip ${state}" title=${words.state_hints[state]}>${words.states[state]}</span>`
         }
@@ -367,7 +367,7 @@ export class StrataPeopleDialog extends LitElement {
     });
   }
 
-  /** True: done. What is refused is said in the person's row. */
+  /** Returns true after success. A refusal is shown in the person's row. */
   private async changeRow({ id }: Person, task: () => Promise<void>): Promise<boolean> {
     this._rowNote = null;
     try {

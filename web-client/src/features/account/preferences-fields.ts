@@ -1,5 +1,5 @@
-// <strata-preferences>: what a person may choose for the page at this browser, and the dialog that
-// holds it.
+// <strata-preferences>: the settings of the page at this browser, and the dialog that contains
+// them.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, query } from "lit/decorators.js";
@@ -17,7 +17,7 @@ import { discardUnsaved, unsavedChanges } from "../../session/sessions";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
-/** As at the head of a list: "Español". */
+/** With a capital letter, as at the start of a line: "Español". */
 const titled = (name: string): string => name.slice(0, 1).toUpperCase() + name.slice(1);
 
 @customElement("strata-preferences")
@@ -57,7 +57,7 @@ export class StrataPreferences extends LitElement {
     </label>`;
   }
 
-  /** All words are set while the page is loaded, so it is loaded anew. */
+  /** All texts are set when the page loads, so the page reloads. */
   private async changeLanguage(): Promise<void> {
     const words = texts.settings;
     const wanted = kPageLanguages.find((language) => language === this._language.value) ?? null;

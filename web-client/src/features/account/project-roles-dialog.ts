@@ -1,5 +1,5 @@
-// <strata-project-roles-dialog>: what one person may do in each project, beside what they may do
-// everywhere and what their groups give them there; or what a group may do.
+// <strata-project-roles-dialog>: a person's role in each project, next to the role for all projects
+// and the roles that their groups give; or the roles of a group.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -19,7 +19,7 @@ const words = texts.project_roles;
 interface Row {
   id: number; // of the project
   project: Project;
-  role: ProjectRole | null; // of their own
+  role: ProjectRole | null; // the person's own role
   by_groups: ReturnType<typeof roleByGroups>;
   note: { kind: "error" | "done"; text: string } | null;
 }
@@ -27,7 +27,7 @@ interface Row {
 @customElement("strata-project-roles-dialog")
 export class StrataProjectRolesDialog extends LitElement {
   @property({ attribute: false }) api!: Api;
-  /** One of both. */
+  /** Exactly one of `person` and the group is set. */
   @property({ attribute: false }) person: Person | null = null;
   @property({ attribute: false }) group: Group | null = null;
   @state() private _rows: readonly Row[] | null = null;
@@ -103,7 +103,7 @@ export class StrataProjectRolesDialog extends LitElement {
     };
   }
 
-  /** What counts there, where that is what a group gives. */
+  /** The role that groups give, and whether it is the effective one. */
   private origin({ role, by_groups: byGroups }: Row): TemplateResult | typeof nothing {
     if (!byGroups || !this.person) return nothing;
     const rank = (each: ProjectRole | Person["role"]): number => kRoles.indexOf(each);

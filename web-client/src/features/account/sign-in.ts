@@ -1,5 +1,5 @@
-// <strata-sign-in>: for who opens the page without a session: name and password, or a token or the
-// link that the server printed.
+// <strata-sign-in>: sign-in with user name and password, or with a token or the link that the
+// server printed.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -115,7 +115,7 @@ export class StrataSignIn extends LitElement {
     event.preventDefault();
     if (this._busy) return;
     const user = this._user.value.trim();
-    const password = this._password.value; // spaces count
+    const password = this._password.value; // spaces are significant
     this._problem = this._tokenProblem = "";
     if (user === "" || password === "") {
       this._problem = texts.sign_in.empty;
@@ -142,7 +142,7 @@ export class StrataSignIn extends LitElement {
       );
   }
 
-  /** What is wrong, or nothing. */
+  /** Returns the error text, or an empty one. */
   private async tryTo(by: "password" | "token", login: () => Promise<unknown>): Promise<string> {
     this._busy = true;
     try {

@@ -1,4 +1,4 @@
-// <strata-activity-panel>: what was done on the model, or in its whole project, by days.
+// <strata-activity-panel>: the activity of the model or of its whole project, by day.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { customElement } from "lit/decorators.js";
@@ -18,7 +18,7 @@ import { toldClock, toldDay } from "../../domain/times";
 
 const words = texts.activity;
 
-/** That of the first key which has one. */
+/** The text of the first key that has one. */
 const textOf = (
   all: { readonly [key: string]: string; other: string },
   ...keys: string[]

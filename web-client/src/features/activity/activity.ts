@@ -1,5 +1,5 @@
-// What was done on the open model, or in its whole project: what is known of it, and where its
-// lines lead. It is read when somebody looks at it, and again after something happened here.
+// Activity of the open model or of its whole project: the known lines and their targets. Read when
+// the panel opens, and again after each change.
 
 import { withFirstPage, withNextPage, type ActivityLog } from "../../domain/activity";
 import { ApiError } from "../../net/api-error";
@@ -34,7 +34,7 @@ export class Activities {
   private _watched = false;
   private _log = kNone;
   private readonly _again = new ReadAgain(() => void this.load());
-  private _asked = 0; // the newest question; answers of older ones come too late
+  private _asked = 0; // the latest request; older answers are ignored
 
   constructor(
     private readonly _api: Api,
@@ -48,7 +48,7 @@ export class Activities {
     return this._log.next !== undefined;
   }
 
-  /** Of the whole project, instead of this model. */
+  /** Whether the whole project is shown, instead of this model. */
   get whole(): boolean {
     return this._whole;
   }
@@ -60,7 +60,7 @@ export class Activities {
     void this.load();
   }
 
-  /** Somebody looks at it. */
+  /** The panel was opened or closed. */
   watch(watched: boolean): void {
     if (watched === this._watched) return;
     this._watched = watched;
@@ -68,7 +68,7 @@ export class Activities {
     else this._again.stop();
   }
 
-  /** Something happened. */
+  /** The activity has changed. */
   outdated(): void {
     if (this._watched) this._again.news();
   }
@@ -113,15 +113,14 @@ export class Activities {
     this._host.changed();
   }
 
-  // ── where a line leads
-  // ────────────────────────────────────────────────────────────────────────────────────────────
+  // ── targets of lines ───────────────────────────────────────────────────────────────────────────
 
   leadsSomewhere(line: Activity): boolean {
     if (line.kind === "comment") return line.comment !== undefined;
     return line.layer !== undefined || this.layerOfTable(line) !== null || this.isElsewhere(line);
   }
 
-  /** To the comment, record or layer; to another model where it is on that. */
+  /** Opens the comment, record or layer of the line, in another model if necessary. */
   async goTo(line: Activity): Promise<void> {
     if (this.isElsewhere(line)) {
       navigate(

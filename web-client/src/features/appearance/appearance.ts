@@ -1,5 +1,5 @@
-// How this person sees the model: its looks, the light and the section. Nothing of it is kept but
-// by named views, and others see it their way.
+// A person's view of the model: its surface images, light and section. Only named views keep these
+// settings; other people have their own.
 
 import { nameOfFile } from "../../domain/file-names";
 import { type Api, kAsItIs } from "../../net/api";
@@ -21,7 +21,7 @@ export const kMostLooksShown = 4;
 const kFirstRaking: [number, number, number] = [-0.85, 0.4, 0.35];
 
 export interface AppearanceHost {
-  /** Null: the looks that everyone sees at first. */
+  /** Null: the default surface images. */
   send(looks: LookShown[] | null, light: Light): void;
   sendSection(planes: Plane[], moving: boolean): void;
   bounds(): Bounds | null;
@@ -33,12 +33,12 @@ const kCuts: readonly SectionMode[] = ["off", "x", "y", "z"];
 const after = <T>(all: readonly T[], one: T): T => all[(all.indexOf(one) + 1) % all.length]!;
 
 export class Appearance {
-  looks: Look[] = []; // by order: the last is on top
+  looks: Look[] = []; // ascending by order: the last is on top
   light: Required<Light> = { mode: "museum", direction: kFirstRaking };
   section: SectionChoice = noSection();
 
   private _overrides = new Map<number, LookSettings>();
-  // looks of a named view, bottom to top; others lie above them in their own order
+  // surface images of a named view, bottom to top; others lie above them in their own order
   private _stack: number[] = [];
 
   constructor(
@@ -47,8 +47,7 @@ export class Appearance {
     private readonly _host: AppearanceHost,
   ) {}
 
-  // ── looks
-  // ─────────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── surface images ─────────────────────────────────────────────────────────────────────────────
 
   visible(look: Look): boolean {
     return this._overrides.get(look.id)?.visible ?? look.visible;
@@ -80,7 +79,7 @@ export class Appearance {
     if (!this.visible(look)) this.setVisible(look, true);
   }
 
-  /** A look that work made for this person: they see it at once. */
+  /** Shows a surface image that a job made for this person. */
   async showMade(id: number): Promise<void> {
     if (!this.looks.some((look) => look.id === id))
       this.takeLooks(
@@ -96,7 +95,7 @@ export class Appearance {
     this.put(await this.changeLook(look, { name }));
   }
 
-  /** Moves the look to the place `index` of the list, which is bottom to top. */
+  /** Moves the surface image to the place `index` of the list, which is bottom to top. */
   async move(look: Look, index: number): Promise<void> {
     await reorder(this.looks, look, index, {
       show: (looks) => this.takeLooks(looks),
@@ -106,7 +105,7 @@ export class Appearance {
     });
   }
 
-  /** In its version now. */
+  /** Changes the current version. */
   private async changeLook({ id }: Look, body: LookPatch): Promise<Look> {
     const path = { model: this._modelId, look: id };
     const { etag } = await this._api.versioned("GET /models/{model}/looks/{look}", { path });
@@ -153,15 +152,14 @@ export class Appearance {
     else if (event.look) this.put(event.look);
   }
 
-  // ── light and section
-  // ─────────────────────────────────────────────────────────────────────────────────────────────
+  // ── light and section ──────────────────────────────────────────────────────────────────────────
 
   setLight(change: Partial<Light>): void {
     this.light = { ...this.light, ...change };
     this.send();
   }
 
-  /** `moving`: more will follow at once. */
+  /** `moving`: further changes follow at once. */
   setSection(change: Partial<SectionChoice>, moving = false): void {
     this.section = { ...this.section, ...change };
     this.sendSection(moving);
@@ -174,7 +172,7 @@ export class Appearance {
     this.setSection({ mode: after(kCuts, this.section.mode) });
   }
 
-  /** The model's bounds are known, or others. */
+  /** Call this when the model's bounds become known or change. */
   sendSection(moving = false): void {
     const bounds = this._host.bounds();
     if (bounds) this._host.sendSection(sectionPlanes(this.section, bounds), moving);
@@ -185,15 +183,14 @@ export class Appearance {
     return this.light.mode === "museum" && this.section.mode === "off" && !this.hasLookOverrides;
   }
 
-  // ── named views
-  // ───────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── named views ────────────────────────────────────────────────────────────────────────────────
 
-  /** What a named view keeps of all this, apart from the section, which is the camera's. */
+  /** The settings that a named view keeps, without the section, which belongs to the camera. */
   toKeep(): { looks: LookShown[]; light: Light } {
     return { looks: this.shownLooks(), light: this.light };
   }
 
-  /** As a named view has it. Returns the way back. */
+  /** Applies the settings of a named view. Returns a function that restores the previous ones. */
   showView(view: { camera: { section?: Plane[] }; looks?: LookShown[]; light: Light }): () => void {
     const { _overrides, _stack, light, section } = this;
     const { settings, stack } = looksOfView(view, this.looks);

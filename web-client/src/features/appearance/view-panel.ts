@@ -1,5 +1,4 @@
-// <strata-view-panel>: how this person sees the model: the views that were kept, looks, light,
-// section.
+// <strata-view-panel>: a person's view of the model: saved views, surface images, light, section.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { customElement } from "lit/decorators.js";
@@ -17,7 +16,7 @@ import type { ViewRequest } from "../../session/requests";
 
 const kLights: readonly LightMode[] = ["museum", "headlight", "raking", "unlit"];
 const kSections: readonly Exclude<SectionMode, "planes">[] = ["off", "x", "y", "z", "box"];
-const kSteps = 1000; // of a section's slider
+const kSteps = 1000; // steps of a section's slider
 
 @customElement("strata-view-panel")
 export class StrataViewPanel extends FoldingPanel {
@@ -55,7 +54,7 @@ export class StrataViewPanel extends FoldingPanel {
         color: var(--ink-soft);
       }
       .segments button {
-        flex: 1 1 auto; /* as wide as its word, and more where there is room */
+        flex: 1 1 auto; /* at least as wide as its text */
         padding: 0 0.5rem;
       }
       output {
@@ -122,8 +121,7 @@ export class StrataViewPanel extends FoldingPanel {
     ></strata-look-list>`;
   }
 
-  // ── light and section
-  // ─────────────────────────────────────────────────────────────────────────────────────────────
+  // ── light and section ──────────────────────────────────────────────────────────────────────────
 
   private light(): TemplateResult {
     const { appearance } = this.session;

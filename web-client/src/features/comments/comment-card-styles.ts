@@ -1,4 +1,4 @@
-// What <strata-comment-card> looks like.
+// Styles of <strata-comment-card>.
 
 import { css } from "lit";
 
@@ -129,7 +129,7 @@ export const commentCardStyles = css`
       position: fixed;
       inset: auto 0 0 0 !important;
       width: auto;
-      max-height: 48dvh; /* what the camera flies to stays above it */
+      max-height: 48dvh; /* the target of the camera stays visible above it */
       border-radius: 1rem 1rem 0 0;
       border-bottom: 0;
       padding-bottom: env(safe-area-inset-bottom);

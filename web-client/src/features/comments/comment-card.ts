@@ -1,5 +1,4 @@
-// <strata-comment-card>: a thread beside its pin, or the one that is being begun; on a phone: a
-// sheet from below.
+// <strata-comment-card>: a thread next to its pin, or a new one; on a phone: a sheet at the bottom.
 
 import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -27,7 +26,7 @@ import { toldTime } from "../../domain/times";
 
 const words = texts.comments;
 const kGapPx = 20;
-const kMostCharacters = 10_000; // that the server takes
+const kMostCharacters = 10_000; // the server's limit
 const kNarrow = "(max-width: 820px)";
 
 @customElement("strata-comment-card")
@@ -38,7 +37,7 @@ export class StrataCommentCard extends LitElement {
   @state() private _editing: number | null = null;
   @query("section") private _section!: HTMLElement | null;
   private _shown: number | "new" | null = null;
-  private _opener: HTMLElement | null = null; // had the keyboard before
+  private _opener: HTMLElement | null = null; // had the focus before
   private readonly _names = new NameCompletion(this, () => this.session.comments.loadPeople());
 
   constructor() {
@@ -59,7 +58,7 @@ export class StrataCommentCard extends LitElement {
     this._opener = hasKeyboard();
   }
 
-  /** Whoever came by the keyboard goes on from where they came. */
+  /** Returns the keyboard focus to the element that opened the card. */
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     if (hasKeyboard() === null && this._opener?.isConnected)
@@ -96,7 +95,7 @@ export class StrataCommentCard extends LitElement {
     target?.focus({ preventScroll: true });
   }
 
-  /** Only here is it known how large the card is. */
+  /** Places the card next to its pin: its size is known only after rendering. */
   private putBeside(): void {
     const { _section: section, session } = this;
     if (!section || matchMedia(kNarrow).matches) return;
@@ -125,8 +124,7 @@ export class StrataCommentCard extends LitElement {
     section.style.top = `${found ? found.top + margin : margin}px`;
   }
 
-  // ── a new thread
-  // ──────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── a new thread ───────────────────────────────────────────────────────────────────────────────
 
   private composer(): TemplateResult {
     const { comments } = this.session;
@@ -178,8 +176,7 @@ export class StrataCommentCard extends LitElement {
     </section>`;
   }
 
-  // ── a thread
-  // ──────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── a thread ───────────────────────────────────────────────────────────────────────────────────
 
   private thread(thread: Thread): TemplateResult {
     const { session } = this;
@@ -284,8 +281,7 @@ export class StrataCommentCard extends LitElement {
     </article>`;
   }
 
-  // ── writing
-  // ───────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── writing ────────────────────────────────────────────────────────────────────────────────────
 
   private field(of: DraftOf, label: string, hint: string, text = ""): TemplateResult {
     const { comments } = this.session;
@@ -397,7 +393,7 @@ export class StrataCommentCard extends LitElement {
       await this.attempt("thread", () => this.session.comments.remove(comment));
   }
 
-  /** What was written stays where it is, also when it was refused. */
+  /** Keeps the text in its field, also after a refusal. */
   private async attempt(of: DraftOf | "thread", work: () => Promise<void>): Promise<void> {
     this._busy = true;
     this._problem = null;

@@ -1,4 +1,4 @@
-// <strata-comment-panel>: the threads of the model as a list, with what is new to this person.
+// <strata-comment-panel>: the threads of the model as a list, with unread ones marked.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { customElement, state } from "lit/decorators.js";
@@ -33,7 +33,7 @@ export class StrataCommentPanel extends FoldingPanel {
     personMarkStyles,
     css`
       :host {
-        position: relative; /* of what is hidden for eyes */
+        position: relative; /* for visually hidden content */
       }
       .dot {
         flex: none;

@@ -1,5 +1,5 @@
-// <strata-comment-pins>: where people wrote something, over the picture. What is behind the surface
-// has no pin.
+// <strata-comment-pins>: pins at the places of comments, over the picture. Places behind the
+// surface have no pin.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -16,8 +16,8 @@ import { styled } from "../../ui/styled";
 import { texts } from "../../texts";
 
 const words = texts.comments;
-const kMostPins = 10_000; // that the server keeps
-const kMostSaid = 80; // characters of its text, in a pin's name
+const kMostPins = 10_000; // the server's limit
+const kMostSaid = 80; // characters of the text in a pin's accessible name
 
 interface Placed {
   thread: Thread;
@@ -68,7 +68,7 @@ export class StrataCommentPins extends LitElement {
       button::before {
         content: "";
         position: absolute;
-        inset: -5px; /* fingers are wide, and pins may be near to each other */
+        inset: -5px; /* a larger target for fingers; pins may be close together */
       }
       button.chosen {
         outline: 3px solid var(--mark-dark);
@@ -89,7 +89,7 @@ export class StrataCommentPins extends LitElement {
       }
       .aside button {
         opacity: var(--unavailable);
-        pointer-events: none; /* paint goes where it is meant */
+        pointer-events: none; /* pointers reach the surface for painting */
       }
       i {
         position: absolute;
@@ -108,7 +108,7 @@ export class StrataCommentPins extends LitElement {
     const { comments, tools, view } = this.session;
     if (view.framesDrawn === 0) return html``;
     const placed = comments.pins.flatMap((thread) => this.place(thread));
-    // Nearer ones lie over those behind; the keyboard goes by their age.
+    // Nearer pins lie over farther ones; the tab order is by age.
     const order = new Map(
       [...placed]
         .sort((a, b) => b.depth - a.depth)
@@ -126,7 +126,7 @@ export class StrataCommentPins extends LitElement {
       <span class="visually-hidden" role="status">${comments.said}</span>`;
   }
 
-  /** Nowhere where it is not seen. */
+  /** Empty where the place is hidden. */
   private place(thread: Thread): Placed[] {
     const at = this.at(thread.first.position);
     return at && this.session.comments.isSeen(thread) ? [{ thread, ...at }] : [];
@@ -161,7 +161,7 @@ export class StrataCommentPins extends LitElement {
     </button>`;
   }
 
-  /** What is written and not sent; also behind the surface, so that it is found again. */
+  /** The unsent new thread; also shown behind the surface, so that its author finds it. */
   private draft(): TemplateResult | typeof nothing {
     const { comments } = this.session;
     const draft = comments.draft("new");

@@ -1,4 +1,4 @@
-// What a comment says: its lines as they were written, addresses as links, @names of people marked.
+// The text of a comment: lines as written, addresses as links, @names of people marked.
 
 import { css, html, type TemplateResult } from "lit";
 import { textParts } from "../../domain/comments";
@@ -27,5 +27,5 @@ export function commentText(text: string, people: ReadonlySet<string>): Template
       return html`<a href=${part.href} target="_blank" rel="noopener noreferrer nofollow">${part.text}</a>`;
     return part.kind === "mention" ? html`<span class="mention">${part.text}</span>` : part.text;
   });
-  return html`<p class="words">${parts}</p>`; // nothing between the tags: spaces count
+  return html`<p class="words">${parts}</p>`; // nothing between the tags: spaces are significant
 }

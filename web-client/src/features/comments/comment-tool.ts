@@ -1,5 +1,5 @@
-// A tap begins a comment at its place. A drag turns the model, as to the place that is meant one
-// has to come first.
+// A tap starts a comment at its place. A drag rotates the model, so that the user can reach the
+// place first.
 
 import type { PointerSample } from "../../ui/input";
 import { DragTool, type Navigator } from "../../tools/navigate";
@@ -15,7 +15,7 @@ export class CommentTool extends DragTool implements Tool {
     super(navigator);
   }
 
-  /** Without a pointer, in the middle of what is seen. */
+  /** Keyboard use: starts a comment in the middle of the picture. */
   key(key: string): boolean {
     if (key !== "Enter") return false;
     this._navigator.tap(this._middle());

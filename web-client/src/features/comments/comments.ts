@@ -1,5 +1,5 @@
-// The comments of the open model: what is known of them, which thread is open, what is written and
-// not sent yet, and what was read.
+// The comments of the open model: the known threads, the open thread, unsent drafts, and which
+// comments were read.
 
 import { labelOf } from "../../domain/cells";
 import { ApiError } from "../../net/api-error";
@@ -37,27 +37,29 @@ import type { ViewControl } from "../../session/view-control";
 import type { LayersPart, TablesPart } from "../../session/parts";
 
 const words = texts.comments;
-const kAround = 0.12; // of the model's radius: what is shown around a comment's place
+const kAround = 0.12; // share of the model's radius that is shown around a comment's place
 
-/** What a comment can be about, and what that is called. */
+/** A possible subject of a comment, with its name. */
 export interface Subject {
   layer: number;
   record?: number;
   label: string;
 }
 
-/** What is written and not sent. `key` tells the server when it is sent again. */
+/**
+ * An unsent text. `key` is its idempotency key, so that a repeated request has no second effect.
+ */
 export interface Draft {
   text: string;
   key: string;
-  /** Of a new thread. */
+  /** For a new thread. */
   position?: Vec3;
   normal?: Vec3;
   subjects?: Subject[];
-  subject?: number; // of them; absent: none
+  subject?: number; // index in `subjects`; absent: none
 }
 
-/** The name of a draft. */
+/** Key of a draft. */
 export type DraftOf = "new" | `reply ${number}` | `edit ${number}`;
 
 export interface CommentsHost {
@@ -66,7 +68,7 @@ export interface CommentsHost {
   readonly tables: TablesPart;
   model(): Model | null;
   here(): readonly PresenceUser[];
-  /** Somebody began to write, and wants to do nothing else with the pointer. */
+  /** A user has started a comment: other uses of the pointer end. */
   began(): void;
   changed(): void;
 }
@@ -74,14 +76,14 @@ export interface CommentsHost {
 type Marks = Record<string, Draft>;
 
 export class Comments {
-  /** Which are listed and have pins. */
+  /** The state of the threads that are listed and have pins. */
   state: ThreadState = "open";
-  /** Only this person's; only with these words: in the list. */
+  /** Filters of the list: only this person's threads; only threads with these words. */
   mine = false;
   words = "";
-  /** A thread by its id, or the one that is being begun. */
+  /** The open thread by its id, or the new one. */
   card: number | "new" | null = null;
-  /** What happened, for those who cannot see it. */
+  /** The last event, for screen readers. */
   said = "";
   readonly sight: PinSight;
 
@@ -89,7 +91,7 @@ export class Comments {
   private readonly _known = new KnownItems<Comment>();
   private _threads: Thread[] = [];
   private _people: readonly ProjectPerson[] = [];
-  private _asking: Promise<ProjectPerson[]> | null = null; // for them
+  private _asking: Promise<ProjectPerson[]> | null = null; // the pending request for people
   private _drafts: Kept<Marks> | null = null;
   private _reads: Kept<ReadMarks> | null = null;
   private readonly _shown = new Kept(() => globalThis.localStorage, "strata.comment_pins", true);
@@ -111,13 +113,12 @@ export class Comments {
     return this._me;
   }
 
-  // ── what there is
-  // ─────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── threads ────────────────────────────────────────────────────────────────────────────────────
 
   get loaded(): boolean {
     return this._known.loaded;
   }
-  /** They could not be read. */
+  /** The last read of the comments failed. */
   get failed(): boolean {
     return this._known.failed;
   }
@@ -137,7 +138,7 @@ export class Comments {
   get openCount(): number {
     return this._threads.filter(({ first }) => first.state === "open").length;
   }
-  /** Those of the chosen state, and the one that is looked at. */
+  /** Threads with the chosen state, and the open one. */
   get pins(): Thread[] {
     const shown = this.pinsShown
       ? findThreads(this._threads, { state: this.state, of: null, words: "" })
@@ -153,7 +154,7 @@ export class Comments {
     this.lookAgain();
   }
 
-  /** Those that are here, or wrote something, or were asked for. */
+  /** People who are present, who wrote a comment, or who are in the loaded list. */
   get people(): ReadonlySet<string> {
     const names = new Set(this._host.here().map(({ name }) => name));
     names.add(this._me);
@@ -163,8 +164,8 @@ export class Comments {
   }
 
   /**
-   * Whom one may name: the people of the project but oneself. They are asked for once a page, and
-   * again where that failed.
+   * The people that a comment can mention: the members of the project except this person. Loaded
+   * once for each page, and again after a failure.
    */
   async loadPeople(): Promise<readonly ProjectPerson[]> {
     const model = this._host.model();
@@ -176,7 +177,7 @@ export class Comments {
         this._people = (await this._asking).filter(({ user }) => user !== this._me);
         this._host.changed();
       } catch (error) {
-        if (!(error instanceof ApiError)) throw error; // one still writes what one likes
+        if (!(error instanceof ApiError)) throw error; // the text stays possible without completion
       } finally {
         this._asking = null;
       }
@@ -184,7 +185,9 @@ export class Comments {
     return this._people;
   }
 
-  /** The server said who this is; what happened before, nobody told this page. */
+  /**
+   * The server has identified this person. Earlier events are unknown, so all comments are loaded.
+   */
   welcome(user: string): void {
     if (user !== this._me) {
       const name = `${user}.${this._modelId}`;
@@ -224,7 +227,7 @@ export class Comments {
     this.put(comment);
     if (event !== "created" || !isNew || user === this._me) return;
     this.said = words.said(called(comment), comment.text);
-    // who reads the thread sees it there
+    // a person with the thread open sees it there
     if (!mentions(comment.text, this._me) || this.card === comment.thread) return;
     const act = (): void => this.goTo(comment.id);
     notices.show("info", words.mentioned(called(comment)), comment.text.slice(0, 200), {
@@ -243,14 +246,13 @@ export class Comments {
     this.lookAgain();
   }
 
-  // ── what is looked at
-  // ─────────────────────────────────────────────────────────────────────────────────────────────
+  // ── the open thread ────────────────────────────────────────────────────────────────────────────
 
   show(thread: number): void {
     this.card = thread;
     this.lookAgain();
   }
-  /** False: there was none. What was written is kept. */
+  /** Returns false if no card was open. The draft is kept. */
   close(): boolean {
     if (this.card === null) return false;
     if (this.card === "new" && !this.draft("new")?.text.trim()) this.setDraft("new", null);
@@ -277,7 +279,7 @@ export class Comments {
     );
   }
 
-  /** Opens the thread of a comment and goes there. */
+  /** Opens the thread of a comment and moves the camera to it. */
   goTo(id: number): void {
     const comment = this._known.find(id);
     const thread = comment && this.find(comment.thread ?? comment.id);
@@ -293,11 +295,11 @@ export class Comments {
     return this.sight.isSeen(placeOf(thread));
   }
 
-  /** There are other pins, or they may be behind something else. */
+  /** Call this when pins change, or when other objects may hide them. */
   lookAgain(): void {
     this._host.changed();
     this.sight.look().catch((error: unknown) => {
-      // until the camera rests next, they count as seen where they face it
+      // until the camera rests again, pins on surfaces that face the camera count as visible
       if (!(error instanceof ApiError)) throw error;
     });
   }
@@ -310,8 +312,7 @@ export class Comments {
     return samples.map(({ point }) => (point.hit && point.position ? point.position : null));
   }
 
-  // ── what was read
-  // ─────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── read marks ─────────────────────────────────────────────────────────────────────────────────
 
   isUnread(thread: Thread): boolean {
     return this._reads !== null && isUnread(thread, this._reads.value, this._me);
@@ -330,40 +331,37 @@ export class Comments {
     this._host.changed();
   }
 
-  // ── what is written
-  // ───────────────────────────────────────────────────────────────────────────────────────────────
+  // ── drafts ─────────────────────────────────────────────────────────────────────────────────────
 
   draft(of: DraftOf): Draft | null {
     return this._drafts?.value[of] ?? null;
   }
-  /** What is written there now; null or nothing: it is given up. */
+  /** Changes the draft; null or an empty text discards it. */
   setDraft(of: DraftOf, change: Partial<Omit<Draft, "key">> | null): void {
     if (!this._drafts) return;
     const { [of]: before, ...others } = this._drafts.value;
-    // Another text is another call: with the key of one that was sent it would be refused.
+    // A changed text is another request: the server would refuse it with a key that was already
+    // sent.
     const draft = change && { text: "", ...before, ...change, key: newId() };
     const isEmpty = !draft || (of !== "new" && draft.text === "");
     this._drafts.value = isEmpty ? others : { ...others, [of]: draft };
     this._host.changed();
   }
 
-  /** What the new thread is about; null: the place itself. */
+  /** Sets the subject of the new thread; null: the place itself. */
   chooseSubject(subject: number | null): void {
     const { subject: _, ...draft } = this.draft("new") ?? { text: "" };
     this.setDraft("new", null);
     this.setDraft("new", subject === null ? draft : { ...draft, subject });
   }
 
-  /** With the new thread that was written and not sent. */
+  /** Continues the unsent new thread. */
   goOn(): void {
     this.card = "new";
     this.lookAgain();
   }
 
-  /**
-   * A new thread begins where somebody points to. What was written elsewhere and not sent moves
-   * there.
-   */
+  /** Starts a new thread at the pointer. An unsent new thread moves there with its text. */
   async begin({ x, y }: PointerSample): Promise<void> {
     try {
       const found = await this._api.json("POST /models/{model}/pick", {
@@ -387,7 +385,10 @@ export class Comments {
     this.lookAgain();
   }
 
-  /** What is painted there, and what is painted on: a gap in it may be what a comment is about. */
+  /**
+   * Possible subjects at a point: the layers with a value there, and the selected layer, since a
+   * comment may be about a gap in it.
+   */
   private subjectsAt({ values }: SurfacePoint): Subject[] {
     const { layers, tables } = this._host;
     const subjectOf = (layer: Layer): Subject[] => {
@@ -441,8 +442,8 @@ export class Comments {
   }
 
   /**
-   * Of what was read: another's change in between is an ApiError of status 412, and the comment is
-   * then as it is now.
+   * Changes the version that was read. If another person has changed it since, the function throws
+   * an ApiError with status 412, and the comment is updated.
    */
   async change(
     comment: Comment,

@@ -1,5 +1,5 @@
-// Completes the names of people behind an @ while a comment is written: the field is a combobox
-// while there are some, and its list follows it.
+// Completes the names of people after an @ in a comment. The field is a combobox while names are on
+// offer; its list is placed at the field.
 
 import { css, html, nothing, type ReactiveControllerHost, type TemplateResult } from "lit";
 import { mentionBegun, peopleLike } from "../../domain/mentions";
@@ -34,31 +34,31 @@ export const nameCompletionStyles = css`
 `;
 
 export class NameCompletion {
-  private _field: HTMLTextAreaElement | null = null; // that is written in, while names are offered
-  private _at = 0; // of the @
+  private _field: HTMLTextAreaElement | null = null; // with the caret, while names are on offer
+  private _at = 0; // index of the @
   private _people: readonly ProjectPerson[] = [];
   private _chosen = 0;
 
   constructor(
     private readonly _host: ReactiveControllerHost,
-    /** Whom one may name; they may come later. */
+    /** The people that can be mentioned; loaded on demand. */
     private readonly _all: () => Promise<readonly ProjectPerson[]>,
   ) {}
 
-  /** Of the field with that name. */
+  /** Whether names are on offer in the field with that name. */
   offersIn(name: string): boolean {
     return this._field?.name === name;
   }
-  /** The option that the keyboard is on. */
+  /** The id of the active option. */
   get active(): string {
     return `name-${this._chosen}`;
   }
 
-  /** Something was written in the field, or the caret moved. */
+  /** Call this after the text or the caret has changed. */
   async look(field: HTMLTextAreaElement): Promise<void> {
     if (!mentionBegun(field.value, field.selectionStart)) return this.close();
     const all = await this._all();
-    // more may have been written meanwhile
+    // the user may have typed more while the people loaded
     const begun = mentionBegun(field.value, field.selectionStart);
     const people = begun && field.matches(":focus") ? peopleLike(all, begun.word) : [];
     const isWhole =
@@ -78,8 +78,8 @@ export class NameCompletion {
   }
 
   /**
-   * Arrows choose, Enter and Tab take, Escape closes the list alone. True: the key was for the
-   * list.
+   * Arrows choose, Enter and Tab accept, Escape closes only the list. Returns true if the list used
+   * the key.
    */
   onKey(event: KeyboardEvent): boolean {
     if (!this._field || event.ctrlKey || event.metaKey || event.altKey || event.isComposing)
@@ -106,7 +106,7 @@ export class NameCompletion {
             role="option"
             aria-selected=${index === this._chosen}
             @pointerdown=${(event: Event) => {
-              event.preventDefault(); // the field keeps the keyboard
+              event.preventDefault(); // the field keeps the focus
               this.take(index);
             }}
           >

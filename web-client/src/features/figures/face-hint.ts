@@ -1,5 +1,5 @@
-// <strata-face-hint>: what to do while a face of the model is asked for, over the model; the dialog
-// that asks has stepped aside.
+// <strata-face-hint>: instructions over the model while the user picks a face; the dialog is hidden
+// then.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -21,7 +21,7 @@ export class StrataFaceHint extends LitElement {
         position: fixed;
         z-index: 30;
         left: 50%;
-        top: 66px; /* below the head of the page: notices, and on phones the panel, are at the foot */
+        top: 66px; /* below the header: notices and, on phones, the panel are at the bottom */
         transform: translateX(-50%);
         display: flex;
         flex-wrap: wrap;

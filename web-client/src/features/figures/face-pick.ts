@@ -1,5 +1,5 @@
-// A face of the surface that is asked for: the person taps it, takes what is in the middle of the
-// picture, or gives up.
+// Picking of a face of the surface: the user taps it, takes the one in the middle of the picture,
+// or cancels.
 
 import type { Api } from "../../net/api";
 import { OrbitCamera } from "../../math/camera";
@@ -14,20 +14,20 @@ import type { ViewControl } from "../../session/view-control";
 export interface FacePickHost {
   readonly view: ViewControl;
   model(): Model | null;
-  /** Its tool is in hand from now on; and no longer. */
+  /** Activates and deactivates the tool. */
   begin(): void;
   end(): void;
 }
 
 export class FacePick {
-  private _answer: ((face: Face | null) => void) | null = null; // of who asks
+  private _answer: ((face: Face | null) => void) | null = null; // resolves the pending ask()
 
   constructor(
     private readonly _api: Api,
     private readonly _host: FacePickHost,
   ) {}
 
-  /** Null: none was taken. */
+  /** Resolves to null if the user cancels. */
   ask(): Promise<Face | null> {
     this.giveUp();
     return new Promise((resolve) => {
@@ -37,7 +37,7 @@ export class FacePick {
   }
 
   async takeAt({ x, y }: PointerSample): Promise<void> {
-    // which moves on until the answer comes
+    // a copy: the camera may move before the answer arrives
     const camera = Object.assign(new OrbitCamera(), this._host.view.camera);
     const asker = this._answer;
     const model = this._host.model();
@@ -55,7 +55,7 @@ export class FacePick {
       }
       const outwards = normal ?? back;
       const toEye = camera.perspective ? subtract(camera.eye(), position) : back;
-      // of an open scan its inside
+      // an open scan may show its inside
       const seen = dot(outwards, toEye) < 0 ? scale(outwards, -1) : outwards;
       this.finish({ center: position, normal: [seen[0], seen[1], seen[2]] });
     } catch (error) {

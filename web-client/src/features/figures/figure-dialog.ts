@@ -1,6 +1,5 @@
-// <strata-figure-dialog>: asks what a measured figure is to be like, shows the sheet while it is
-// chosen, and has the file made. Of what this person sees, or with `view` of what a named view
-// shows.
+// <strata-figure-dialog>: asks for the options of a measured figure, previews the sheet, and starts
+// the job that makes the file. The content is this person's view or, with `view`, a named view.
 
 import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -50,16 +49,16 @@ const kFrom: readonly FigureFrom[] = ["camera", ...kDirections, "face"];
 @customElement("strata-figure-dialog")
 export class StrataFigureDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** Null: what this person sees. */
+  /** Null: this person's view. */
   @property({ attribute: false }) view: View | null = null;
   @state() private _choices: FigureChoices = figureChoices(null);
   @state() private _scaleTyped: string | null = null; // null: one of the list
   @state() private _dpiTyped: string | null = null;
   @state() private _problem: FieldProblem | null = null;
-  @state() private _asking = false; // for a face: the dialog is aside
+  @state() private _asking = false; // a face is being picked; the dialog is hidden
   @state() private _sending = false;
   private readonly _kept = new Kept<unknown>(() => localStorage, "strata.figure", null);
-  private _camera: CameraMessage | null = null; // that this person sees by
+  private _camera: CameraMessage | null = null; // this person's camera
   private _opener: HTMLElement | null = null;
 
   constructor() {
@@ -75,7 +74,7 @@ export class StrataFigureDialog extends LitElement {
     const choices = figureChoices(this._kept.value);
     const { face } = this.session.figures.draft;
     this._choices = choices.from === "face" && !face ? { ...choices, from: "camera" } : choices;
-    // the view is what was asked for
+    // the user asked for the figure of a view
     if (this.view) this._choices = { ...this._choices, from: "camera" };
     if (choices.scale !== null && !kScales.includes(choices.scale))
       this._scaleTyped = scaleText(choices.scale);
@@ -85,7 +84,7 @@ export class StrataFigureDialog extends LitElement {
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.session.figures.awaited = null; // its file is offered by a notice
+    this.session.figures.awaited = null; // a notice offers the file
     this.session.face.giveUp();
   }
 
@@ -99,7 +98,10 @@ export class StrataFigureDialog extends LitElement {
     void this.goToProblem();
   }
 
-  /** While the dialog is open the camera may follow somebody; the sheet does not. */
+  /**
+   * The camera may follow another participant while the dialog is open; the sheet keeps this
+   * camera.
+   */
   private seeCamera(): void {
     this._camera = this.session.views.content().camera;
   }
@@ -125,8 +127,7 @@ export class StrataFigureDialog extends LitElement {
     );
   }
 
-  // ── what is seen
-  // ──────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── rendering ──────────────────────────────────────────────────────────────────────────────────
 
   override render(): TemplateResult {
     const { session, view } = this;
@@ -332,15 +333,14 @@ export class StrataFigureDialog extends LitElement {
     <button slot="actions" class="primary" form="figure" ?disabled=${busy || this._sending}>${words.make}</button>`;
   }
 
-  /** For who does not see the picture. */
+  /** A description of the preview for screen readers. */
   private description(): string {
     const { from, scale, paper } = this._choices;
     const seen = from === "camera" && this.view ? words.as_view : words.froms[from];
     return words.preview(paper.toUpperCase(), seen, scale === null ? words.fits : scaleText(scale));
   }
 
-  // ── what is chosen
-  // ────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── choices ────────────────────────────────────────────────────────────────────────────────────
 
   private choose(change: Partial<FigureChoices>): void {
     this._choices = { ...this._choices, ...change };
@@ -354,7 +354,7 @@ export class StrataFigureDialog extends LitElement {
     else this.choose({ from });
   }
 
-  /** The dialog comes back with the face, or as it was. */
+  /** Hides the dialog and shows it again with the picked face, or unchanged. */
   private async askFace(): Promise<void> {
     this._asking = true;
     this.dispatchEvent(new CustomEvent("aside"));
@@ -397,7 +397,7 @@ export class StrataFigureDialog extends LitElement {
     this.requestUpdate();
   }
 
-  /** Without a column: the first that there is. */
+  /** Without a column, the first one is used. */
   private label(labels: LabelChoice | null): void {
     this.session.figures.draft.labels = labels;
     if (this._problem?.field === "labels") this._problem = null;
@@ -408,8 +408,7 @@ export class StrataFigureDialog extends LitElement {
     this.dispatchEvent(new CustomEvent("correct"));
   }
 
-  // ── what is wrong
-  // ─────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── problems ───────────────────────────────────────────────────────────────────────────────────
 
   private isWrong(field: string): boolean {
     return this._problem?.field === field;
@@ -427,10 +426,10 @@ export class StrataFigureDialog extends LitElement {
     this._problem = fieldProblem(problem);
   }
 
-  /** Of the preview: what is wrong stands at its field, where it has one. */
+  /** On a problem of the preview: shows it at its field if the dialog has that field. */
   private onTold(event: CustomEvent<ProblemBody | null>): void {
     const problem = event.detail;
-    if (this.typingProblem) return; // what is asked for is not what is typed
+    if (this.typingProblem) return; // the request differs from the typed values
     if (problem?.field === undefined) return;
     this.refuse(problem);
     if (this._problem?.field !== "") event.preventDefault();
@@ -440,8 +439,7 @@ export class StrataFigureDialog extends LitElement {
     return typingProblem(this._scaleTyped, this._dpiTyped);
   }
 
-  // ── what is made
-  // ──────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── the job ────────────────────────────────────────────────────────────────────────────────────
 
   private readonly onSubmit = (event: Event): void => {
     event.preventDefault();
@@ -456,7 +454,7 @@ export class StrataFigureDialog extends LitElement {
     }
   };
 
-  /** The field may be out of sight. */
+  /** Focuses the wrong field, which may be scrolled out of sight. */
   private async goToProblem(): Promise<void> {
     await this.updateComplete;
     this.renderRoot.querySelector<HTMLElement>('[aria-invalid="true"]')?.focus();
@@ -489,7 +487,7 @@ export class StrataFigureDialog extends LitElement {
 
   private readonly onClosed = (): void => {
     this.dispatchEvent(new CustomEvent("closed"));
-    // the browser forgets it where the dialog stepped aside
+    // the browser loses the opener when the dialog was hidden
     if (!hasKeyboard()) this._opener?.focus();
   };
 }

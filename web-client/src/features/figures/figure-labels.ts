@@ -1,5 +1,4 @@
-// Which words stand beside the places of a figure: of a layer whose texels hold records, one of the
-// columns.
+// Labels at the places of a figure: the texts of one column, for a layer of records.
 
 import { html, nothing, type TemplateResult } from "lit";
 import { holdsFiles, labelColumn, labelOf } from "../../domain/cells";
@@ -11,13 +10,13 @@ import { texts } from "../../texts";
 
 const words = texts.figures;
 
-/** As it is chosen; without a column the first that there is. */
+/** The user's choice; without a column, the first one. */
 export interface LabelChoice {
   layer: number;
   column: string;
 }
 
-/** Columns that can be written beside a place; what records are called comes first. */
+/** Columns that can be a label; the column with the records' names comes first. */
 export function columnsForLabels(session: ModelSession, layer: Layer): Column[] {
   const table = session.tables.find(layer.table!);
   if (!table) return [];
@@ -26,7 +25,7 @@ export function columnsForLabels(session: ModelSession, layer: Layer): Column[] 
   return columns.sort((a, b) => Number(b === title) - Number(a === title));
 }
 
-/** What is asked of the server; null: none, or none yet. */
+/** The part of the request to the server; null: no labels, or none yet. */
 export function labelsOf(session: ModelSession): FigureLabels | null {
   const { layer: id, column } = session.figures.draft.labels ?? {};
   const layer = session.layers.all.find((each) => each.id === id);
@@ -36,7 +35,7 @@ export function labelsOf(session: ModelSession): FigureLabels | null {
 
 const valueFor = (event: Event): string => (event.target as HTMLSelectElement).value;
 
-/** `wrong` and `told`: of the field, for who reads the screen. */
+/** `wrong`: whether the field is invalid; `told`: the id of its message, for ARIA attributes. */
 export function labelFields(
   session: ModelSession,
   {
@@ -51,7 +50,7 @@ export function labelFields(
     choose(labels: LabelChoice | null): void;
   },
 ): TemplateResult | typeof nothing {
-  // as in the list of layers
+  // in the order of the layer list
   const layers = session.layers.all.filter(({ table }) => table !== undefined).reverse();
   if (layers.length === 0) return nothing;
   const layer = layers.find(({ id }) => id === session.figures.draft.labels?.layer) ?? null;

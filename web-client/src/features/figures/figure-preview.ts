@@ -1,5 +1,4 @@
-// <strata-figure-preview>: the sheet as it would be now, drawn anew a moment after what is asked
-// for has changed.
+// <strata-figure-preview>: the sheet with the current options, redrawn a moment after each change.
 
 import { pageLocale } from "../../core/locale";
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
@@ -13,22 +12,22 @@ import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.figures;
-const kWaitMs = 350; // until somebody has stopped to type
+const kWaitMs = 350; // after the last key press
 
 @customElement("strata-figure-preview")
 export class StrataFigurePreview extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** Null: nothing can be drawn yet. */
+  /** Null: nothing to draw yet. */
   @property({
     attribute: false,
     hasChanged: (now: FigureRequest | null, before?: FigureRequest | null) =>
       before === undefined || JSON.stringify(now) !== JSON.stringify(before),
   })
   request: FigureRequest | null = null;
-  /** What the picture shows, for who does not see it. */
+  /** Text alternative of the picture. */
   @property() alt = "";
   @state() private _state: "nothing" | "waiting" | "drawn" | "failed" = "nothing";
-  @state() private _picture = ""; // address
+  @state() private _picture = ""; // object URL
   @state() private _problem = "";
   private _timer = 0;
   private _asked: AbortController | null = null;
@@ -164,15 +163,15 @@ export class StrataFigurePreview extends LitElement {
       this.tell(null);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (asked !== this._asked) return; // something else is asked for
+      if (asked !== this._asked) return; // a newer request exists
       this._state = "failed";
       this._problem = this.tell(error.problem) ? error.message : "";
     }
   }
 
   /**
-   * What is wrong with the request, or null; who shows it at its field prevents the event's
-   * default.
+   * Reports the problem of the request, or null. A listener that shows the problem at its field
+   * prevents the event's default.
    */
   private tell(problem: ProblemBody | null): boolean {
     return this.dispatchEvent(

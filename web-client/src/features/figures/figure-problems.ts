@@ -1,4 +1,4 @@
-// What is wrong with a figure, and at which field of its dialog that is said.
+// Problems of a figure, and the fields of the dialog that show them.
 
 import { readNumber } from "../../core/locale";
 import type { ProblemBody } from "../../core/types";
@@ -7,13 +7,13 @@ import { texts } from "../../texts";
 
 const words = texts.figures;
 
-/** `field` is empty where the dialog has none for it. */
+/** `field` is empty where the dialog has no field for the problem. */
 export interface FieldProblem {
   field: string;
   text: string;
 }
 
-/** Which of the dialog's fields a part of the request is chosen in. */
+/** The dialog's field for a member of the request. */
 const kFieldOf: Readonly<Record<string, string>> = {
   direction: "from",
   normal: "from",
@@ -34,14 +34,14 @@ const kFields: readonly string[] = [
   "labels",
 ];
 
-/** Of the server. */
+/** For a problem from the server. */
 export function fieldProblem({ field = "", title, detail }: ProblemBody): FieldProblem {
   const part = field.split(/[.[]/)[0]!;
   const own = kFieldOf[part] ?? part;
   return { field: kFields.includes(own) ? own : "", text: detail ?? title };
 }
 
-/** What was typed is none of the choices of its field; null: nothing was typed there. */
+/** The problem of typed values that are not valid choices; null: nothing was typed. */
 export function typingProblem(scale: string | null, dpi: string | null): FieldProblem | null {
   if (scale !== null && Number.isNaN(readScale(scale)))
     return { field: "scale", text: words.wrong_scale };

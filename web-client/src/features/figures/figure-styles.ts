@@ -1,4 +1,4 @@
-// How the dialog of measured figures looks: its fields beside the sheet, and on phones below it.
+// Styles of the dialog for measured figures: its fields next to the sheet, and on phones below it.
 
 import { css } from "lit";
 
@@ -71,7 +71,7 @@ export const figureStyles = css`
     color: var(--ink);
   }
   .sheet {
-    position: sticky; /* beside the fields, which are longer */
+    position: sticky; /* stays visible next to the fields, which are longer */
     top: 0;
     display: grid;
     grid-template-columns: minmax(0, 1fr);
@@ -97,7 +97,7 @@ export const figureStyles = css`
     overflow-wrap: anywhere;
   }
   .told.nothing {
-    flex-basis: 0; /* the buttons stay beside each other */
+    flex-basis: 0; /* keeps the buttons in one row */
   }
   .bar {
     height: 0.375rem;

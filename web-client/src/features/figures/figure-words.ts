@@ -1,4 +1,4 @@
-// What is written on the sheet of a figure: its title, caption and credit.
+// The texts on the sheet of a figure: title, caption and credit.
 
 import { html, type nothing, type TemplateResult } from "lit";
 import type { FigureWords } from "../../domain/figures";
@@ -12,7 +12,7 @@ const kWords: readonly { name: keyof FigureWords; most: number }[] = [
   { name: "credit", most: 1000 },
 ];
 
-/** What the dialog says of its fields, and who takes what is written. */
+/** Callbacks of the dialog: the state of its fields, and the change of a text. */
 interface WordFields {
   wrong(field: string): boolean;
   told(field: string): string | typeof nothing;

@@ -1,5 +1,5 @@
-// Measured figures that this person makes of the open model: the work on the server, the file that
-// comes of it, and what was written for one until then.
+// Measured figures of the open model: the jobs of this person, the resulting files, and the draft
+// of the next figure.
 
 import type { Api } from "../../net/api";
 import type { Face, FigureWords } from "../../domain/figures";
@@ -11,18 +11,18 @@ import { saveBlob } from "../../ui/save-from";
 import { texts } from "../../texts";
 
 export class Figures {
-  /** Is there again when the dialog is opened anew, for as long as the model is open. */
+  /** Kept while the model is open, so that the dialog shows it again. */
   draft: {
     words: FigureWords;
     labels: { layer: number; column: string } | null;
     face: Face | null;
   } = { words: { title: "", caption: "", credit: "" }, labels: null, face: null };
   /**
-   * Key of the job that somebody waits for: its file is saved as soon as it is there, and others
-   * are offered.
+   * Key of the job that the open dialog waits for: its file is saved as soon as it exists. Notices
+   * offer the files of other jobs.
    */
   awaited: number | null = null;
-  /** Name of the file that was saved last. */
+  /** Name of the last saved file. */
   saved = "";
 
   constructor(
@@ -31,8 +31,7 @@ export class Figures {
   ) {}
 
   /**
-   * Returns the key of the job, which is awaited. Throws an ApiError where the server refuses it at
-   * once.
+   * Returns the key of the job and awaits it. Throws an ApiError if the server refuses it at once.
    */
   async make(name: string, wish: FigureRequest): Promise<number> {
     this.saved = "";

@@ -1,5 +1,6 @@
-// <strata-delete-project-dialog>: what deleting a project takes along. With models it stays; with
-// tables its name is typed first. Opened by askToDeleteProject().
+// <strata-delete-project-dialog>: shows the contents that are deleted with a project. A project
+// with models cannot be deleted; for one with tables the user types its name first. Opened by
+// askToDeleteProject().
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -25,7 +26,7 @@ class StrataDeleteProjectDialog extends LitElement {
   answer: (isDeleted: boolean) => void = () => {};
 
   @state() private _tables: readonly Table[] | null = null;
-  @state() private _hasTrashed = false; // models that lie in its trash
+  @state() private _hasTrashed = false; // the trash contains models
   @state() private _typed = "";
   @state() private _problem = "";
   @state() private _busy = false;
@@ -141,7 +142,7 @@ class StrataDeleteProjectDialog extends LitElement {
       this._dialog.close();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      await this.read(); // some of the tables may be gone
+      await this.read(); // some tables may have been deleted
       this._problem = error.message;
     } finally {
       this._busy = false;
@@ -154,7 +155,7 @@ class StrataDeleteProjectDialog extends LitElement {
   }
 }
 
-/** Whether it was deleted. */
+/** Resolves to whether the project was deleted. */
 export function askToDeleteProject(api: Api, listed: ListedProject): Promise<boolean> {
   return new Promise((resolve) => {
     const element = new StrataDeleteProjectDialog();

@@ -1,5 +1,5 @@
-// <strata-home-page>: the projects, or the models of one of them, and the imports under way. Where
-// there is one project only, its models.
+// <strata-home-page>: the projects, or the models of one project, and running imports. With only
+// one project: its models.
 
 import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -35,7 +35,7 @@ import { cardStyles, homeStyles } from "./home-styles";
 import { texts } from "../../texts";
 import "../../ui/thumbnail";
 
-/** The server's name of a step of the import, where it is one that people know. */
+/** The text for a step of the import; the server's message where no text exists. */
 const plainStep = (message: string): string =>
   /\b(atlas|texels?|uvs?|charts?)\b/i.test(message) ? texts.import.unfolding : message;
 
@@ -44,15 +44,15 @@ export class StrataHomePage extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) me!: Me;
   @property({ attribute: false }) imports!: Imports;
-  /** All that this person sees. */
+  /** All projects that this person can see. */
   @property({ attribute: false }) projects: readonly Project[] = [];
-  /** The slug of the one whose models are looked at; null: all that there is. */
+  /** The slug of the open project; null: all. */
   @property({ attribute: false }) project: string | null = null;
-  /** Where this person may import scans, and delete models. */
+  /** The projects in which this person may import scans and delete models. */
   @property({ attribute: false }) curated: readonly Project[] = [];
-  /** The one of them that scans are imported into. */
+  /** The one of them that imports go to. */
   @property({ attribute: false }) into: Project | null = null;
-  /** Counts imports that ended: the list is read again. */
+  /** Number of finished imports; a change reloads the list. */
   @property({ attribute: false }) imported = 0;
   @state() private _models: Model[] | null = null;
   @state() private _problem = "";
@@ -78,24 +78,24 @@ export class StrataHomePage extends LitElement {
     document.title = shown ? `${shown.name} – ${texts.product}` : texts.product;
   }
 
-  /** Whoever came by the keyboard goes on at the head of what they came to. */
+  /** Moves the keyboard focus to the heading of the new page. */
   override updated(changed: PropertyValues<this>): void {
     if (changed.has("project") && changed.get("project") !== undefined && hasKeyboard() === null)
       this._heading?.focus({ preventScroll: true });
   }
 
-  /** The project whose page this is; null: there is none of that name. */
+  /** The open project; null: all, or none with that slug. */
   private get shown(): Project | null {
     return this.projects.find(({ slug }) => slug === this.project) ?? null;
   }
-  /** The one that is looked at, also where it is the only one. */
+  /** The project whose models are shown, also if it is the only one. */
   private get about(): ListedProject | null {
     const { shown, listed } = this;
     if (!this._models) return null;
     if (shown) return { project: shown, models: this.models };
     return this.project === null && listed.length === 1 ? listed[0]! : null;
   }
-  /** There is something else than the one that is shown. */
+  /** Whether the page links to other projects. */
   private get leadsUp(): boolean {
     const { shown } = this;
     return (
@@ -103,7 +103,10 @@ export class StrataHomePage extends LitElement {
       (this.hasSeveral || (this._models !== null && this.listed[0]?.project !== shown))
     );
   }
-  /** There are several to choose among. Before it is known what is in them: surely. */
+  /**
+   * Whether there are several projects to choose from. Assumed by their number until their models
+   * are loaded.
+   */
   private get hasSeveral(): boolean {
     return this._models
       ? this.listed.length > 1
@@ -125,7 +128,7 @@ export class StrataHomePage extends LitElement {
     return (this._models ?? []).filter(({ project }) => !shown || project === shown.slug);
   }
 
-  /** It is known that there is none here: what to do about it stands in the middle. */
+  /** Whether the list is loaded and empty: the page then shows what to do. */
   private get hasNone(): boolean {
     return this._models !== null && this.models.length === 0;
   }
@@ -134,7 +137,7 @@ export class StrataHomePage extends LitElement {
     return this.into !== null;
   }
 
-  /** Who may make projects may change and delete all of them. */
+  /** Whether this person may create projects, and change and delete all of them. */
   private get canAdminister(): boolean {
     return mayAdminister(this.me.role);
   }
@@ -213,7 +216,7 @@ export class StrataHomePage extends LitElement {
   }
   private get counted(): string {
     const words = texts.home;
-    if (!this._models || this.models.length === 0) return ""; // that is said below
+    if (!this._models || this.models.length === 0) return ""; // the page says so below
     return this.isGallery
       ? words.count_projects(this.listed.length)
       : words.count(this.models.length);
@@ -263,7 +266,7 @@ export class StrataHomePage extends LitElement {
     </ul>`;
   }
 
-  /** As where a model is not here. */
+  /** The page for an unknown project, as for an unknown model. */
   private missing(): TemplateResult {
     const words = texts.home;
     return html`<div class="empty">
@@ -291,7 +294,7 @@ export class StrataHomePage extends LitElement {
 
   private projectMenu(listed: ListedProject, place = ""): TemplateResult | typeof nothing {
     const { project } = listed;
-    if (!curates(project)) return nothing; // who administers curates everywhere
+    if (!curates(project)) return nothing; // administrators are curators of all projects
     return html`<strata-menu class=${place} label=${texts.home.options(project.name)} .quiet=${place === ""}>
       ${
         this.canAdminister
@@ -398,7 +401,7 @@ export class StrataHomePage extends LitElement {
     this.dispatchEvent(new CustomEvent<File[]>("import-files", { detail: files }));
   }
 
-  /** `next`: where to go once the page knows of it. */
+  /** `next`: the path to open after the reload of the projects. */
   private projectsChanged(next: string | null = null): void {
     this.dispatchEvent(new CustomEvent("projects-changed", { detail: next }));
   }
@@ -415,7 +418,7 @@ export class StrataHomePage extends LitElement {
   }
 
   private async deleteProject(listed: ListedProject): Promise<void> {
-    // something may have been restored
+    // models may have been restored
     if (!(await askToDeleteProject(this.api, listed))) return this.load();
     notices.show("success", texts.home.deleted(listed.project.name));
     this.projectsChanged("/");

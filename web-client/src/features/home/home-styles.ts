@@ -1,6 +1,6 @@
 import { css } from "lit";
 
-/** What stands below a card's picture. */
+/** Styles of the part below a card's picture. */
 export const cardStyles = css`
   .about {
     display: grid;
@@ -119,7 +119,7 @@ export const homeStyles = css`
     overflow-wrap: anywhere;
   }
   h1:focus {
-    outline: none; /* it only says where one is */
+    outline: none; /* only the target of the focus, not a control */
   }
   .projects li > a {
     height: 100%;
@@ -262,7 +262,7 @@ export const homeStyles = css`
       flex-basis: auto;
     }
     .title h1 {
-      max-width: calc(100% - 2.625rem); /* its menu stands beside it */
+      max-width: calc(100% - 2.625rem); /* leaves room for its menu */
     }
     .into {
       flex: 1 1 100%;

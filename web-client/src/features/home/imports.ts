@@ -1,5 +1,5 @@
-// Imports under way: upload, then the server's job. Kept outside the page's elements, so that going
-// to another page does not stop them.
+// Running imports: upload, then the server's job. Kept outside the page's elements, so that a
+// change of page does not stop them.
 
 import { ApiError } from "../../net/api-error";
 import { nameOfFile } from "../../domain/file-names";
@@ -17,27 +17,27 @@ export interface ImportEntry {
   key: number;
   name: string;
   state: ImportState;
-  progress: number; // 0…1 of the present step
+  progress: number; // 0…1 of the current step
   message: string;
   problem: ProblemBody | null;
   model: number | null;
-  /** It failed through no fault of the file: it may be sent again. */
+  /** The import failed for a reason other than the file: the user can send it again. */
   mayRepeat: boolean;
 }
 
 const kScans = /\.(ply|obj|stl|gltf|glb|zip)$/i;
-// materials, buffers and pictures that a mesh names
+// materials, buffers and images that a mesh may refer to
 const kCompanions = /\.(mtl|bin|png|jpe?g|tiff?|webp|bmp|tga)$/i;
 
-/** How an import ended; neither where it was cancelled, or refused before it began. */
+/** The result of an import; both are null if it was canceled, or refused before it began. */
 export interface ImportResult {
   model: number | null;
   problem: ProblemBody | null;
 }
 
 /**
- * A mesh with the files it may need; the mesh comes first, and gives the name: with its folders
- * where others are called the same.
+ * A mesh with the files that it may need. The mesh comes first and gives the name, with its folders
+ * where other meshes have the same name.
  */
 export type ScanFiles = readonly [DroppedFile, ...DroppedFile[]];
 export interface Scan {
@@ -49,8 +49,8 @@ const folderOf = (path: string): string => path.slice(0, path.lastIndexOf("/") +
 const stemOf = (path: string): string => path.replace(/\.[^./]*$/, "");
 
 /**
- * What each mesh is called: as its file; where several are called so, with as many of its folders
- * as tell them apart.
+ * The name of each mesh: that of its file; for equal names, with as many of its folders as make it
+ * unique.
  */
 function namesOf(meshes: readonly DroppedFile[]): Map<DroppedFile, string> {
   const nameOf = ({ path }: DroppedFile, folders: number): string => {
@@ -70,12 +70,12 @@ function namesOf(meshes: readonly DroppedFile[]): Map<DroppedFile, string> {
 }
 
 /**
- * The scans among dropped files. All that may belong to a mesh comes with it where it is the only
- * one; where there are several, what is called like it does. What is left over is told.
+ * Chooses the scans among dropped files. A single mesh gets all companion files; with several
+ * meshes, each gets those whose paths start with its own. A notice reports the remaining files.
  */
 export function chooseScans(files: readonly DroppedFile[]): Scan[] {
   const meshes = files.filter(({ path }) => kScans.test(path));
-  // each is refused by its name
+  // the server refuses each by its name
   if (meshes.length === 0)
     return files.map((file): Scan => ({ files: [file], name: nameOfFile(file.file.name) }));
   const companions = files.filter(({ path }) => kCompanions.test(path));
@@ -101,7 +101,7 @@ export function chooseScans(files: readonly DroppedFile[]): Scan[] {
   return scans;
 }
 
-/** The server restarted or was not reached: what was sent is good. */
+/** The server restarted or was unreachable: the file is not the cause. */
 const mayRepeat = (status: number): boolean => status === 0 || status >= 500 || status === 429;
 
 export class Imports {
@@ -119,7 +119,7 @@ export class Imports {
     return () => this._listeners.delete(listener);
   }
 
-  /** Into the project of that slug. */
+  /** Imports into the project with that slug. */
   async start(scan: Scan, project: string): Promise<ImportResult> {
     const [{ file }] = scan.files;
     const refusal = !kScans.test(file.name)
@@ -176,7 +176,7 @@ export class Imports {
     if (job !== undefined) await this._api.send("DELETE /jobs/{job}", { path: { job } });
   }
 
-  /** Once more from the beginning, in place of what failed. */
+  /** Repeats a failed import from the start, in its place. */
   async repeat(key: number): Promise<ImportResult> {
     const sent = this._sent.get(key);
     this.dismiss(key);

@@ -1,5 +1,5 @@
-// <strata-project-card>: what is told of a project where one is chosen: a picture of one of its
-// models, how many it has, when it was last changed.
+// <strata-project-card>: a project in the list of projects: a picture of one of its models, their
+// number, and the time of the last change.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -16,13 +16,13 @@ import { toldDay } from "../../domain/times";
 import { whenSeen } from "../../ui/when-seen";
 
 const words = texts.home;
-let busy: Promise<void> = Promise.resolve(); // one question at a time, as with pictures
+let busy: Promise<void> = Promise.resolve(); // one request at a time, as for pictures
 
 @customElement("strata-project-card")
 export class StrataProjectCard extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) listed!: ListedProject;
-  @state() private _changed = ""; // when; nothing: it is not known
+  @state() private _changed = ""; // time; empty: unknown
   private _isSeen = false;
   private _stopWaiting: (() => void) | null = null;
 
@@ -91,7 +91,7 @@ export class StrataProjectCard extends LitElement {
       this._changed = activity[0]?.time ?? "";
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this._changed = ""; // whoever opens the project is told what is wrong
+      this._changed = ""; // the project's own page shows the problem
     }
   }
 

@@ -1,4 +1,4 @@
-// The dialog that makes a project, or names and describes one anew.
+// The dialog that creates a project, or renames and describes one.
 
 import { ApiError } from "../../net/api-error";
 import type { Api, Versioned } from "../../net/api";
@@ -9,9 +9,11 @@ import { texts } from "../../texts";
 
 const words = texts.projects;
 
-/** A change of a project, which is put over another's only once this person knows of it. */
+/**
+ * A change of a project. It overwrites another person's change only after this person has seen it.
+ */
 export class ProjectChange {
-  // the project as this person knows it; null: it is `project`
+  // the version that this person has seen; null: `project`
   private _base: Versioned<Project> | null = null;
 
   constructor(
@@ -19,7 +21,7 @@ export class ProjectChange {
     private readonly _project: Project,
   ) {}
 
-  /** Null: somebody else changed it, and it is called `name` now. */
+  /** Returns null if another person has changed the project, which is now called `name`. */
   async save({ name, text }: Called, requireIfMatch: boolean): Promise<Project | null> {
     const { slug } = this._project;
     const { value, etag } =
@@ -50,7 +52,7 @@ const isSame = (a: Project, b: Project): boolean =>
   a.description === b.description &&
   (a.require_if_match ?? false) === (b.require_if_match ?? false);
 
-/** The project that was made or changed; null: none was. Without `project` a new one. */
+/** Resolves to the created or changed project; null: canceled. `project` null: creates one. */
 export function askProject(api: Api, project: Project | null): Promise<Project | null> {
   let answer: Project | null = null;
   const change = project && new ProjectChange(api, project);

@@ -1,26 +1,26 @@
-// The projects that a person chooses among, with their models.
+// The projects that a person can choose from, with their models.
 
 import { pageLocale } from "../../core/locale";
 import type { Project } from "../../core/protocol.gen";
 import { mayAdminister, mayCurate, type Me, type Model } from "../../core/types";
 
-export const kDefaultProject = "default"; // every site has it
+export const kDefaultProject = "default"; // exists on every site
 
 export interface ListedProject {
   project: Project;
   models: readonly Model[];
 }
 
-/** Whether they may import scans there, and delete models. */
+/** Whether the person may import scans there, and delete models. */
 export const curates = ({ role }: Project): boolean => role !== undefined && mayCurate(role);
 
-/** Whether there may be links for kiosks that are theirs to revoke. */
+/** Whether the person may revoke links for kiosks. */
 export const seesToKiosks = ({ role }: Pick<Me, "role">, projects: readonly Project[]): boolean =>
   mayAdminister(role) || projects.some(curates);
 
 /**
- * Those with models first, each part by name. The project that every site has is left out while it
- * is empty and there are others.
+ * Sorts projects with models first, each part by name. The default project is omitted while it is
+ * empty and others exist.
  */
 export function listProjects(
   projects: readonly Project[],
@@ -43,8 +43,8 @@ export function listProjects(
 }
 
 /**
- * Whether the project has a page of its own to go home to from its models: there are others, which
- * may be empty.
+ * Whether the models of the project have a project page as their parent: other projects exist,
+ * which may be empty.
  */
 export const isOneOfSeveral = (slug: string, projects: readonly Project[]): boolean =>
   projects.length > 1 && projects.some((project) => project.slug === slug);

@@ -1,18 +1,18 @@
-// Deleting a project. The server keeps one that still holds something, so what may go with it goes
-// first: tables, but never models.
+// Deletes a project. The server refuses to delete one that is not empty, so its tables are deleted
+// first. Models are never deleted.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
 import type { Project, Table } from "../../core/protocol.gen";
 
-/** What is typed is what the project is called, as far as that can be seen. */
+/** Whether the typed text is the project's name, apart from invisible differences. */
 export const isNameOf = (typed: string, { name }: Project): boolean =>
   asSeen(typed) !== "" && asSeen(typed) === asSeen(name);
 const asSeen = (text: string): string => text.normalize().trim().replace(/\s+/g, " ");
 
 /**
- * With the tables, which no layer may show any more. What is gone already is well, so that it can
- * be tried again.
+ * Deletes the project and its tables, which no layer may show at that time. Parts that are already
+ * deleted count as success, so that the call can be repeated.
  */
 export async function removeProject(
   api: Api,
@@ -25,7 +25,10 @@ export async function removeProject(
   await gone(api.deleteAsRead("DELETE /projects/{project}", { path: { project: project.slug } }));
 }
 
-/** The server keeps a table that another one's columns name; which do is found by trying. */
+/**
+ * The server refuses to delete a table that columns of another one refer to; repeated passes find
+ * the order.
+ */
 async function removeTables(
   tables: readonly Table[],
   remove: (table: Table) => Promise<void>,

@@ -1,6 +1,6 @@
 // <strata-scale-dialog>: "This object is 105 × 99 × 91 mm: right?" Corrects the unit and the up
-// direction; nothing that was painted changes. It stands beside the model, which shows what is
-// chosen while the question stands.
+// direction; painted values do not change. The dialog is next to the model, which previews the
+// choice.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -159,7 +159,7 @@ export class StrataScaleDialog extends LitElement {
   }
 }
 
-const kSure = 0.6; // below it the words say that it is a guess among several
+const kSure = 0.6; // below it the texts present a guess among several
 
 function unitReason({
   unit,

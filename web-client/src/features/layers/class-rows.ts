@@ -1,4 +1,4 @@
-// The classes of a layer in its dialog: a row for each, with its colour and label.
+// The classes of a layer in its dialog: a row for each, with its color and label.
 
 import { html, nothing, type TemplateResult } from "lit";
 import { kClassColors, opaqueColor } from "../../domain/palette";
@@ -20,14 +20,14 @@ export const newClass = (at: number): ClassRow => ({
   color: kClassColors[(at - 1) % kClassColors.length]!,
 });
 
-/** With one more, of the lowest number that is free; null where there is none. */
+/** Adds a class with the lowest free number; null if none is free. */
 export function withNewClass(rows: readonly ClassRow[]): ClassRow[] | null {
   const used = new Set(rows.map((row) => row.at));
   for (let at = 1; at <= kMaxClasses; ++at) if (!used.has(at)) return [...rows, newClass(at)];
   return null;
 }
 
-/** `isNew`: of a layer that is made now; in one that is there classes stay painted. */
+/** `isNew`: for a layer that is being created; in an existing layer, texels keep their classes. */
 export function classRows({
   rows,
   isNew,

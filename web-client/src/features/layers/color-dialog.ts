@@ -1,6 +1,6 @@
-// <strata-color-dialog>: what a layer is drawn with: by a column of its records, and colours and
-// patterns of its classes. What is chosen is seen on the model at once, by this person alone until
-// it is kept.
+// <strata-color-dialog>: the colors of a layer: the column of its records that sets them, and
+// colors and patterns of its classes. The model previews each choice for this person only, until it
+// is saved.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -37,7 +37,7 @@ const kPatterns = ["solid", "hatch", "dots", "outline"] as const;
 const kAngles = [45, 135, 0, 90]; // of hatches, in turn
 const kMostCategories = 30;
 
-/** Layers with classes, and those whose records have columns. */
+/** Layers with classes, and layers of records with columns. */
 export const canBeColored = (layer: Layer): boolean =>
   layer.table !== undefined ||
   layer.palette.mode === "step" ||
@@ -57,7 +57,7 @@ export class StrataColorDialog extends LitElement {
   @state() private _classes: ColumnClasses | null = null;
   @state() private _problem = "";
   @state() private _working = false;
-  private _before: Palette | null = null; // what this person saw
+  private _before: Palette | null = null; // this person's palette before the dialog
   private _asked = 0;
 
   constructor() {
@@ -206,7 +206,10 @@ export class StrataColorDialog extends LitElement {
     </div>`;
   }
 
-  /** A palette has colours for records that may come: those have no name yet, and no line. */
+  /**
+   * Whether the point's record exists: a palette also has colors for future records, which have no
+   * name and no row.
+   */
   private isThere({ at }: PalettePoint): boolean {
     const { table } = this.layer;
     return (
@@ -249,7 +252,7 @@ export class StrataColorDialog extends LitElement {
     </ul>`;
   }
 
-  /** What the classes leave out, and a way to patterns for all. */
+  /** The row for values outside the classes, and the switch for patterns of all classes. */
   private rest(palette: Palette): TemplateResult {
     const words = texts.colors;
     const { _classes: classes } = this;
@@ -278,8 +281,7 @@ export class StrataColorDialog extends LitElement {
     }`;
   }
 
-  // ── choices
-  // ───────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── choices ────────────────────────────────────────────────────────────────────────────────────
 
   private chooseColumn(slug: string): void {
     const column = this.table.find((each) => each.slug === slug);
@@ -315,7 +317,7 @@ export class StrataColorDialog extends LitElement {
     if (column) void this.classify(column);
   }
 
-  /** Asks for the classes and shows them; the newest question wins. */
+  /** Requests the classes and shows them; only the latest request counts. */
   private async classify(column: Column): Promise<void> {
     const asked = ++this._asked;
     const { layer, _method: method, _count: count, _ramp: ramp } = this;
@@ -377,7 +379,7 @@ export class StrataColorDialog extends LitElement {
     });
   }
 
-  /** Neighbours get patterns that differ, or all lose theirs. */
+  /** Gives neighboring classes different patterns, or removes all patterns. */
   private patternAll(patterned: boolean): void {
     const palette = this._palette!;
     const turns = [
@@ -398,8 +400,7 @@ export class StrataColorDialog extends LitElement {
     this.session.layers.setPalette(this.layer, palette);
   }
 
-  // ── the end
-  // ───────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── saving and closing ─────────────────────────────────────────────────────────────────────────
 
   private async keep(forEveryone: boolean): Promise<void> {
     const { layer, _palette: palette } = this;
@@ -419,7 +420,7 @@ export class StrataColorDialog extends LitElement {
     this.dispatchEvent(new CustomEvent("closed"));
   }
 
-  /** Without a choice all is as it was before. */
+  /** Restores the previous palette if nothing was saved. */
   private onClosed(): void {
     if (this._before)
       this.session.layers.setPalette(
@@ -437,7 +438,7 @@ const rampPalette = (ramp: Ramp, from: number, to: number): Palette => {
     mode: "linear",
     min: from,
     max: to,
-    // Without a range one point stands for all.
+    // An empty range has a single point.
     points:
       to > from
         ? colors.map((color, index) => ({

@@ -1,4 +1,4 @@
-// <strata-cross-table>: how much surface each class of one layer has in common with each class of
+// <strata-cross-table>: the area that each class of one layer has in common with each class of
 // another.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
@@ -18,9 +18,9 @@ import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.cross_table;
-const kMostShown = 40; // rows and columns: the files have all
+const kMostShown = 40; // rows and columns; files contain all
 
-/** Layers that have classes which can be counted against those of another. */
+/** Layers whose classes can be counted against those of another layer. */
 export const hasClasses = (layer: Layer): boolean => !holdsFractions(layer.type);
 
 @customElement("strata-cross-table")
@@ -139,7 +139,7 @@ export class StrataCrossTable extends LitElement {
       : describeValue(layer, key, this.session.tables);
   }
 
-  /** As it is read, and copied: with sums. */
+  /** The displayed and copied rows, with sums. */
   private rows(other: Layer, { rows, columns, area_m2: areaM2 }: CrossTable): string[][] {
     const sum = (numbers: readonly number[]): number =>
       numbers.reduce((all, each) => all + each, 0);

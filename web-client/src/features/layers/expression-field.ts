@@ -1,6 +1,6 @@
-// <strata-expression-field>: a formula over layers, records and the surface, with completion of
-// names and, while one writes, what it holds for or what is wrong with it. Fires `input` and, on
-// Enter, `submitted`.
+// <strata-expression-field>: an expression over layers, records and the surface, with completion of
+// names. During typing it shows the matching area, or the problem. Fires `input` and, on Enter,
+// `submitted`.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -20,7 +20,7 @@ import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.expressions;
-const kPause = 350; // ms without a key before the server is asked
+const kPause = 350; // ms after the last key press
 const kSurface = ["x", "y", "z", "area", "nx", "ny", "nz", "height", "slope", "curvature"] as const;
 const kNone: Completion = { from: 0, suggestions: [] };
 
@@ -29,7 +29,7 @@ export class StrataExpressionField extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property() label = "";
   @property() placeholder = "";
-  /** Whether it may be a number, too; then normals and the like are there. */
+  /** Whether the expression may also be a number; then it may contain normals and similar names. */
   @property({ type: Boolean }) computes = false;
   @property() initial = "";
 
@@ -188,7 +188,7 @@ export class StrataExpressionField extends LitElement {
       <p class="error" role="alert">${message}</p>`;
   }
 
-  /** A problem that the server told of the text as a whole. */
+  /** Shows a problem that the server reported for the whole text. */
   refuse(error: ApiError): void {
     this._problem = {
       text: this.value,
@@ -258,7 +258,7 @@ export class StrataExpressionField extends LitElement {
     this.focus();
   }
 
-  /** Asks the server for what it holds; of a number, where it is known. */
+  /** Asks the server for the area where the text is true; for a number, where it has a value. */
   private async preview(): Promise<void> {
     const text = this.value;
     const asked = ++this._asked;
@@ -283,7 +283,7 @@ export class StrataExpressionField extends LitElement {
     };
   }
 
-  /** `before`: characters that stand before the person's own text. */
+  /** `before`: number of characters before the person's own text. */
   private async tryOut(
     where: string,
     inWords: (area: string) => string,
@@ -312,6 +312,6 @@ export class StrataExpressionField extends LitElement {
 }
 
 const kWantsCondition = "A condition is wanted, not a number";
-/** What only a computed layer can have cannot be tried out before it is made. */
+/** Names that only computed layers can use cannot be tried out before the layer exists. */
 const isForComputing = (error: ApiError): boolean =>
   kSurface.slice(4).some((name) => error.message.startsWith(`'${name}' of the surface`));

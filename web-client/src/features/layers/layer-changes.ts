@@ -1,4 +1,4 @@
-// What somebody changed in the dialog of a layer.
+// The changes that a user made in the dialog of a layer.
 
 import { rowsOf } from "../../core/languages";
 import { samePalette } from "../../domain/palette";
@@ -13,11 +13,11 @@ export interface LayerWanted {
   descriptions: Labels;
   palette: Palette;
   visibility: Visibility;
-  expression?: string; // of a computed layer
+  expression?: string; // for a computed layer
   recompute?: "manual" | "automatic";
 }
 
-/** Only what differs: what this person left alone is not theirs to set. */
+/** Returns only the members that differ, so that other people's changes of the rest are kept. */
 export function layerChanges(
   layer: Layer,
   {

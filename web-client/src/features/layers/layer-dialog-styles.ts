@@ -1,4 +1,4 @@
-// What <strata-layer-dialog> looks like.
+// Styles of <strata-layer-dialog>.
 
 import { css } from "lit";
 
@@ -80,7 +80,7 @@ export const layerDialogStyles = css`
   .chosen-lead {
     display: none;
   }
-  /* the fields below are to be seen as well */
+  /* leaves room for the fields below */
   @media (max-width: 560px) {
     .kinds {
       gap: 0.5rem;

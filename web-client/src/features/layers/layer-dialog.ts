@@ -1,5 +1,5 @@
-// <strata-layer-dialog>: makes a layer, or changes one's name, classes and colours, in the words of
-// who studies the object. With `layer` it edits; without, it creates.
+// <strata-layer-dialog>: creates a layer, or with `layer` changes its name, classes and colors. Its
+// terms are those of people who study the object.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -41,7 +41,7 @@ import { formStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import { visibilityChoice } from "../../ui/visibility";
 
-/** What a new layer is for: something to paint, or values that are computed. */
+/** The purpose of a new layer: painting, or computed values. */
 type Purpose = LayerPurpose | "shape" | "formula";
 
 const kNoWords: Labels = {};
@@ -52,15 +52,15 @@ export class StrataLayerDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) layer: Layer | null = null;
 
-  /** The layer as it was when the person began to change it, and its version. */
+  /** The layer and its version at the start of the editing. */
   @state() private _base: { layer: Layer; etag: string } | null = null;
-  @state() private _stale = false; // somebody else changed it since
+  @state() private _stale = false; // another person has changed it since
   @state() private _purpose: Purpose = "presence";
   @state() private _color = "#d55e00ff";
   @state() private _classes: ClassRow[] = [];
   @state() private _stepped = false;
-  @state() private _tables: Table[] = []; // whose records a layer may show
-  @state() private _table: Table | null = null; // null: one of the layer's own
+  @state() private _tables: Table[] = []; // whose records a layer can show
+  @state() private _table: Table | null = null; // null: a new table for this layer
   @state() private _visibility: Visibility = "public";
   @state() private _problem = "";
   @state() private _problemField = "";
@@ -96,7 +96,7 @@ export class StrataLayerDialog extends LitElement {
     try {
       const { value, etag } = await readLayer(this.session.api, this.session.modelId, layer.id);
       const purpose = purposeOf(value);
-      // it can have a second class one day
+      // a second class can be added later
       this._purpose = purpose === "presence" ? "classes" : purpose;
       this._classes = value.palette.points.map(({ at, label, color }) => ({
         at,
@@ -135,7 +135,7 @@ export class StrataLayerDialog extends LitElement {
     </strata-dialog>`;
   }
 
-  /** Made anew for every version of the layer that is read. */
+  /** Rebuilt for each version of the layer. */
   private form(): unknown {
     const layer = this._base?.layer;
     return keyed(
@@ -235,7 +235,7 @@ export class StrataLayerDialog extends LitElement {
     this._table = this._tables.find((table) => table.id === id) ?? null;
   }
 
-  /** A layer that shows a table need not have another name. */
+  /** A layer that shows a table can take the table's name. */
   private get namedByTable(): boolean {
     return this._purpose === "records" && this._table !== null;
   }
@@ -359,7 +359,7 @@ export class StrataLayerDialog extends LitElement {
     });
   }
 
-  /** Null where it is missing. */
+  /** Null if the formula is missing. */
   private wantedFormula(form: FormData): Pick<LayerCreate, "expression" | "recompute"> | null {
     const expression = this._expression.value;
     return expression === ""
@@ -385,7 +385,7 @@ export class StrataLayerDialog extends LitElement {
     });
   }
 
-  /** In other languages; null: something is wrong with it, and said there. */
+  /** Names in other languages; null: a field shows a problem. */
   private said(): { labels: Labels; descriptions: Labels } | null {
     const labels = this._labels.read();
     return labels && { labels, descriptions: this._labels.writtenDescriptions };
@@ -411,7 +411,7 @@ export class StrataLayerDialog extends LitElement {
     });
   }
 
-  /** Closes the dialog when `work` is done, and says what is wrong otherwise. */
+  /** Closes the dialog after `work`, or shows the problem. */
   private async attempt(work: () => Promise<void>): Promise<void> {
     this._busy = true;
     try {
@@ -439,7 +439,7 @@ export class StrataLayerDialog extends LitElement {
   }
 
   private palette(name: string, min: number, max: number): Palette | null {
-    // follows from the values
+    // the type follows from the values
     if (this._purpose === "formula" || this._purpose === "shape") return null;
     switch (this._purpose) {
       case "presence":
@@ -473,7 +473,7 @@ export class StrataLayerDialog extends LitElement {
 
   private async send(wanted: LayerWanted): Promise<void> {
     const { session, _base: base } = this;
-    const purpose = this._purpose as LayerPurpose; // what is computed goes another way
+    const purpose = this._purpose as LayerPurpose; // computed layers are sent elsewhere
     if (base) {
       const change = layerChanges(base.layer, wanted);
       if (Object.keys(change).length > 0)
@@ -490,7 +490,7 @@ export class StrataLayerDialog extends LitElement {
       ...this.resolution(),
     };
     const layer = await createLayer(session.api, session.modelId, created);
-    // So that painting can begin at once: a number without a record is not painted.
+    // So that painting can begin at once: a key without a record cannot be painted.
     if (layer.table !== undefined && !this.namedByTable)
       await createRecord(session.api, layer.table);
     session.addCreated(layer);

@@ -1,4 +1,4 @@
-// One row over the layers: work that makes some or a file, how far it is, and what came of it.
+// A row above the layers: a job that makes layers or a file, with its progress and result.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { formatArea, formatBytes } from "../../domain/measure";

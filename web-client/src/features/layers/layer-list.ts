@@ -1,5 +1,5 @@
-// The layers of the open model: which there are, which is chosen, and what this person shows, hides
-// and puts in another order, which is kept for them alone.
+// The layers of the open model: the list, the selected layer, and this person's visibility, opacity
+// and order, which are stored for this person alone.
 
 import { changeLayer } from "../../net/layers";
 import type { Api } from "../../net/api";
@@ -20,12 +20,12 @@ export class LayerList {
   all: Layer[] = []; // in this person's order: the last is on top
   selectedId: number | null = null;
 
-  // as it is shown: a named view, and what was changed since
+  // shown settings: of a named view, with later changes
   private _overrides = new Map<number, LayerShown>();
-  private _own = new Map<number, LayerShown>(); // as it is kept
+  private _own = new Map<number, LayerShown>(); // stored settings
   private _atView = false;
   private readonly _keeper: PersonalViewKeeper;
-  /** Records that are looked at just now, before those of a view. */
+  /** Temporarily highlighted records; they take precedence over those of a view. */
   private readonly _highlights = new Map<number, Highlight>();
 
   constructor(
@@ -49,8 +49,7 @@ export class LayerList {
     this._host.changed();
   }
 
-  // ── what this person shows
-  // ────────────────────────────────────────────────────────────────────────────────────────
+  // ── this person's settings ─────────────────────────────────────────────────────────────────────
 
   visible(layer: Layer): boolean {
     return this._overrides.get(layer.id)?.visible ?? layer.visible;
@@ -66,7 +65,7 @@ export class LayerList {
     return this._overrides.get(layer.id)?.order ?? layer.order;
   }
 
-  /** What is shown differs from what everyone sees at first. */
+  /** Whether this person's settings differ from the defaults. */
   get hasOverrides(): boolean {
     return this.all.some((layer) => {
       const shown = this._overrides.get(layer.id);
@@ -80,7 +79,7 @@ export class LayerList {
   setOpacity(layer: Layer, opacity: number): void {
     this.override(layer, { opacity });
   }
-  /** Null: the layer's own. */
+  /** Null: the layer's own palette. */
   setPalette(layer: Layer, palette: Palette | null): void {
     for (const shown of [this._overrides, this._own]) {
       const { palette: _, ...rest } = shown.get(layer.id) ?? {};
@@ -88,12 +87,12 @@ export class LayerList {
     }
     this.changedByHand();
   }
-  /** Moves the layer to the place `index` of the list, which is bottom to top: for this person. */
+  /** Moves the layer to the place `index` of the list, which is bottom to top, for this person. */
   move(layer: Layer, index: number): void {
     const wanted = this.all.filter((other) => other.id !== layer.id);
     wanted.splice(Math.max(0, Math.min(index, wanted.length)), 0, layer);
-    // As few as can be get another place, so that what comes later lies where it would for
-    // everybody.
+    // Changes the order of as few layers as possible, so that a new layer appears at its default
+    // place.
     const places = wanted.map((each) => this.order(each)).sort((a, b) => a - b);
     const differ = places.every((place, at) => at === 0 || place > places[at - 1]!);
     wanted.forEach((each, at) => {
@@ -105,7 +104,7 @@ export class LayerList {
     this.putAll(this.all);
     this.changedByHand();
   }
-  /** Null: no records before others. */
+  /** Null: no highlight. */
   setHighlight(layerId: number, highlight: Highlight | null): void {
     if (highlight) this._highlights.set(layerId, highlight);
     else if (!this._highlights.delete(layerId)) return;
@@ -119,18 +118,19 @@ export class LayerList {
     this.changedByHand();
   }
 
-  /** The page may be gone in a moment, or the connection is back. */
+  /** Sends unsaved settings: before the page closes, and after a reconnection. */
   flush(): void {
     this._keeper.flush();
   }
 
-  /** What a named view keeps of all this. */
+  /** The settings that a named view keeps. */
   toKeep(): LayerOverride[] {
     return layersToKeep(this.all, ({ id }) => this.shown(id));
   }
   /**
-   * As a named view has it, and no records before those of the view; layers that it does not name
-   * as everyone sees them at first. Returns the way back, without the records that were looked at.
+   * Applies the settings of a named view, without other highlights; layers that it does not contain
+   * get their defaults. Returns a function that restores the previous settings, without the
+   * temporary highlights.
    */
   showView(view: { layers: LayerOverride[] }): () => void {
     const { _overrides: overrides, _atView: wasAtView } = this;
@@ -165,10 +165,9 @@ export class LayerList {
     this.resetOverrides();
   }
 
-  // ── what everyone has
-  // ─────────────────────────────────────────────────────────────────────────────────────────────
+  // ── shared state ───────────────────────────────────────────────────────────────────────────────
 
-  /** `etag`: the version that the change was thought out for. */
+  /** `etag`: the version that the change was made for. */
   async change(layer: Layer, change: LayerPatch, etag?: string): Promise<void> {
     this.put(await changeLayer(this._api, this._modelId, layer.id, change, etag));
   }
@@ -185,8 +184,8 @@ export class LayerList {
   }
 
   /**
-   * What the server says on joining: what is known of other layers is forgotten. `kept`: how this
-   * person shows them, where the server knows.
+   * Takes the layers that the server sends on joining, and discards settings of unknown layers.
+   * `kept`: the settings that are stored for this person, if any.
    */
   takeAll(layers: Layer[], kept?: PersonalView): void {
     this.putAll(layers);
@@ -219,7 +218,7 @@ export class LayerList {
     return { ...this._overrides.get(id), ...(highlight ? { highlight } : {}) };
   }
 
-  /** One unknown layer, and the server refuses what is said of all. */
+  /** Necessary since the server refuses a whole message with one unknown layer. */
   private forgetUnknown(): void {
     const known = new Set(this.all.map((layer) => layer.id));
     for (const kept of [this._overrides, this._own, this._highlights])
@@ -245,7 +244,7 @@ export class LayerList {
     this.putAll(this.all);
   }
 
-  /** What was just set is shown, and kept. */
+  /** Sends the new settings and stores them. */
   private changedByHand(): void {
     this.sendOverrides();
     const own = this.all.map((layer) => ({

@@ -1,4 +1,4 @@
-// What <strata-layer-panel> looks like.
+// Styles of <strata-layer-panel>.
 
 import { css } from "lit";
 
@@ -53,7 +53,7 @@ export const layerPanelStyles = css`
     padding-block: 0.375rem;
     font-weight: 600;
     text-align: start;
-    white-space: normal; /* of the chosen layer the whole name is read */
+    white-space: normal; /* the selected layer shows its whole name */
   }
   .selected .name .ellipsis {
     overflow-wrap: anywhere;

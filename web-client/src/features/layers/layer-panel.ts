@@ -1,5 +1,5 @@
-// <strata-layer-panel>: the layers from top to bottom, as this person sees them. The selected one
-// is painted on.
+// <strata-layer-panel>: the layers from top to bottom, as this person sees them. Tools paint on the
+// selected one.
 
 import { recomputeLayer } from "../../net/layers";
 import { html, LitElement, nothing, type TemplateResult } from "lit";
@@ -324,7 +324,7 @@ export class StrataLayerPanel extends LitElement {
     </div>`;
   }
 
-  /** Whoever may change it may have it computed: its lock is against hands. */
+  /** Anyone who may change the layer may recompute it: its lock only prevents editing by hand. */
   private mayRecompute(layer: Layer): boolean {
     const { canPaint, canCurate } = this.session;
     return (
@@ -360,7 +360,7 @@ export class StrataLayerPanel extends LitElement {
     this.dispatchEvent(new CustomEvent<LayerPanelRequest>("request", { detail }));
   }
 
-  /** `index` counts from the top of the shown list, without the layer itself. */
+  /** `index` counts from the top of the displayed list, without the layer itself. */
   private move(layer: Layer, index: number): void {
     const last = this.session.layers.all.length - 1;
     this.session.layers.move(layer, last - index);
@@ -375,7 +375,7 @@ export class StrataLayerPanel extends LitElement {
     }
   }
 
-  /** Room for the keys of more records. */
+  /** Changes to a value type that has room for more keys. */
   private async widen(layer: Layer): Promise<void> {
     const words = texts.layers;
     const [, highest] = valueRange(layer.type);

@@ -72,21 +72,21 @@ export const legendStyles = css`
   }
 `;
 
-/** What the legend needs to know of records. */
+/** Records, terms and tables that the legend reads. */
 export interface LegendNames extends RecordLabels {
   find(table: number): Table | null;
   terms(table: number): TermTree | null;
   lacks(table: number, key: number): boolean;
 }
 
-/** `palette`: what the layer is drawn with for this person. */
+/** `palette`: this person's palette for the layer. */
 export function legend(layer: Layer, palette: Palette, records: LegendNames): TemplateResult {
   if (palette.column) return columnLegend(layer, palette, records);
   const { unit } = layer;
   if (palette.mode === "categorical") {
     const { table } = layer;
     const terms = table === undefined ? null : records.terms(table);
-    // A palette has colours for records that may come.
+    // A palette also has colors for future records.
     const there =
       table === undefined
         ? palette.points
@@ -102,7 +102,7 @@ export function legend(layer: Layer, palette: Palette, records: LegendNames): Te
   return gradient(palette, unit);
 }
 
-/** Points of terms stand as in their list, each below the one above it. */
+/** Orders the points of terms as in their list, each with its depth in the tree. */
 function inTree(
   points: readonly PalettePoint[],
   terms: TermTree | null,
@@ -110,13 +110,13 @@ function inTree(
   terms?.want();
   if (!terms?.loaded) return points.map((point) => ({ point, depth: 0 }));
   const places = new Map(terms.terms.map(({ key, depth }, place) => [key, { place, depth }]));
-  const last = { place: Infinity, depth: 0 }; // of points that are no terms
+  const last = { place: Infinity, depth: 0 }; // for points that are not terms
   return points
     .map((point) => ({ point, ...(places.get(point.at) ?? last) }))
     .sort((a, b) => (a.place === b.place ? 0 : a.place - b.place));
 }
 
-const kLinesInSight = 8; // of those that may stand in it: with more it scrolls, also by keys
+const kLinesInSight = 8; // a longer legend scrolls, also by keys
 const kMostLines = 300; // a list of terms may have thousands
 const kIndentPx = 14;
 
@@ -130,7 +130,7 @@ const line = (
     <span class="ellipsis">${text}</span>
   </li>`;
 
-/** By what the records say. */
+/** For colors by a column of the records. */
 function columnLegend(layer: Layer, palette: Palette, records: LegendNames): TemplateResult {
   const column =
     layer.table === undefined
@@ -156,7 +156,7 @@ function columnLegend(layer: Layer, palette: Palette, records: LegendNames): Tem
 export const classRange = (from: number, to: number, unit: string): string =>
   `${formatNumber(from, 4)} – ${formatNumber(to, 4)}${unit ? ` ${unit}` : ""}`;
 
-/** What a class of a column's values is called. */
+/** The label of a class of a column's values. */
 export function valueLabel(
   { label, value, at }: PalettePoint,
   column: Column | undefined,
@@ -189,7 +189,7 @@ function gradient(palette: Palette, unit: string): TemplateResult {
   </div>`;
 }
 
-/** One small square that stands for the layer. */
+/** A small square with the layer's colors. */
 export function layerChip(palette: Palette): TemplateResult {
   const first = palette.points[0];
   const background =

@@ -1,5 +1,5 @@
-// A map that names its coordinate system, on a model that has none: whether its coordinates are the
-// model's is asked before it is sent.
+// A map that names its coordinate system, on a model without one: the page asks whether the model's
+// coordinates are in that system before it sends the map.
 
 import { css, html, type TemplateResult } from "lit";
 import type { MapContents, Model } from "../../core/types";
@@ -7,18 +7,18 @@ import { texts } from "../../texts";
 
 const words = texts.maps.crs;
 
-/** The system to ask about; null: nothing is in doubt. */
+/** The coordinate system to ask about; null: no question. */
 export const crsInDoubt = (contents: MapContents | null, model: Model | null): string | null =>
   contents?.crs && model && model.crs === "" ? contents.crs : null;
 
-/** Whether it was asked for these files, and what was answered. */
+/** Whether the page asked for these files, and the answer. */
 export interface CrsAnswer {
   asked: boolean;
   taken: string | null;
 }
 export const kNotAsked: CrsAnswer = { asked: false, taken: null };
 
-/** For the query: the system whose coordinates the model's are. */
+/** The query parameter: the coordinate system of the model. */
 export const crsQuery = ({ taken }: CrsAnswer): { crs?: string } =>
   taken === null ? {} : { crs: taken };
 
@@ -33,7 +33,7 @@ export function crsQuestion(crs: string, answer: (takes: boolean) => void): Temp
   </div>`;
 }
 
-/** The question comes into sight and takes the keyboard. */
+/** Scrolls the question into view and focuses it. */
 export function focusQuestion(root: ParentNode): void {
   root.querySelector(".crs")?.scrollIntoView({ block: "nearest" });
   root.querySelector<HTMLElement>(".crs button")?.focus({ preventScroll: true });

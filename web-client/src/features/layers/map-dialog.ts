@@ -1,4 +1,4 @@
-// <strata-map-dialog>: paints a layer from files: readings and vertex values (CSV), maps of areas,
+// <strata-map-dialog>: paints a layer from files: readings and vertex values (CSV), area maps,
 // rasters, orthophotos, scanned maps.
 
 import type { Query } from "../../net/calls";
@@ -50,7 +50,7 @@ import "../../session/fields/value-picker";
 
 const words = texts.maps;
 const kFirstLineBytes = 65536;
-const kTolerance = { least: 1, most: 60, usual: 12 } as const; // of colours
+const kTolerance = { least: 1, most: 60, usual: 12 } as const; // of colors
 
 type Kind = "readings" | "vertices" | "polygons" | "picture";
 
@@ -135,8 +135,7 @@ export class StrataMapDialog extends LitElement {
     ${contents.kind === "polygons" ? this.polygons(contents) : this.picture(contents)}`;
   }
 
-  // ── tables
-  // ────────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── tables ─────────────────────────────────────────────────────────────────────────────────────
 
   private readings(): TemplateResult {
     const length = (label: string, value: number, set: (mm: number) => void): TemplateResult =>
@@ -174,8 +173,7 @@ export class StrataMapDialog extends LitElement {
       }`;
   }
 
-  // ── maps
-  // ──────────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── maps ───────────────────────────────────────────────────────────────────────────────────────
 
   private polygons({ columns = [] }: MapContents): TemplateResult {
     const { session, layer } = this;
@@ -273,8 +271,7 @@ export class StrataMapDialog extends LitElement {
       </label>`;
   }
 
-  // ── what is done
-  // ──────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── actions ────────────────────────────────────────────────────────────────────────────────────
 
   private async onFiles(files: File[]): Promise<void> {
     this._sending.cancel();
@@ -300,7 +297,7 @@ export class StrataMapDialog extends LitElement {
     }
   }
 
-  /** Asks the server what the files hold. */
+  /** Asks the server for the contents of the files. */
   private async look(): Promise<void> {
     const { _files: files, session } = this;
     const query = { tolerance: this._tolerance };
@@ -342,7 +339,7 @@ export class StrataMapDialog extends LitElement {
     void this.apply();
   }
 
-  /** The request; a text that says what is missing. */
+  /** Returns the request, or a text about missing input. */
   private request(kind: Kind): Begin<EditResult> | string {
     const { api, modelId } = this.session;
     const path = { model: modelId, layer: this.layer.id };
@@ -369,7 +366,7 @@ export class StrataMapDialog extends LitElement {
             false,
           );
       }
-      // the names of maps tell what they are, so that they are sent as forms
+      // the names of map files identify their parts, so they are sent as a form
       case "polygons": {
         const query = this.polygonsQuery();
         return (progress) =>

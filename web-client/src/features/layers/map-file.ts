@@ -1,4 +1,4 @@
-// Files that are painted over a layer: what they are, and what is asked for.
+// Files that are painted into a layer: their kinds, and the parameters of the request.
 
 import type { UploadFile } from "../../net/upload";
 import { readNumber, typedNumber } from "../../core/locale";
@@ -38,7 +38,7 @@ export const accepted = (endings: readonly string[]): string =>
 
 const endingOf = (name: string): string => /\.([a-z]+)$/i.exec(name)?.[1]?.toLowerCase() ?? "";
 
-/** A table of numbers, or a map that the server looks into; null: something else is among them. */
+/** A table of numbers, or a map that the server inspects; null: other files are included. */
 export function fileKind(names: readonly string[]): "table" | "map" | null {
   const endings = names.map(endingOf);
   if (endings.length === 1 && (kTableEndings as readonly string[]).includes(endings[0]!))
@@ -49,11 +49,11 @@ export function fileKind(names: readonly string[]): "table" | "map" | null {
     : null;
 }
 
-/** The first of the files that is neither. */
+/** The first file of another kind. */
 export const unknownFile = (names: readonly string[]): string =>
   names.find((name) => fileKind([name]) === null) ?? names[0] ?? "";
 
-/** By the first line of a table: measured places, or one number for each vertex. */
+/** Decides by the first line of a table: measured places, or one number for each vertex. */
 export function tableKind(text: string): "readings" | "vertices" {
   const names = (text.trimStart().split(/\r?\n/, 1)[0] ?? "")
     .split(/[,;\t]/)
@@ -64,7 +64,7 @@ export function tableKind(text: string): "readings" | "vertices" {
 export const asUploads = (files: readonly File[]): UploadFile[] =>
   files.map((file) => ({ file, path: file.name }));
 
-/** The six numbers of a world file, parted by commas; null: there are not six. */
+/** The six numbers of a world file, separated by commas; null: not six numbers. */
 export function worldNumbers(text: string): string | null {
   const numbers = text.trim().split(/[\s,;]+/);
   return numbers.length === 6 &&
@@ -73,10 +73,10 @@ export function worldNumbers(text: string): string | null {
     : null;
 }
 
-/** How the numbers of a picture are made. */
+/** How a picture gives numbers. */
 export type PictureMode = "luminance" | "band" | "colors";
 
-/** Those that this picture allows, the likeliest first. */
+/** The modes that the picture allows, the most likely first. */
 export function pictureModes(contents: MapContents): PictureMode[] {
   const modes: PictureMode[] = [];
   if (contents.bands !== undefined && !contents.is_rgb) modes.push("band");
@@ -96,7 +96,7 @@ export interface ColorRow {
   value: string; // as typed
 }
 
-/** The colours found, each with the next of these values; the paper's is left out. */
+/** The colors found, each with the next of these values; the paper's color has none. */
 export function colorRows(colors: readonly MapColor[], values: readonly number[]): ColorRow[] {
   let next = 0;
   let above = Math.max(0, ...values);
@@ -106,7 +106,7 @@ export function colorRows(colors: readonly MapColor[], values: readonly number[]
   });
 }
 
-/** `{"#c02020":1}`; null: a colour that is used has no number, or none is used. */
+/** `{"#c02020":1}`; null: a used color has no number, or no color is used. */
 export function colorKeys(rows: readonly ColorRow[]): string | null {
   const used = rows.filter((row) => row.used);
   if (used.length === 0 || used.some((row) => Number.isNaN(readNumber(row.value)))) return null;

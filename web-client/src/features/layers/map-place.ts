@@ -1,4 +1,4 @@
-// Where a flat map lies: the direction it is looked at, and the place of a picture. Parts of
+// The placement of a flat map: its viewing direction, and the position of a picture. Parts of
 // dialogs.
 
 import { html, nothing, type TemplateResult } from "lit";
@@ -17,7 +17,7 @@ export const directionField = (chosen: Along, choose: (along: Along) => void): T
     </select>
   </label>`;
 
-/** A picture that says where it lies needs no numbers. */
+/** A picture with its own position needs no numbers. */
 export const worldField = (
   contents: MapContents,
   text: string,
@@ -36,7 +36,7 @@ export const worldField = (
         ></textarea>
       </label>`;
 
-/** What was found in the files, in one line. */
+/** A line with a summary of the files. */
 export function foundLine(contents: MapContents): TemplateResult {
   const { kind, polygons, columns, width, height, bands, bounds, crs } = contents;
   const parts =

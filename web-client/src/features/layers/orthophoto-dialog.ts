@@ -1,4 +1,4 @@
-// <strata-orthophoto-dialog>: makes a look of a picture that was taken along an axis.
+// <strata-orthophoto-dialog>: makes a surface image from a picture that was taken along an axis.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";

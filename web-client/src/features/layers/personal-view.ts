@@ -1,24 +1,24 @@
-// What a person keeps of how they show the layers of a model: sent to the server soon after each
-// change, and before the page goes.
+// A person's stored settings for the layers of a model: sent to the server soon after each change,
+// and before the page closes.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
 import type { PersonalView } from "../../core/protocol.gen";
 
-const kPauseMs = 400; // a slider tells many changes
-const kMostKeptAlive = 60_000; // characters that browsers send after the page is left
+const kPauseMs = 400; // a slider reports many changes
+const kMostKeptAlive = 60_000; // characters; the limit of browsers for `keepalive`
 
 export class PersonalViewKeeper {
   private _timer: ReturnType<typeof setTimeout> | 0 = 0;
   private _sending: Promise<void> | null = null;
-  private _wanted: PersonalView | null = null; // what the server does not have yet
+  private _wanted: PersonalView | null = null; // settings that the server does not have yet
 
   constructor(
     private readonly _api: Api,
     private readonly _modelId: string,
   ) {}
 
-  /** What the server tells is older than what this page wants to keep. */
+  /** Whether this page has newer settings than the server. */
   get isAhead(): boolean {
     return this._wanted !== null || this._sending !== null;
   }
@@ -29,7 +29,7 @@ export class PersonalViewKeeper {
     this._timer = setTimeout(() => void this.send(), kPauseMs);
   }
 
-  /** Now, as the page may be gone in a moment; also what could not be sent before. */
+  /** Sends at once, since the page may close; includes settings of failed requests. */
   flush(): void {
     clearTimeout(this._timer);
     void this.send();
@@ -48,7 +48,7 @@ export class PersonalViewKeeper {
       })
       .catch((error: unknown) => {
         if (!(error instanceof ApiError)) throw error;
-        this._wanted ??= view; // with the next change, or when the connection is back
+        this._wanted ??= view; // sent with the next change or after a reconnection
       })
       .finally(() => (this._sending = null));
     await this._sending;

@@ -1,4 +1,4 @@
-// A layer's texels as files: saved from the page, and put back from one; and its outlines for maps.
+// A layer's texels as files, to save and to load; and its outlines for maps.
 
 import { newId } from "../../core/ids";
 import { labelOf } from "../../domain/cells";
@@ -15,7 +15,7 @@ import { texts } from "../../texts";
 export const kRasterFormats = ["tif", "png", "npy"] as const;
 export type RasterFormat = (typeof kRasterFormats)[number];
 
-/** By the file's name; null: none that a layer can be read from. */
+/** By the file's name; null: not a format that a layer can load. */
 export function rasterFormat(filename: string): RasterFormat | null {
   const extension = /\.([a-z]+)$/i.exec(filename)?.[1]?.toLowerCase();
   if (extension === "tiff") return "tif";
@@ -40,7 +40,7 @@ export function saveRaster(session: ModelSession, layer: Layer, format: RasterFo
 export const kFeatureFormats = ["geojson", "gpkg"] as const;
 export type FeatureFormat = (typeof kFeatureFormats)[number];
 
-/** From above, as the model stands: the map of a wall that is `y` up is its plan in x and z. */
+/** The view from above: a wall model with `y` up has a plan in x and z. */
 export const planOf = (up: Model["up"]): `-${Axis}` => `-${up.at(-1) as Axis}`;
 
 export function saveFeatures(session: ModelSession, layer: Layer, format: FeatureFormat): void {
@@ -54,7 +54,7 @@ export function saveFeatures(session: ModelSession, layer: Layer, format: Featur
   );
 }
 
-/** Asks for a file and makes the layer hold what is in it. */
+/** Asks for a file and replaces the layer's contents by it. */
 export function chooseRaster(session: ModelSession, layer: Layer): void {
   const input = document.createElement("input");
   input.type = "file";

@@ -1,5 +1,5 @@
-// <strata-shape-fields>: which values are computed from the shape, and with what parameters; part
-// of the dialog of a new layer.
+// <strata-shape-fields>: the kind of a shape layer and its parameters; part of the dialog of a new
+// layer.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -24,7 +24,7 @@ const words = texts.shape;
 @customElement("strata-shape-fields")
 export class StrataShapeFields extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** The field that the server or the dialog found wrong. */
+  /** The field with a problem that the server or the dialog found. */
   @property() wrong = "";
   @state() private _input: ShapeInput = {
     kind: "mean_curvature",
@@ -94,7 +94,7 @@ export class StrataShapeFields extends LitElement {
         property: firstProperty ? keyOf(firstProperty) : "",
       });
     } catch (error) {
-      if (!(error instanceof ApiError)) throw error; // what needs no list still works
+      if (!(error instanceof ApiError)) throw error; // other kinds still work without the list
     }
   }
 

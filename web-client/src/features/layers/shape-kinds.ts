@@ -1,10 +1,10 @@
-// What can be computed from a model's shape, in the words of who studies it.
+// The values that can be computed from a model's shape, in terms of people who study it.
 
 import { readNumber } from "../../core/locale";
 import type { Model, ShapeRecipe } from "../../core/types";
 import { texts } from "../../texts";
 
-/** Of openness, at each point. */
+/** Number of rays per point for openness. */
 export const kRays = { least: 16, most: 1024, usual: 64 } as const;
 
 export type ShapeKind = ShapeRecipe["kind"];
@@ -13,7 +13,7 @@ export interface ShapeKindInfo {
   kind: ShapeKind;
   title: string;
   lead: string;
-  /** What may be set for it. */
+  /** The parameters of this kind. */
   takes: readonly ("radius" | "distance" | "rays" | "absolute" | "model" | "property")[];
 }
 
@@ -55,7 +55,7 @@ export const kShapeGroups: readonly { title: string; kinds: readonly ShapeKindIn
 export const shapeKind = (kind: ShapeKind): ShapeKindInfo =>
   kShapeGroups.flatMap((group) => group.kinds).find((info) => info.kind === kind)!;
 
-/** What the person filled in, as texts. */
+/** The person's input, as texts. */
 export interface ShapeInput {
   kind: ShapeKind;
   radius: string;
@@ -66,7 +66,7 @@ export interface ShapeInput {
   property: string; // "source/property"
 }
 
-/** The recipe, or what is wrong with the input. Fields that the kind does not take are left out. */
+/** Returns the recipe, or the problem of the input. Parameters of other kinds are omitted. */
 export function recipeOf(input: ShapeInput): ShapeRecipe | { problem: string; field: string } {
   const { takes } = shapeKind(input.kind);
   const recipe: ShapeRecipe = { kind: input.kind };
@@ -92,7 +92,7 @@ export function recipeOf(input: ShapeInput): ShapeRecipe | { problem: string; fi
     recipe.model = input.model;
   }
   if (takes.includes("property")) {
-    const slash = input.property.indexOf("/"); // a property's name may hold one, a file's may not
+    const slash = input.property.indexOf("/"); // only a property's name may contain one
     if (slash < 0) return { problem: texts.shape.property_missing, field: "property" };
     recipe.source = input.property.slice(0, slash);
     recipe.property = input.property.slice(slash + 1);
@@ -100,7 +100,7 @@ export function recipeOf(input: ShapeInput): ShapeRecipe | { problem: string; fi
   return recipe;
 }
 
-/** Others that this one can be compared with: of the same project first. */
+/** Models that this one can be compared with: those of the same project first. */
 export function otherModels(all: readonly Model[], model: Model): Model[] {
   const others = all.filter((other) => other.id !== model.id);
   return [

@@ -1,4 +1,4 @@
-// <strata-statistics-dialog>: how much of the surface a layer's values cover.
+// <strata-statistics-dialog>: the area that a layer's values cover.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -27,9 +27,9 @@ export class StrataStatisticsDialog extends LitElement {
   @property({ attribute: false }) layer!: Layer;
   @state() private _statistics: Statistics | null = null;
   @state() private _problem = "";
-  @state() private _tried: Palette | null = null; // while a limit of the colours is moved
+  @state() private _tried: Palette | null = null; // while a limit of the colors is dragged
   private _saving = false;
-  private _counted = 0; // the layer's sequence then
+  private _counted = 0; // the layer's sequence at that time
 
   constructor() {
     super();
@@ -150,7 +150,7 @@ export class StrataStatisticsDialog extends LitElement {
     void this.load();
   }
 
-  /** Counted again where somebody painted. */
+  /** Counts again after an edit. */
   override updated(): void {
     if (this._statistics && this.layer.sequence > this._counted) void this.load();
   }
@@ -200,13 +200,13 @@ export class StrataStatisticsDialog extends LitElement {
       ${this.layer.palette.mode === "categorical" ? this.keys(statistics) : this.spread(statistics)}`;
   }
 
-  /** Of the model's surface. */
+  /** The share of the model's surface. */
   private share(areaM2: number): string {
     const whole = this.session.model?.area_m2 ?? 0;
     return whole > 0 ? `${formatNumber((areaM2 / whole) * 100)} %` : "";
   }
 
-  /** As they are copied: what is read here, each number in a cell. */
+  /** The rows to copy: the displayed values, each number in a cell. */
   private rows(statistics: Statistics): string[][] {
     const words = texts.statistics;
     const line = (name: string, area: number): string[] => [
@@ -308,7 +308,7 @@ export class StrataStatisticsDialog extends LitElement {
       }`;
   }
 
-  /** Two handles, for the pointer and the arrow keys: the colours run from the one to the other. */
+  /** Two handles for the pointer and the arrow keys: they set the range of the colors. */
   private limits(palette: Palette, from: number, to: number, unit: string): TemplateResult {
     const words = texts.statistics;
     const handle = (
@@ -336,7 +336,7 @@ export class StrataStatisticsDialog extends LitElement {
       <p class="hint numeric" role="status">${words.range(`${formatNumber(palette.min, 4)}${unit}`, `${formatNumber(palette.max, 4)}${unit}`)}</p>`;
   }
 
-  /** One after the other: each key press is a change, and the newest is what stays. */
+  /** Saves one change after the other: each key press is a change, and the last one remains. */
   private async saveRange(): Promise<void> {
     if (this._saving) return;
     this._saving = true;
@@ -355,6 +355,6 @@ export class StrataStatisticsDialog extends LitElement {
   }
 }
 
-/** The largest first. */
+/** Largest area first. */
 const sorted = (statistics: Statistics): KeyStatistics[] =>
   [...(statistics.keys ?? [])].sort((a, b) => b.area_m2 - a.area_m2);

@@ -1,5 +1,5 @@
-// <strata-template-dialog>: templates, and what each makes; one press makes its tables, and its
-// layers on this model.
+// <strata-template-dialog>: the templates and their contents; one click makes the tables of a
+// template, and its layers on this model.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -18,7 +18,7 @@ import { styled } from "../../ui/styled";
 import { texts } from "../../texts";
 
 const words = texts.templates;
-const kMostColors = 6; // of a list, to give an idea of it
+const kMostColors = 6; // of a list, as a preview
 
 @customElement("strata-template-dialog")
 export class StrataTemplateDialog extends LitElement {
@@ -175,8 +175,8 @@ export class StrataTemplateDialog extends LitElement {
 }
 
 /**
- * The server names what it makes in one language, that of the page's person: here it is called the
- * same.
+ * The server names the new objects in one language, that of the user's page; this preview shows the
+ * same names.
  */
 const named = ({ name, labels = {} }: Pick<Template, "name" | "labels">): string =>
   labelOf({ name, labels });

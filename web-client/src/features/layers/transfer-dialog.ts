@@ -1,4 +1,4 @@
-// <strata-transfer-dialog>: brings layers over from another version of the scan.
+// <strata-transfer-dialog>: transfers layers from another version of the scan.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -20,7 +20,7 @@ const words = texts.transfer;
 
 const kUsualAngle = 60; // degrees
 
-/** What a re-scan differs by, as a first guess: a 500th of the object's size, in millimetres. */
+/** A first guess for the deviation of a new scan: a 500th of the object's size, in millimeters. */
 export function likelyToleranceMm(model: Pick<Model, "bounds" | "unit">): number {
   const { min, max } = model.bounds;
   const diagonal = Math.hypot(...[0, 1, 2].map((axis) => max[axis]! - min[axis]!));

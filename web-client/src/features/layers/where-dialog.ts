@@ -1,4 +1,4 @@
-// <strata-where-dialog>: fills, or erases, a layer where a condition over the layers holds.
+// <strata-where-dialog>: fills or erases a layer where a condition over the layers is true.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";

@@ -1,5 +1,5 @@
-// What is measured, over the picture: its places, the straight legs between them, its course on the
-// surface, and the place that the plot points at.
+// The measurement over the picture: its places, the straight legs between them, its course on the
+// surface, and the place that the plot's pointer marks.
 
 import { html, nothing, svg, type TemplateResult } from "lit";
 import type { OrbitCamera } from "../../math/camera";
@@ -11,7 +11,7 @@ import { faces } from "../../session/pin-sight";
 interface Seen {
   x: number; // CSS pixels
   y: number;
-  /** The surface there is turned to the camera, and not cut away. */
+  /** The surface there faces the camera and is not cut away. */
   towards: boolean;
 }
 
@@ -63,7 +63,7 @@ export function measureOverlay({
     ${tip ? lengthSoFar(view, measuring.soFar, tip) : nothing}`;
 }
 
-/** Where the key sets a place, while no pointer says another one. */
+/** Marks the place that the key sets without a pointer. */
 const crossAt = ({ x, y }: { x: number; y: number }): TemplateResult =>
   svg`${[
     ["var(--mark-light)", 3.6],
@@ -86,7 +86,10 @@ function project(
   return { x: at.x / scale, y: at.y / scale, towards };
 }
 
-/** Those lines from one to the next that are wanted; none to what is behind the eye. */
+/**
+ * Path of the lines between consecutive places that `wanted` accepts; none to a place behind the
+ * eye.
+ */
 function segments(
   places: readonly (Seen | null)[],
   wanted: (from: Seen, to: Seen) => boolean,

@@ -1,4 +1,4 @@
-// <strata-measure-panel>: what is measured, in figures and as a profile.
+// <strata-measure-panel>: the measurement in numbers and as a profile.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -20,14 +20,14 @@ import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.measure;
-const kFlat = 0.005; // of the polygon's size: nearer to its plane all places count as in it
+const kFlat = 0.005; // of the polygon's size: places nearer to its plane count as in it
 
 @customElement("strata-measure-panel")
 export class StrataMeasurePanel extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @state() private _equal = false;
   @query("strata-profile-plot") private _plot!: StrataProfilePlot | null;
-  private _hasKeyboard = false; // one of its buttons, before it is drawn anew
+  private _hasKeyboard = false; // one of its buttons had the focus before rendering
 
   constructor() {
     super();
@@ -102,7 +102,7 @@ export class StrataMeasurePanel extends LitElement {
     `,
   ];
 
-  /** Where other parts of the panel were looked at, it is brought into sight. */
+  /** Scrolls into view if another part of the panel was visible. */
   override firstUpdated(): void {
     this.scrollIntoView({ block: "nearest" });
   }
@@ -111,7 +111,7 @@ export class StrataMeasurePanel extends LitElement {
     this._hasKeyboard = this.shadowRoot?.activeElement instanceof HTMLButtonElement;
   }
 
-  /** The button that was pressed may have gone with what it was for. */
+  /** The pressed button may have disappeared with its measurement. */
   override updated(): void {
     if (this._hasKeyboard && !this.shadowRoot?.activeElement)
       this.renderRoot.querySelector<HTMLElement>(".acts button")?.focus();
@@ -230,7 +230,7 @@ export class StrataMeasurePanel extends LitElement {
       </div>`;
   }
 
-  /** For those who cannot see the figures change. */
+  /** Text for screen readers, which do not see the numbers change. */
   private said(model: Model): string {
     const { measuring } = this.session;
     const told = (units: number): string => measuredLength(units * metresPer(model.unit));
@@ -261,7 +261,7 @@ export class StrataMeasurePanel extends LitElement {
   }
 }
 
-/** A difference of lengths has no more decimals than they have digits. */
+/** Rounds a difference of lengths to the precision of the lengths. */
 function roundLike(difference: number, measured: number): number {
   if (!(measured > 0)) return difference;
   const step = 10 ** (Math.floor(Math.log10(measured)) - kMeasuredDigits + 1);

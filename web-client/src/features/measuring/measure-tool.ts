@@ -1,18 +1,18 @@
-// Taps set places that are measured between. A drag turns the model, as with comments: the far end
-// of what is measured may lie on its other side.
+// Taps set the places of a measurement. A drag rotates the model, as for comments, since the other
+// end may be on its far side.
 
 import type { PointerSample } from "../../ui/input";
 import { DragTool, type Navigator } from "../../tools/navigate";
 import type { Tool } from "../../tools/tool";
 
 export interface MeasureHost extends Navigator {
-  /** Where the next place would be; null: the pointer left. */
+  /** The position of the next place; null: the pointer left. */
   pointAt(sample: PointerSample | null): void;
   setInMiddle(): void;
   end(): void;
   takeBack(): void;
   clear(): void;
-  /** There are places, or one is on its way. */
+  /** Whether there are places, or a tap waits for its place. */
   begun(): boolean;
 }
 
@@ -33,7 +33,7 @@ export class MeasureTool extends DragTool implements Tool {
 
   key(key: string): boolean {
     if (key === "m" || key === "M")
-      this._host.setInMiddle(); // without a pointer
+      this._host.setInMiddle(); // keyboard
     else if (!this._host.begun()) return false;
     else if (key === "Enter") this._host.end();
     else if (key === "Backspace" || key === "Delete") this._host.takeBack();

@@ -1,6 +1,6 @@
-// What this person measures on the model: places that were set one by one, the surface between
-// them, and what is looked at of it. Places are of the object, not of a picture: the camera moves
-// on between them. Nothing of it is stored.
+// This person's measurement on the model: the places that were set, the surface between them, and
+// the plotted values. Places belong to the object, not to a picture: the camera may move between
+// them. Nothing is stored.
 
 import type { Sent } from "../../net/calls";
 import { ApiError } from "../../net/api-error";
@@ -43,46 +43,46 @@ export interface MeasuredPlace {
 }
 
 /**
- * How the line lies on the surface: what was seen under its straight legs from one camera, or of
- * each of their steps what is nearest.
+ * How the line follows the surface: the surface that one camera sees under the straight legs, or
+ * the nearest place for each step of the legs.
  */
 export type Way = "seen" | "nearest";
 
 export interface MeasuredProfile {
   way: Way;
   line: Sent<ProfileRequest>;
-  /** Model units. */
+  /** In model units. */
   parts: ProfileParts;
-  /** Its course, in as few places as show it. */
+  /** The course in as few places as it needs. */
   course: ProfileParts;
-  /** All of its places, from the beginning. */
+  /** All places, from the start. */
   places: readonly ProfilePlace[];
 }
 
 export const kMostPlaces = 100;
 const kNearestSteps = 1000;
-const kReachPx = 4; // how near the line must come to a place for it to have been seen there
-const kReach = 0.001; // of the model's size, besides
+const kReachPx = 4; // largest distance of the line from a place that counts as visible
+const kReach = 0.001; // or this share of the model's size
 
 export class Measuring {
   places: readonly MeasuredPlace[] = [];
-  /** No place follows: the next one begins anew. */
+  /** No further place: the next tap starts a new measurement. */
   ended = false;
   profile: MeasuredProfile | null = null;
-  /** The surface between the places is being asked for. */
+  /** A request for the surface between the places is pending. */
   busy = false;
   problem = "";
-  /** The one that the plot points at, also on the model: an index of the profile's places. */
+  /** The marked place in plot and model: an index of the profile's places. */
   pointed: number | null = null;
 
-  private _way: Way | null = null; // that the person wants; null: seen where that can be
-  private _layer: number | null = null; // whose values are plotted
+  private _way: Way | null = null; // the chosen one; null: "seen" where possible
+  private _layer: number | null = null; // with the plotted values
   private _pointer: PointerSample | null = null;
-  private _seenBy: CameraMessage | null = null; // where the pointer was
-  private _work: Promise<void> = Promise.resolve(); // taps, one after the other
-  private _waiting = 0; // of them, for an answer or for their turn
-  private _count = 0; // of measurements: what is answered to one that was cleared comes too late
-  private _asked = 0; // for a profile: the newest counts
+  private _seenBy: CameraMessage | null = null; // the camera at the last pointer position
+  private _work: Promise<void> = Promise.resolve(); // taps run one after the other
+  private _waiting = 0; // number of taps that wait
+  private _count = 0; // of measurements: answers to earlier ones are ignored
+  private _asked = 0; // profile requests: only the latest counts
   private readonly _soFar: LineMeasure<MarkPlace | null>;
 
   constructor(
@@ -96,55 +96,55 @@ export class Measuring {
     });
   }
 
-  // ── what is known
-  // ─────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── state ──────────────────────────────────────────────────────────────────────────────────────
 
   get positions(): Vec3[] {
     return this.places.map(({ position }) => position);
   }
-  /** Along the surface; null while it is not known. */
+  /** Length along the surface; null while unknown. */
   get along(): number | null {
     return this.profile ? lengthOf(this.profile.parts) : null;
   }
   /**
-   * What is nearest to a line through the object are patches here and there, whose lengths say
-   * nothing.
+   * The nearest places to a line through the object are separate patches whose length is
+   * meaningless.
    */
   get hasWay(): boolean {
     return this.profile?.way !== "nearest" || this.profile.parts.length === 1;
   }
-  /** Metres along the surface to the pointer; null where that is not known. */
+  /** Meters along the surface to the pointer; null where unknown. */
   get soFar(): number | null {
     return this._soFar.metres;
   }
-  /** Where a line leads from the last place to the pointer, window pixels. */
+  /** End of the line from the last place to the pointer, in window pixels. */
   get tip(): Point | null {
     return this.open && this._pointer ? [this._pointer.x, this._pointer.y] : null;
   }
-  /** There are places, or one is on its way. */
+  /** Whether there are places, or a tap waits for its place. */
   get begun(): boolean {
     return this.places.length > 0 || this._waiting > 0;
   }
-  /** More places may follow. */
+  /** Whether a tap adds a place. */
   get open(): boolean {
     return this.places.length > 0 && !this.ended && this.places.length < kMostPlaces;
   }
 
-  /** Those with values that make a curve. */
+  /** Layers with values that can be plotted as a curve. */
   get layers(): Layer[] {
     return this._host.layers.all.filter(
       ({ kind, palette }) => kind === "numeric" && palette.mode !== "categorical",
     );
   }
-  /** Whose values are plotted; null: heights are. */
+  /** The layer with the plotted values; null: heights. */
   get layer(): Layer | null {
     return this.layers.find(({ id }) => id === this._layer) ?? null;
   }
 
-  // ── what the person does
-  // ──────────────────────────────────────────────────────────────────────────────────────────
+  // ── actions ────────────────────────────────────────────────────────────────────────────────────
 
-  /** A tap: a new place; on the last one, or on the first of several, the end. */
+  /**
+   * A tap sets a new place; on the last place, or on the first of several, it ends the measurement.
+   */
   setAt({ x, y }: PointerSample): void {
     const camera = this.cameraNow();
     const reach = kSnapPx * this._host.view.scale;
@@ -188,7 +188,7 @@ export class Measuring {
     this.queue(async () => this.endNow());
   }
 
-  /** The last place. What was ended is open again. */
+  /** Removes the last place. An ended measurement is open again. */
   takeBack(): void {
     this.queue(async () => {
       this.ended = false;
@@ -210,7 +210,7 @@ export class Measuring {
     this.followPointer();
   }
 
-  /** The line as it is seen from here, or nearest to its straight legs. */
+  /** The line as seen from here, or the nearest places to its straight legs. */
   chooseWay(way: Way): void {
     this._way = way;
     void this.learn(this.cameraNow());
@@ -219,7 +219,7 @@ export class Measuring {
   chooseLayer(id: number | null): void {
     this._layer = id;
     const { profile } = this;
-    for (const place of profile?.places ?? []) place.value = null; // those are of another one
+    for (const place of profile?.places ?? []) place.value = null; // of the previous layer
     if (profile) void this.askValues(profile);
     this._host.changed();
   }
@@ -230,7 +230,7 @@ export class Measuring {
     this._host.changed();
   }
 
-  /** As the server writes it: with the values of all layers that this person sees. */
+  /** The server's file, with the values of all layers that this person sees. */
   async csv(): Promise<Blob> {
     const { profile } = this;
     const model = this._host.model();
@@ -242,10 +242,9 @@ export class Measuring {
     });
   }
 
-  // ── what happens
-  // ──────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── events ─────────────────────────────────────────────────────────────────────────────────────
 
-  /** How long the line to the pointer is, was told of another camera. */
+  /** The length of the line to the pointer belongs to the previous camera. */
   cameraMoved(): void {
     this._soFar.follow(null);
   }
@@ -256,10 +255,9 @@ export class Measuring {
     if (this.layer?.id === id && this.profile) void this.askValues(this.profile);
   }
 
-  // ── the surface between the places
-  // ────────────────────────────────────────────────────────────────────────────────
+  // ── the surface between the places ─────────────────────────────────────────────────────────────
 
-  /** It moves on while answers are waited for. */
+  /** A copy: the camera may move before an answer arrives. */
   private cameraNow(): OrbitCamera {
     return Object.assign(new OrbitCamera(), this._host.view.camera);
   }
@@ -291,7 +289,7 @@ export class Measuring {
     this._host.changed();
   }
 
-  /** One after the other: a tap is about what the one before left. */
+  /** Runs one after the other: a tap depends on the result of the previous one. */
   private queue(work: (isCurrent: () => boolean) => Promise<void>): void {
     const count = this._count;
     const isCurrent = (): boolean => count === this._count;
@@ -302,7 +300,7 @@ export class Measuring {
       .finally(() => void (this._waiting -= isCurrent() ? 1 : 0));
   }
 
-  /** What is known of the same places stays until then. */
+  /** Requests the profile. The known profile of the same places is kept until then. */
   private async learn(camera: OrbitCamera): Promise<void> {
     const model = this._host.model();
     if (!model || this.places.length < 2) return;
@@ -325,7 +323,7 @@ export class Measuring {
     this._host.changed();
   }
 
-  /** Null where not all places are seen from there. */
+  /** Null where the camera does not see all places. */
   private async askSeen(model: Model, camera: OrbitCamera): Promise<MeasuredProfile | null> {
     const { positions } = this;
     const pixels = positions.flatMap((position): Point[] => {
@@ -384,7 +382,7 @@ export class Measuring {
     };
   }
 
-  /** The same line, with values of the layer that is plotted now. */
+  /** Requests the same line with values of the plotted layer. */
   private async askValues(profile: MeasuredProfile): Promise<void> {
     const { layer } = this;
     const model = this._host.model();
@@ -412,8 +410,7 @@ export class Measuring {
     }
   }
 
-  // ── the line to the pointer
-  // ───────────────────────────────────────────────────────────────────────────────────────
+  // ── the line to the pointer ────────────────────────────────────────────────────────────────────
 
   private followPointer(): void {
     const { camera } = this._host.view;

@@ -1,5 +1,5 @@
-// <strata-profile-plot>: height, or what a layer holds, along the line that is measured. The
-// pointer or the arrow keys choose a place of it, which is marked on the model, too.
+// <strata-profile-plot>: height, or a layer's values, along the measured line. The pointer or the
+// arrow keys select a place, which is also marked on the model.
 
 import { css, html, LitElement, nothing, render, svg, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -45,10 +45,10 @@ const kOnPaper: PlotColors = {
 export class StrataProfilePlot extends LitElement {
   @property({ attribute: false }) profile!: MeasuredProfile;
   @property({ attribute: false }) model!: Model;
-  /** Whose values are shown; null: heights are. */
+  /** The layer with the plotted values; null: heights. */
   @property({ attribute: false }) layer: Layer | null = null;
   @property({ type: Boolean }) equal = false;
-  /** Index of the place that is pointed at. */
+  /** Index of the selected place. */
   @property({ attribute: false }) pointed: number | null = null;
   @state() private _width = 0;
 
@@ -63,7 +63,7 @@ export class StrataProfilePlot extends LitElement {
       }
       .plot {
         cursor: crosshair;
-        margin-bottom: 0.4375rem; /* of the focus's line */
+        margin-bottom: 0.4375rem; /* room for the focus outline */
         touch-action: pan-y;
         border-radius: var(--radius-small);
       }
@@ -73,7 +73,7 @@ export class StrataProfilePlot extends LitElement {
       }
       output {
         display: block;
-        min-height: 3lh; /* what is below it keeps its place */
+        min-height: 3lh; /* keeps the content below in place */
         font-size: 0.82rem;
         color: var(--ink-soft);
       }
@@ -128,7 +128,7 @@ export class StrataProfilePlot extends LitElement {
       <output aria-hidden="true">${place ? this.told(place) : html`${words.plot_hint}`}</output>`;
   }
 
-  /** As a file of its own, dark on white. */
+  /** A separate file, dark on white. */
   file(): Blob {
     const holder = document.createElement("div");
     render(this.draw(this.make(kFile.width, kFile.height), kOnPaper), holder);

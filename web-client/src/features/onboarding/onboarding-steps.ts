@@ -1,5 +1,4 @@
-// The steps of the tour of a model's page: for whom each is, what it speaks of, and where that is
-// just now.
+// The steps of the tour of a model's page: their audience, and the elements that they explain.
 
 import type { Box } from "../../ui/beside";
 
@@ -8,13 +7,13 @@ export type StepName = (typeof kSteps)[number];
 
 const kForPainters: readonly StepName[] = ["brush", "undo"];
 
-/** Those for who may paint here, or only look. */
+/** The steps for a person who may paint here, or may only view. */
 export const stepsFor = (canPaint: boolean): StepName[] =>
   kSteps.filter((name) => canPaint || !kForPainters.includes(name));
 
 /**
- * The step itself where its thing is there; otherwise the next one whose is, or else the last one
- * before. Null: nothing is there.
+ * The step itself if its element is present; otherwise the next such step, or else the last one.
+ * Null: none is present.
  */
 export function nearestStep(name: StepName, there: readonly StepName[]): StepName | null {
   const after = kSteps.slice(kSteps.indexOf(name)).find((each) => there.includes(each));
@@ -22,17 +21,18 @@ export function nearestStep(name: StepName, there: readonly StepName[]): StepNam
 }
 
 /**
- * What a step speaks of, and the bar that it stands in. `isRoom`: there is no one thing to mark.
+ * The element that a step explains, and the bar that contains it. `isRoom`: no single element to
+ * mark.
  */
 export interface OnboardingTarget {
   element: Element;
   bar: Element;
   isRoom?: boolean;
-  /** What it speaks of is put away; this brings it back. */
+  /** The element itself is hidden; this one opens it. */
   isWay?: boolean;
 }
 
-/** Where it is on the page; null: nowhere, or not to be seen. */
+/** The element of a step on the page; null: none, or invisible. */
 export function thingOf(name: StepName, page: ParentNode): OnboardingTarget | null {
   const found = find(name, page);
   return found && found.element.checkVisibility() && found.element.getClientRects().length > 0
@@ -70,7 +70,7 @@ function find(name: StepName, page: ParentNode): OnboardingTarget | null {
   }
 }
 
-/** The part of an element that lies in its bar and in the window. */
+/** The part of an element that is inside its bar and the window. */
 export function seenBox({ element, bar, isRoom }: OnboardingTarget): Box {
   const [own, outer] = [element.getBoundingClientRect(), bar.getBoundingClientRect()];
   if (isRoom) return middleOf(own);
@@ -84,7 +84,7 @@ export function seenBox({ element, bar, isRoom }: OnboardingTarget): Box {
   };
 }
 
-const kMargin = 0.3; // of the stage, beside what is looked at
+const kMargin = 0.3; // share of the stage around its middle part
 
 const middleOf = ({ left, top, width, height }: DOMRect): Box => ({
   left: left + kMargin * width,

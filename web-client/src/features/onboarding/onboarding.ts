@@ -1,6 +1,6 @@
-// <strata-tour>: the first time somebody opens a model at this browser, a card beside one thing
-// after the other says what it is for. It takes nothing away: all that is there can be used
-// meanwhile, and the keyboard stays where it is until somebody goes to the card.
+// <strata-tour>: at the first model that a person opens in this browser, a card next to one element
+// after the other explains it. The page stays usable, and the keyboard focus stays where it is
+// until the person moves it to the card.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -25,19 +25,19 @@ import {
 
 const words = texts.tour;
 const kGapPx = 12;
-const kLargePx = 100; // things that get room within their ring
+const kLargePx = 100; // wider elements get more room inside the ring
 const kNarrow = "(max-width: 820px)"; // as in modelStyles
 
 @customElement("strata-tour")
 export class StrataOnboarding extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** The page asks something else now: the tour does not begin by itself. */
+  /** Another dialog is open: the tour does not start automatically. */
   @property({ type: Boolean }) held = false;
   @state() private _step: StepName | null = null;
   @query("section") private _card!: HTMLElement | null;
   @query(".ring") private _ring!: HTMLElement | null;
   @query("button.primary") private _next!: HTMLButtonElement | null;
-  private _opener: HTMLElement | null = null; // had the keyboard before
+  private _opener: HTMLElement | null = null; // had the focus before
   private _hasKeyboard = false;
 
   constructor() {
@@ -53,7 +53,7 @@ export class StrataOnboarding extends LitElement {
       }
       section {
         position: fixed;
-        z-index: 9; /* over everything of the page, under menus and dialogs */
+        z-index: 9; /* above the page, below menus and dialogs */
         display: grid;
         gap: 0.5rem;
         overflow-y: auto;
@@ -94,7 +94,7 @@ export class StrataOnboarding extends LitElement {
       }
       .choices .skip {
         margin: 0 auto 0 -0.75rem;
-        outline-offset: -3px; /* within the card */
+        outline-offset: -3px; /* inside the card */
       }
       .ring {
         position: fixed;
@@ -114,7 +114,7 @@ export class StrataOnboarding extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     addEventListener("resize", this._moved);
-    // of whatever scrolls
+    // of any scrolling element
     addEventListener("scroll", this._moved, { capture: true, passive: true });
   }
   override disconnectedCallback(): void {
@@ -126,7 +126,7 @@ export class StrataOnboarding extends LitElement {
     if (this._step !== null) this.requestUpdate();
   };
 
-  /** Because somebody asked for it: it has the keyboard, and gives it back. */
+  /** Starts on request: takes the keyboard focus and returns it at the end. */
   async start(): Promise<void> {
     this._opener = hasKeyboard();
     this.go(kSteps[0]);
@@ -134,7 +134,7 @@ export class StrataOnboarding extends LitElement {
     this._next?.focus({ preventScroll: true });
   }
 
-  /** For good: at this browser it does not begin by itself again. False: there was none. */
+  /** Ends the tour permanently for this browser. Returns false if it was not running. */
   end(): boolean {
     if (this._step === null) return false;
     const { isAtKeyboard } = this;
@@ -181,7 +181,7 @@ export class StrataOnboarding extends LitElement {
     if (thing && !thing.isRoom) bringIntoBar(thing);
   }
 
-  /** To the step after or before; past the last one it is over. */
+  /** Goes to the next or previous step; after the last one the tour ends. */
   private step(by: 1 | -1): void {
     const there = this.there();
     const to = there[there.indexOf(this._step!) + by];
@@ -244,7 +244,7 @@ export class StrataOnboarding extends LitElement {
     event.preventDefault();
   }
 
-  /** The arrows end nothing: one too many would take the card away. */
+  /** Arrow keys do not end the tour: one key press too many would close the card. */
   private stepFromKey(by: 1 | -1): void {
     const there = this.there();
     if (there[there.indexOf(this._step!) + by]) this.step(by);
@@ -254,10 +254,10 @@ export class StrataOnboarding extends LitElement {
     const { _card: card, _ring: ring, _step: step } = this;
     const thing = step === null ? null : this.thing(step);
     if (!card || !thing) return;
-    // the button that had it is gone
+    // the focused button was removed
     if (this._hasKeyboard && !this.isAtKeyboard) this._next?.focus({ preventScroll: true });
     const box = seenBox(thing);
-    card.style.maxHeight = ""; // as high as it would like to be
+    card.style.maxHeight = ""; // measures the natural height
     const place = placeOf(thing, box, { width: card.offsetWidth, height: card.offsetHeight });
     Object.assign(card.style, {
       left: `${place.left}px`,
@@ -277,7 +277,7 @@ export class StrataOnboarding extends LitElement {
   }
 }
 
-/** What was scrolled out of it, or is hardly seen at its end. */
+/** Scrolls the element into its bar if it is hidden or barely visible at the end. */
 function bringIntoBar(thing: OnboardingTarget): void {
   const enough = Math.min(thing.element.clientHeight, 0.8 * thing.bar.clientHeight);
   thing.element.scrollIntoView({
@@ -287,8 +287,8 @@ function bringIntoBar(thing: OnboardingTarget): void {
 }
 
 /**
- * Beside the bar of the thing; of the model at the upper edge of its stage (on phones the lower
- * one, which is nearer to the hand), where that leaves it the middle.
+ * Next to the bar of the element. For the model: at the top of its stage (on phones at the bottom,
+ * near the hand) if the middle stays free.
  */
 function placeOf(
   { bar, isRoom }: OnboardingTarget,

@@ -1,5 +1,5 @@
-// <strata-brush-panel>: what the chosen painting tool paints in the selected layer, how wide, and
-// what it reaches.
+// <strata-brush-panel>: the value that the selected painting tool paints in the selected layer, its
+// width, and its reach.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -25,7 +25,7 @@ import "../../session/fields/value-picker";
 
 const kSliderSteps = 1000;
 
-/** Asks for the dialog of a fill by a condition. */
+/** Requests the dialog of a fill by a condition. */
 export type WhereRequest = { dialog: "where"; layer: Layer };
 
 @customElement("strata-brush-panel")
@@ -148,7 +148,7 @@ export class StrataBrushPanel extends LitElement {
       ${this.whole(layer)}`;
   }
 
-  /** Of which record lines and points will be, and in which column. */
+  /** The record and the column of new lines and points. */
   private marks(layer: Layer, kind: MarkKind): TemplateResult {
     const { marks } = this.session;
     const words = texts.marks;
@@ -249,7 +249,7 @@ export class StrataBrushPanel extends LitElement {
     </div>`;
   }
 
-  /** What needs no pointer. */
+  /** Edits of the whole layer, without the pointer. */
   private whole(layer: Layer): TemplateResult {
     const detail: WhereRequest = { dialog: "where", layer };
     const askWhere = (): void =>
@@ -321,7 +321,7 @@ export class StrataBrushPanel extends LitElement {
     return `≈ ${formatLength(metres)} ${texts.brush.on_object}`;
   }
 
-  /** Keeps the brush as wide as it looks now. */
+  /** Keeps the brush at its current width on the screen. */
   private setUnit(unit: WidthUnit): void {
     const { session } = this;
     if (session.painting.brush.unit === unit || !session.model) return;
@@ -348,7 +348,7 @@ export class StrataBrushPanel extends LitElement {
     if (
       await ask({
         heading: words.fill_title(labelOf(layer)),
-        lead: words.fill_lead(`“${what}”`),
+        lead: words.fill_lead(what),
         yes: words.fill,
       })
     ) {

@@ -1,4 +1,4 @@
-// What is painted with: width, shape, reach, and one value per layer.
+// Settings of the painting tools: width, shape, reach, and one value for each layer.
 
 import { purposeOf } from "../../domain/palette";
 import { holdsFractions, type Layer } from "../../core/types";
@@ -12,14 +12,14 @@ export class BrushSettings {
   unit: WidthUnit = "px";
   width: Record<WidthUnit, number> = { px: 40, mm: 5 }; // diameters; px are CSS pixels
   shape: ToolShape = "disc";
-  through = false; // what is hidden, too
-  pressure = true; // a pen that is pressed less paints a narrower line
+  through = false; // also hidden surfaces
+  pressure = true; // a pen with less pressure paints a narrower line
   /**
-   * What is seen at more of a slant is left out, where that is wanted. Not together with what is
-   * hidden.
+   * If limited, surfaces at a larger angle to the camera are not painted. Not together with hidden
+   * surfaces.
    */
   slant = { limited: false, maxDeg: 60 };
-  /** Of polygon, lasso and bucket. */
+  /** For polygon, lasso and bucket. */
   areas: { erases: boolean; reach: "connected" | "island" } = { erases: false, reach: "connected" };
   private readonly _values = new Map<number, number>();
 

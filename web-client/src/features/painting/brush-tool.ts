@@ -1,16 +1,17 @@
-// Brush and eraser: a drag becomes a stroke in the selected layer, sent a batch per drawn picture.
+// Brush and eraser: a drag becomes a stroke in the selected layer, sent as one batch for each drawn
+// picture.
 
 import type { StrokeHandle, Point } from "../../net/stroke";
 import type { PointerSample } from "../../ui/input";
 import type { Tool } from "../../tools/tool";
 
 export interface BrushHost {
-  /** Null when there is nothing to paint on; the host has then told the person why. */
+  /** Null if nothing can be painted; the host has then shown the reason. */
   beginStroke(erase: boolean): StrokeHandle | null;
   strokeEnded(): void;
   /** The radius in window pixels at the pointer; points closer than a tenth of it add nothing. */
   radiusPx(): number;
-  /** What share of its radius the brush has where a pen is pressed so strongly. */
+  /** The share of its radius that the brush has at this pen pressure. */
   widthOf(pressure: number): number;
   nextFrame(callback: () => void): void;
 }
@@ -22,7 +23,7 @@ export class BrushTool implements Tool {
   private _waiting: Point[] = [];
   private _widths: number[] = []; // of the waiting points
   private _last: Point | null = null; // the last point taken
-  private _newest: Point | null = null; // where the pointer is
+  private _newest: Point | null = null; // the pointer's position
   private _newestWidth = 1;
   private _lastWidth = 1;
   private _scheduled = false;
@@ -53,7 +54,7 @@ export class BrushTool implements Tool {
     const spacing = Math.max(0.5, this._host.radiusPx() * 0.1);
     for (const sample of samples) {
       this.see(sample);
-      // in place, too
+      // also without a move
       const pressed = Math.abs(this._newestWidth - this._lastWidth) >= kWidthStep;
       if (pressed || Math.hypot(sample.x - this._last[0], sample.y - this._last[1]) >= spacing)
         this.take();
@@ -77,7 +78,7 @@ export class BrushTool implements Tool {
     this.finish();
   }
 
-  /** What was painted stays: it can be undone. */
+  /** The painted part stays; the user can undo it. */
   cancel(): void {
     this.finish();
   }

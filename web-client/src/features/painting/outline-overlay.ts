@@ -1,4 +1,4 @@
-// What polygon, lasso and line have drawn so far, over the picture.
+// The outline of polygon, lasso and line during drawing, over the picture.
 
 import { html, nothing, svg, type TemplateResult } from "lit";
 import { colorOf, cssColor } from "../../domain/palette";

@@ -1,6 +1,5 @@
-// <strata-paint-chip>: what the chosen tool would paint now, on one line above the tools. For
-// windows in which the panel that says so lies over the model or is put away. Pressed, it brings
-// that panel.
+// <strata-paint-chip>: one line above the tools with the value that the selected tool paints. For
+// windows in which the brush panel lies over the model or is closed. A click opens that panel.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

@@ -1,4 +1,4 @@
-// What this person paints with, and the edits that come of it.
+// This person's painting settings and the resulting edits.
 
 import { labelOf } from "../../domain/cells";
 import { newId } from "../../core/ids";
@@ -25,20 +25,20 @@ export interface PaintingHost {
   model(): Model | null;
   records: RecordLabels;
   mayPaint(): boolean;
-  isLocked(layer: Layer): boolean; // to this person
+  isLocked(layer: Layer): boolean; // for this person
   changed(): void;
 }
 
-const kThinnest = 0.08; // of the radius, however softly a pen is pressed
+const kThinnest = 0.08; // share of the radius at the lowest pen pressure
 
 export class Painting {
   readonly brush = new BrushSettings();
-  stroking = false; // or an outline is being drawn
-  penUsed = false; // whose pressure counts
+  stroking = false; // also while an outline is drawn
+  penUsed = false; // a pen with pressure was used
 
   private _stroke: StrokeHandle | null = null;
   private _afterStroke: (() => void)[] = [];
-  private readonly _wholeEdits = new Set<string>(); // sent and not answered
+  private readonly _wholeEdits = new Set<string>(); // sent, but not answered
 
   constructor(private readonly _host: PaintingHost) {}
 
@@ -58,7 +58,7 @@ export class Painting {
     return radius / view.camera.unitPerPixel(pointer.surfaceDepth());
   }
 
-  /** Its diameter on the object, there. */
+  /** The brush's diameter on the object under the pointer. */
   widthMetres(): number {
     const { view, pointer } = this._host;
     const model = this._host.model();
@@ -71,8 +71,7 @@ export class Painting {
     );
   }
 
-  // ── strokes
-  // ───────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── strokes ────────────────────────────────────────────────────────────────────────────────────
 
   beginStroke(erase: boolean): StrokeHandle | null {
     const layer = this.layerToPaint();
@@ -104,7 +103,7 @@ export class Painting {
     return stroke;
   }
 
-  /** Of the brush, as a pen presses. That one is used is known from then on. */
+  /** The brush's width at a pen pressure. Records that a pen is in use. */
   widthOf(pressure: number): number {
     if (!this.penUsed) {
       this.penUsed = true;
@@ -113,7 +112,7 @@ export class Painting {
     return this.brush.pressure ? Math.min(1, Math.max(kThinnest, pressure)) : 1;
   }
 
-  /** Nothing more of the stroke is sent, whatever is still drawn. What was painted stays. */
+  /** Ends the stroke for the server, even if the user continues to draw. The painted part stays. */
   breakOff(): void {
     this._stroke?.end();
   }
@@ -130,8 +129,7 @@ export class Painting {
     else action();
   }
 
-  // ── whole edits
-  // ───────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── whole edits ────────────────────────────────────────────────────────────────────────────────
 
   undo(): void {
     this.sendHistory("undo");
@@ -150,7 +148,7 @@ export class Painting {
     });
   }
 
-  /** Fills what is connected with the place under the pointer. */
+  /** Fills the area that is connected with the place under the pointer. */
   fillAt({ x, y }: PointerSample): void {
     const target = this.areaTarget();
     if (!target) return;
@@ -177,7 +175,7 @@ export class Painting {
     });
   }
 
-  /** The server's answer to a whole edit that was sent from here: how much it changed. */
+  /** The server's answer to a whole edit from this page: shows the size of the change. */
   onApplied({ id, texels_changed: texelsChanged, area_m2: areaM2 }: Applied): void {
     if (id === undefined || !this._wholeEdits.delete(id)) return;
     if (texelsChanged === 0) notices.show("info", texts.areas.nothing_changed);
@@ -203,7 +201,7 @@ export class Painting {
     if (id !== null) this._wholeEdits.add(id);
   }
 
-  /** The selected layer's value goes onto the brush. */
+  /** Sets the brush to the selected layer's picked value. */
   takePicked(message: Picked): void {
     const layer = this._host.layers.selected;
     if (!layer || !message.hit) return;
@@ -230,8 +228,8 @@ export class Painting {
   }
 
   /**
-   * The brush's value for the layer; null when the layer cannot hold it, and the person was told
-   * why.
+   * The brush's value for the layer; null if the layer cannot hold it. The user was shown the
+   * reason.
    */
   private valueFor(layer: Layer, erase: boolean): number | null {
     const value = this.brush.valueFor(layer);
@@ -240,7 +238,7 @@ export class Painting {
     return wrong ? null : value;
   }
 
-  /** The chosen layer, whose texels may be changed; otherwise as `chosenLayer`. */
+  /** The selected layer if its texels can be changed; otherwise as `chosenLayer`. */
   private layerToPaint(): Layer | null {
     const layer = this.chosenLayer();
     return layer && this.refuses(layer) ? null : layer;
@@ -252,7 +250,7 @@ export class Painting {
     return locked;
   }
 
-  /** It is made visible; null: there is none to add to, and the person was told why. */
+  /** Makes the selected layer visible; null if none is selected. The user was shown the reason. */
   chosenLayer(): Layer | null {
     const { layers } = this._host;
     if (!this._host.mayPaint()) {

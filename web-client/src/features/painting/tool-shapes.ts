@@ -1,5 +1,4 @@
-// The shapes that the brush can have beside round and square: tools of the site, made of pictures.
-// All people share them.
+// Brush shapes from pictures: the site's tools, which all people share.
 
 import { kAsItIs, type Api } from "../../net/api";
 import { compareWords } from "../../core/locale";
@@ -23,14 +22,14 @@ export class ToolShapes {
     private readonly _host: ToolShapesHost,
   ) {}
 
-  /** Somebody looks at them: from now on they are kept up to date. */
+  /** Loads the shapes at the first use and keeps them up to date from then on. */
   want(): void {
     if (this._wanted) return;
     this._wanted = true;
     this.refresh();
   }
 
-  /** After a connection that was lost: what happened meanwhile was not told. */
+  /** Call this after a reconnection: events in between were lost. */
   refresh(): void {
     if (!this._wanted) return;
     this._api.all("GET /tools", "tools").then(

@@ -1,6 +1,6 @@
-// Where the others point on the surface, as this view sees it. What comes a few times a second
-// glides between; whether a place is hidden behind the surface the server is asked, one place at a
-// time: what would a ray through its pixel meet?
+// The pointers of other participants on the surface, in this view. Positions arrive a few times a
+// second; the page animates between them. The server answers whether a place is hidden behind the
+// surface, one place at a time: the page asks for the hit of a ray through its pixel.
 
 import { newId } from "../../core/ids";
 import { boundingRadius, type CameraMessage, type OrbitCamera } from "../../math/camera";
@@ -11,15 +11,15 @@ const kGlideMs = { least: 90, most: 400 };
 const kFadesAfterMs = 10_000;
 const kAskEveryMs = 100;
 const kGiveUpAfterMs = 2000;
-const kSlackPx = 4; // the ray's end and the place may differ by so much, seen from the side
+const kSlackPx = 4; // tolerated distance of ray hit and place, seen from the side
 
 export interface PersonCursor {
   viewer: PresenceUser;
   x: number; // CSS pixels of the stage
   y: number;
   radius: number | null; // of the brush, CSS pixels; null: another tool
-  hidden: boolean; // behind the surface, or cut away here
-  faded: boolean; // rests for long
+  hidden: boolean; // behind the surface, or cut away in this view
+  faded: boolean; // at rest for a long time
 }
 
 export interface PeopleCursorsHost {
@@ -39,11 +39,11 @@ interface Cursor {
   glideMs: number;
   radius: number | null; // world
   hidden: boolean;
-  asked: boolean; // nothing changed since it was asked whether it is hidden
+  asked: boolean; // asked for since the last change
 }
 
 export class PeopleCursors {
-  /** Set by the element that draws them. */
+  /** Set by the element that draws the pointers. */
   onChange: () => void = () => {};
 
   private readonly _cursors = new Map<string, Cursor>(); // by session
@@ -60,7 +60,7 @@ export class PeopleCursors {
 
   constructor(private readonly _host: PeopleCursorsHost) {}
 
-  /** Everybody but this connection. */
+  /** Takes all participants except this connection. */
   receive(viewers: readonly PresenceUser[]): void {
     const pointing = viewers.filter(({ pointer }) => pointer);
     for (const session of this._cursors.keys())
@@ -71,13 +71,13 @@ export class PeopleCursors {
     this.onChange();
   }
 
-  /** The view is another, or the surface: what was hidden may be seen. */
+  /** Call this when the view or the surface has changed: hidden places may become visible. */
   lookAgain(): void {
     for (const cursor of this._cursors.values()) cursor.asked = false;
     this.ask();
   }
 
-  /** Those whose place is in the window, as they are to be drawn now. */
+  /** The pointers in the window at the current time. */
   now(): PersonCursor[] {
     const [camera, scale, now] = [this._host.camera(), this._host.scale(), performance.now()];
     return [...this._cursors.values()].flatMap((cursor) => {
@@ -100,19 +100,19 @@ export class PeopleCursors {
     });
   }
 
-  /** One of them is on its way: they are to be drawn again with the next picture. */
+  /** Whether a pointer moves: the next picture must draw them again. */
   get gliding(): boolean {
     const now = performance.now();
     return [...this._cursors.values()].some(({ movedMs, glideMs }) => now < movedMs + glideMs);
   }
 
-  /** True when it was the answer to a question of these. */
+  /** Returns true for an answer to one of these requests. */
   answer({ id, hit, position }: Picked): boolean {
     const { _question: question } = this;
     if (!question || id !== question.id) return false;
     this._question = null;
     const cursor = this._cursors.get(question.session);
-    // A place that has moved on is asked for again.
+    // A place that has moved is requested again.
     if (cursor && cursor.to === question.to) {
       cursor.hidden =
         hit &&
@@ -128,7 +128,7 @@ export class PeopleCursors {
     this._question = null;
     return true;
   }
-  /** The connection is gone, and the answer with it. */
+  /** The connection was lost, and with it the answer. */
   reset(): void {
     this._question = null;
     this._cursors.clear();
@@ -193,7 +193,7 @@ export class PeopleCursors {
   private ask(): void {
     if (this._askTimer || !this._host.ready()) return;
     const now = performance.now();
-    // its answer asks on
+    // its answer triggers the next request
     if (this._question && now - this._question.atMs < kGiveUpAfterMs) return;
     const camera = this._host.camera();
     for (const [session, cursor] of this._cursors) {

@@ -1,4 +1,4 @@
-// <strata-people-menu>: the initials of who is at the model, and with whom this person could look.
+// <strata-people-menu>: the initials of the participants, and a menu to follow one of them.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -47,7 +47,7 @@ export class StrataPeopleMenu extends LitElement {
       .faces {
         display: flex;
         padding: 0 2px 0 0.4375rem;
-        pointer-events: auto; /* each tells a name */
+        pointer-events: auto; /* each has a tooltip with the name */
       }
       .face {
         display: grid;
@@ -109,8 +109,8 @@ export class StrataPeopleMenu extends LitElement {
     if (people.length === 0) return html``;
     const words = texts.together;
     const others = people.filter(({ viewer }) => viewer !== null);
-    // On a phone, who is alone has their face at the menu of the account already, and the title
-    // needs the room.
+    // On a phone, a person alone is already visible at the account menu, and the title needs the
+    // room.
     if (this._narrow.matches && people.length === 1 && others.length === 0 && !together.leading)
       return html``;
     const most = this._narrow.matches ? kMostFacesOnPhone : kMostFaces;

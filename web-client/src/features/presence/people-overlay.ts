@@ -1,5 +1,5 @@
-// <strata-people-overlay>: where the others point, over the picture. Pointers go through it. Draws
-// itself, not the page, while they move.
+// <strata-people-overlay>: the pointers of other participants, over the picture. Mouse events pass
+// through it. It renders itself, without the page, while they move.
 
 import { css, html, LitElement, svg, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -12,13 +12,13 @@ import { sharedStyles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
 import { nameOf } from "./together";
 
-const kLeastRadiusPx = 4; // a smaller brush is a pointer
+const kLeastRadiusPx = 4; // a smaller brush is drawn as a pointer
 const kRoomForNamePx = 150;
 
 @customElement("strata-people-overlay")
 export class StrataPeopleOverlay extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  private _next = 0; // of requestAnimationFrame; 0: none
+  private _next = 0; // id of requestAnimationFrame; 0: none
 
   constructor() {
     super();
@@ -81,7 +81,7 @@ export class StrataPeopleOverlay extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    // places in a picture; who is here is told in the page's head
+    // screen readers get the participants from the page's header
     this.setAttribute("aria-hidden", "true");
   }
   override disconnectedCallback(): void {
@@ -120,7 +120,7 @@ export class StrataPeopleOverlay extends LitElement {
       faded ? "faded" : "",
     ].join(" ");
     const brush = radius !== null && radius >= kLeastRadiusPx;
-    const beside = brush ? Math.min(radius, 40) * 0.7 : 0; // the name lies at the rim of the brush
+    const beside = brush ? Math.min(radius, 40) * 0.7 : 0; // the name is at the rim of the brush
     return html`<div class=${classes} data-session=${viewer.session} ${styled({ transform: `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)` })}>
       <svg>
         ${

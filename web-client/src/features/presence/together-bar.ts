@@ -1,5 +1,5 @@
-// <strata-together-bar>: around the picture, in their colour, that somebody else moves the view; or
-// who looks with this person.
+// <strata-together-bar>: a frame in the leader's color while this view follows another participant;
+// or the names of this person's followers.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

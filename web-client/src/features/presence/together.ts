@@ -1,5 +1,5 @@
-// Looking together: who is at the model, whom this person looks with, who is asked to look with
-// them, and what the others are told of all that.
+// Following of other participants: the participants at the model, the followed camera, invitations,
+// and the presence messages of this connection.
 
 import { called } from "../../domain/people";
 import { followersOf, leadsBack, peopleHere, type PersonHere } from "../../domain/people-here";
@@ -9,30 +9,30 @@ import { PickProbe } from "../../session/pick-probe";
 import { texts } from "../../texts";
 import type { ViewControl } from "../../session/view-control";
 
-/** The pixel that this person points at, and the brush that they have in hand there. */
+/** The pixel that this person points at, and the radius of their brush there. */
 export type Shown = Pick<PresenceUpdate, "pointer" | "radius">;
 
 export interface TogetherHost {
-  session(): string; // this connection
+  session(): string; // of this connection
   ready(): boolean;
   send(shown: Omit<PresenceUpdate, "op">): void;
   readonly view: Pick<ViewControl, "camera" | "gliding" | "lookAlong" | "lookAlone" | "turnAround">;
-  /** What is seen at a pixel of the window? */
+  /** Asks for the place at a pixel of the window. */
   ask(id: string, x: number, y: number): void;
   changed(): void;
 }
 
 export class Together {
-  viewers: PresenceUser[] = []; // everybody here, this connection too; nobody while it is lost
+  viewers: PresenceUser[] = []; // including this connection; empty while disconnected
   people: PersonHere[] = [];
   leading = false;
-  /** The viewer that this person looks with, as last seen. */
+  /** The followed participant, in the latest state. */
   followed: PresenceUser | null = null;
 
-  private _told = ""; // `viewers` as text, without what only moves
+  private _told = ""; // `viewers` as text, without pointers and cameras
   private _shown: Shown = { pointer: null };
-  private _seen = ""; // the camera that `look_along` was called with, as text
-  private readonly _invitations = new Map<string, number>(); // notices by session of who leads
+  private _seen = ""; // the camera of the last `look_along`, as text
+  private readonly _invitations = new Map<string, number>(); // notices, by the leader's session
   private readonly _middle: PickProbe;
 
   constructor(private readonly _host: TogetherHost) {
@@ -43,10 +43,7 @@ export class Together {
     });
   }
 
-  /**
-   * What somebody is called who is here, or was: by their account's name where nothing else is
-   * known.
-   */
+  /** The name of a present or former participant; the user name if no other name is known. */
   nameOf(user: string): string {
     const here = this.people.find((person) => person.user === user);
     return called(here ?? { user });
@@ -56,10 +53,7 @@ export class Together {
     return followersOf(this.people, this._host.session());
   }
 
-  /**
-   * Whether this person may look with somebody: there is a window of theirs, and it does not follow
-   * this one.
-   */
+  /** Whether this person can follow: the other has a window that does not follow this one. */
   canFollow({ viewer }: PersonHere): boolean {
     return viewer !== null && !leadsBack(this.viewers, viewer.session, this._host.session());
   }
@@ -95,7 +89,7 @@ export class Together {
     this.people = peopleHere(viewers, this._host.session());
     this.keepUp();
     this.hearInvitations();
-    // Pointers and cameras move all the time: only for them the page need not be drawn again.
+    // Pointers and cameras move all the time; these changes alone do not redraw the page.
     const told = JSON.stringify(viewers, (name, value: unknown) =>
       name === "pointer" || name === "camera" ? undefined : value,
     );
@@ -103,7 +97,7 @@ export class Together {
     this._told = told;
   }
 
-  /** The connection is there, again: the server knows nothing of what was told it before. */
+  /** After a (re)connection: the server has no state of this page. */
   connected(): void {
     this._seen = "";
     if (this.leading || this.followed) this.send();
@@ -113,7 +107,7 @@ export class Together {
     this._told = "";
     this._middle.reset();
   }
-  /** The page is gone. */
+  /** Call this when the page closes. */
   stop(): void {
     this.followed = null;
     this.leading = false;
@@ -123,28 +117,28 @@ export class Together {
   }
 
   /**
-   * A camera says where it looks, not at what. Who goes on from here alone will turn around what
-   * they see.
+   * A camera has a direction but no target. Asks for the place in the middle, so that this person
+   * can rotate around it after the end of following.
    */
   cameToRest(): void {
     const { width, height } = this._host.view.camera;
     if (this.followed) this._middle.ask({ x: width / 2, y: height / 2 });
   }
-  /** True when it was the answer to a question of this. */
+  /** Returns true for an answer to one of these requests. */
   answer(message: Picked): boolean {
     return this._middle.answer(message);
   }
 
   /**
-   * True when the refusal is of a question of this, or about whom this person follows; then all is
-   * said and done.
+   * Returns true if the refusal concerns a request of this class or the followed participant, and
+   * handles it.
    */
   refused({ ref, field, status, detail }: Omit<ProblemMessage, "op">): boolean {
     if (this._middle.refused(ref)) return true;
     if (field !== "follow") return false;
     const { followed } = this;
     this.stopFollowing();
-    if (!followed) return true; // they were left meanwhile
+    if (!followed) return true; // this person had already stopped
     if (status === 404) notices.show("info", texts.together.left(nameOf(followed)));
     else notices.show("problem", texts.together.refused(nameOf(followed)), detail);
     return true;
@@ -173,7 +167,7 @@ export class Together {
     if (depth > 0) view.turnAround(depth);
   }
 
-  /** Who asks to look with them is told of once. */
+  /** Shows one notice for each invitation. */
   private hearInvitations(): void {
     const leaders = this.viewers.filter(
       ({ leading, session }) => leading && session !== this._host.session(),

@@ -1,5 +1,5 @@
-// <strata-delete-record-dialog>: deletes a record; where its key is painted, asks what becomes of
-// that.
+// <strata-delete-record-dialog>: deletes a record. If its key is painted, the dialog asks what to
+// do with these texels.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -21,7 +21,7 @@ export class StrataDeleteRecordDialog extends LitElement {
   /** Id. */
   @property({ attribute: false }) table = 0;
   @property({ attribute: false }) key = 0;
-  @state() private _painted = ""; // where, once it is known that it is
+  @state() private _painted = ""; // the places, if its key is painted
   @state() private _what: "clear" | "reassign" = "clear";
   @state() private _to: readonly number[] = [];
   @state() private _problem = "";
@@ -78,7 +78,7 @@ export class StrataDeleteRecordDialog extends LitElement {
     }`;
   }
 
-  /** What becomes of the surface that has the record's key. */
+  /** The choice for texels with the record's key. */
   private get texels(): { texels: "refuse" | "clear" | "reassign"; to?: number } {
     if (this._painted === "") return { texels: "refuse" };
     return this._what === "clear" ? { texels: "clear" } : { texels: "reassign", to: this._to[0]! };
@@ -115,5 +115,5 @@ export class StrataDeleteRecordDialog extends LitElement {
   }
 }
 
-/** The server's first sentence says where; the second what a script would send. */
+/** The server's first sentence names the places; the second is advice for scripts. */
 const whereOf = (detail: string): string => detail.split(/(?<=\.)\s+(?=[A-Z])/)[0] ?? detail;

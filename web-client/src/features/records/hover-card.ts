@@ -1,5 +1,5 @@
-// <strata-hover-card>: what is known at a glance of the record that the mouse rests on. It only
-// shows: the pointer passes through it, and who does not see it has the card of a tap.
+// <strata-hover-card>: a summary of the record under a resting mouse. Display only: pointer events
+// pass through it. People who do not use a mouse get the card of a tap.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -69,7 +69,7 @@ export class StrataHoverCard extends LitElement {
         display: block;
         width: 13.125rem;
         max-width: 100%;
-        height: 6.5rem; /* also until it is here, so that the card keeps its place */
+        height: 6.5rem; /* reserved before the picture loads, so that the card keeps its size */
         object-fit: cover;
         border-radius: var(--radius-small);
         background: var(--stage);
@@ -97,7 +97,7 @@ export class StrataHoverCard extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     this.setAttribute("aria-hidden", "true");
-    addEventListener("keydown", this.onKey, { capture: true }); // whatever has the keyboard
+    addEventListener("keydown", this.onKey, { capture: true }); // for any focused element
   }
   override disconnectedCallback(): void {
     super.disconnectedCallback();
@@ -137,7 +137,7 @@ export class StrataHoverCard extends LitElement {
     </section>`;
   }
 
-  /** Only here is it known how large the card is. */
+  /** Places the card: its size is known only after rendering. */
   override updated(): void {
     const { _section: section } = this;
     const { at } = this.session.pointer;

@@ -1,5 +1,5 @@
-// A line on the surface: drawn in one go, or pressed place by place. While one is drawn the camera
-// stays, as with areas.
+// A line on the surface: drawn freehand, or set place by place. During drawing the camera stays
+// fixed, as for areas.
 
 import type { Point } from "../../net/stroke";
 import type { PointerSample } from "../../ui/input";
@@ -7,14 +7,16 @@ import { PlacesTool, type OutlineHost } from "../../tools/outline";
 import type { Outline } from "../../tools/tool";
 import type { Tool } from "../../tools/tool";
 
-const kMostPoints = 1000; // that the server looks at
-const kDragReachPx = 6; // CSS pixels that a hand trembles: farther, and a press is a drag
+const kMostPoints = 1000; // the server's limit
+const kDragReachPx = 6; // CSS pixels; a longer move is a drag
 
-/** A drag is a line. Presses are its places: one more on the last of them, or Enter, ends it. */
+/**
+ * A drag draws a line. Clicks set its places; another click on the last place, or Enter, ends it.
+ */
 export class LineTool extends PlacesTool implements Tool {
   readonly name = "line";
   private _corners: Point[] = [];
-  // under way, with how many were before
+  // the current press, with the number of points before it
   private _press: { at: Point; first: boolean; dragged: boolean; points: number } | null = null;
 
   constructor(host: OutlineHost) {
@@ -64,7 +66,7 @@ export class LineTool extends PlacesTool implements Tool {
     if (press?.first && press.dragged) this.finish();
   }
 
-  /** A second finger came: its first one's press was none. */
+  /** A second finger touched: the press of the first one is undone. */
   cancel(): void {
     const press = this._press;
     this._press = null;

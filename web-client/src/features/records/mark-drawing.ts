@@ -1,5 +1,5 @@
-// Lines and points that this person draws on the surface. They go to the record that the brush
-// paints with, into the layer's table.
+// Drawing of lines and points on the surface. They belong to the record that the brush paints, in
+// the layer's table.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
@@ -34,7 +34,7 @@ export interface MarkDrawingHost {
   changed(): void;
 }
 
-/** What is drawn for. */
+/** The record and column of the drawing. */
 interface Target {
   model: Model;
   table: number;
@@ -42,7 +42,7 @@ interface Target {
   column: Column;
 }
 
-const kMostTries = 5; // where others change the record at the same time
+const kMostTries = 5; // while other people change the record
 const words = texts.marks;
 
 const metresOf = (lines: readonly MarkPlace[][], { unit }: Model): number =>
@@ -50,9 +50,9 @@ const metresOf = (lines: readonly MarkPlace[][], { unit }: Model): number =>
 
 export class MarkDrawing {
   private readonly _chosen = new Map<string, number>(); // ids of columns, by table and kind
-  private _work: Promise<void> = Promise.resolve(); // one after the other
-  private _notice = 0; // that offers to take the newest back
-  private readonly _measure: LineMeasure<Step>; // of the line that is being drawn
+  private _work: Promise<void> = Promise.resolve(); // drawings are saved one after the other
+  private _notice = 0; // offers to undo the latest
+  private readonly _measure: LineMeasure<Step>; // of the current line
 
   constructor(
     private readonly _api: Api,
@@ -65,18 +65,18 @@ export class MarkDrawing {
     });
   }
 
-  /** Of what is being drawn, to the pointer; null where that is not known. */
+  /** Length of the current line to the pointer; null where unknown. */
   get metresSoFar(): number | null {
     return this._measure.metres;
   }
 
-  /** Of the layer that is painted on: where such marks can go. */
+  /** Columns of the selected layer's table that can hold such marks. */
   columns(kind: MarkKind): Column[] {
     const { table: id } = this._host.layers.selected ?? {};
     const table = id === undefined ? null : this._host.tables.find(id);
     return table ? markColumns(table, kind) : [];
   }
-  /** Where they go. */
+  /** The column for new marks. */
   column(kind: MarkKind): Column | null {
     const columns = this.columns(kind);
     const chosen = this._chosen.get(`${this._host.layers.selected?.table} ${kind}`);
@@ -87,14 +87,14 @@ export class MarkDrawing {
     this._host.changed();
   }
 
-  /** False: there is no record to draw for, and the person was told. */
+  /** Returns false if there is no record to draw for; the user was shown the reason. */
   beginLine(): boolean {
     if (!this.target("line")) return false;
     this._host.painting.stroking = true;
     return true;
   }
 
-  /** More of it is drawn, or taken back; null: no longer. */
+  /** The line became longer or shorter; null: it ended. */
   lineChanged(outline: Outline | null): void {
     this._measure.follow(outline);
   }
@@ -226,7 +226,7 @@ export class MarkDrawing {
       : notices.show("success", what, "", link);
   }
 
-  /** Onto the record as it is: marks that others add meanwhile stay. */
+  /** Changes the current version of the record, so that marks of other people are kept. */
   private async change(
     table: number,
     key: number,
@@ -242,7 +242,7 @@ export class MarkDrawing {
     }
   }
 
-  /** Only that change: what came after it is not what the notice spoke of. */
+  /** Undoes only the change of the notice, not a later one. */
   private async takeBack(table: number, version: number): Promise<void> {
     const {
       edits: [newest],

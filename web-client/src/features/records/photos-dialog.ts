@@ -1,5 +1,5 @@
-// <strata-photos-dialog>: many files at once, whose names say which records they are of: first
-// which go where, then they are sent.
+// <strata-photos-dialog>: attaches many files to records by their file names. First the dialog
+// shows the target of each file, then it sends them.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -13,12 +13,12 @@ import { choicesStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.files;
-const kAskMs = 250; // after the last letter of the pattern
+const kAskMs = 250; // after the last key press in the pattern
 const kMostShown = 200;
 
 /**
- * What the names of these files may be made of: words between lines and points, the first of which
- * is the record's.
+ * A likely pattern for the names of these files: words separated by underscores and dots, the first
+ * of which is the record's.
  */
 export function likelyPattern(names: readonly string[], column: string): string {
   const [first = ""] = names;
@@ -36,8 +36,8 @@ export class StrataPhotosDialog extends LitElement {
   /** Id. */
   @property({ attribute: false }) table = 0;
   @property({ attribute: false }) files: File[] = [];
-  @state() private _column = ""; // whose values stand in the names
-  @state() private _target = ""; // where the files go
+  @state() private _column = ""; // its values are part of the names
+  @state() private _target = ""; // column for the files
   @state() private _pattern = "";
   @state() private _matches: AttachmentMatches | null = null;
   @state() private _problem = "";
@@ -82,7 +82,7 @@ export class StrataPhotosDialog extends LitElement {
     const columns = this.columns;
     const table = this.session.tables.find(this.table);
     const title = table ? labelColumn(table) : null;
-    // files are not called by terms
+    // file names do not contain terms
     this._column = title && title.kind !== "term" ? title.slug : "key";
     this._target = (columns.find(({ kind }) => kind === "picture") ?? columns[0])?.slug ?? "";
     this._pattern = likelyPattern(this.names, this._column);
@@ -179,7 +179,7 @@ export class StrataPhotosDialog extends LitElement {
     this._timer = setTimeout(() => void this.match(), kAskMs);
   }
 
-  /** The newest question wins. */
+  /** Only the latest request counts. */
   private async match(): Promise<void> {
     const asked = ++this._asked;
     const { _pattern: pattern, _column: column, names } = this;
@@ -204,7 +204,8 @@ export class StrataPhotosDialog extends LitElement {
   }
 
   /**
-   * One after the other: what was sent stays if one is refused, and a second try finds it there.
+   * Sends one file after the other. After a refusal the sent files remain, and a second attempt
+   * skips them.
    */
   private async send(): Promise<void> {
     const { _matches: matches, _target: target } = this;

@@ -1,4 +1,4 @@
-// A press sets a point on the surface there.
+// A click sets a point on the surface.
 
 import type { PointerSample } from "../../ui/input";
 import type { Tool } from "../../tools/tool";

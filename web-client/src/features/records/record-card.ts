@@ -1,5 +1,4 @@
-// <strata-record-card>: the record that was taken from the surface: what it is called, what is
-// known of it, and its area.
+// <strata-record-card>: the record that was clicked on the surface: its name, values and area.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -114,7 +113,7 @@ export class StrataRecordCard extends LitElement {
     </a>`;
   }
 
-  /** The first columns that say something; what the record is called is its heading. */
+  /** The first columns with a value; the record's name is the heading. */
   private lines(table: Table, record: TableRecord): TemplateResult {
     const words = texts.tables;
     return html`<dl>

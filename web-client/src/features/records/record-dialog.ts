@@ -1,5 +1,5 @@
-// <strata-record-dialog>: a record as a form that is made from its table: a new one, or one that is
-// there.
+// <strata-record-dialog>: a form for a record, generated from its table; for a new or an existing
+// record.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -35,9 +35,9 @@ export class StrataRecordDialog extends LitElement {
   @state() private _sending = "";
   @state() private _fieldProblems = new Map<string, string>(); // by slug
   @state() private _busy = false;
-  @state() private _written = ""; // what was in the form when somebody took the record over
+  @state() private _written = ""; // the unsaved input when another person took the record over
   private _claim: RecordClaim | null = null;
-  private _shut = false; // somebody else has the record, as far as was drawn
+  private _shut = false; // another person has the record, as of the last rendering
   @query("form") private _form!: HTMLFormElement | null;
 
   constructor() {
@@ -93,8 +93,8 @@ export class StrataRecordDialog extends LitElement {
   }
 
   /**
-   * What is in the form is kept when somebody takes the record over. Whoever waited for it begins
-   * with what was saved meanwhile.
+   * Keeps the input when another person takes the record over. A person who waited for the record
+   * starts with its saved version.
    */
   override willUpdate(): void {
     const shut = this._claim !== null && this._claim.other !== null;
@@ -218,7 +218,7 @@ export class StrataRecordDialog extends LitElement {
     </div>`;
   }
 
-  /** What differs from the record, a line a column. */
+  /** The differences from the record, one line for each column. */
   private inWords(table: Table): string {
     const lines: string[] = [];
     for (const column of table.columns) {
@@ -234,9 +234,7 @@ export class StrataRecordDialog extends LitElement {
     return this.renderRoot.querySelector(`strata-cell-input[data-slug="${CSS.escape(slug)}"]`);
   }
 
-  /**
-   * Enter saves, also from a field in an element of its own; in texts of several lines with Ctrl.
-   */
+  /** Enter saves, also from a field inside another element; in multi-line texts with Ctrl. */
   private onKey(event: KeyboardEvent): void {
     const field = event.composedPath()[0];
     if (
@@ -249,7 +247,7 @@ export class StrataRecordDialog extends LitElement {
     this._form?.requestSubmit();
   }
 
-  /** What is in the form, without what is as it was; null: something is no value. */
+  /** The changed values in the form; null: a field is invalid. */
   private read(table: Table): CellValues | null {
     const values: CellValues = {};
     const problems = new Map<string, string>();
@@ -265,14 +263,14 @@ export class StrataRecordDialog extends LitElement {
     return problems.size > 0 ? null : values;
   }
 
-  /** What is in the form is kept; lines and points are drawn without it. */
+  /** Saves the form and starts the drawing of lines or points. */
   private async draw(column: Column): Promise<void> {
     const { session, layer } = this;
     if ((await this.save(false)) && this._record)
       session.drawMarks(layer, this._record.key, column);
   }
 
-  /** True: all of it is saved. */
+  /** Returns true if everything was saved. */
   private async save(another: boolean): Promise<boolean> {
     const { table, session, _record: record } = this;
     if (!table || this._busy || this._shut) return false;
@@ -290,7 +288,7 @@ export class StrataRecordDialog extends LitElement {
         this._record = { ...record, ...changed };
       } else if (!record) {
         const made = await createRecord(session.api, table.id, { values });
-        this._record = made; // what is refused from here on is tried again for this record
+        this._record = made; // a later refusal is retried for this record
         session.tables.view?.rows.refresh();
         session.tables.view?.show(made.key);
       }
@@ -307,7 +305,9 @@ export class StrataRecordDialog extends LitElement {
     }
   }
 
-  /** One after the other; what was sent does not wait any more, whatever becomes of the next. */
+  /**
+   * Sends one file after the other. A sent file is no longer pending, even if a later one fails.
+   */
   private async sendFiles(table: Table, key: number): Promise<void> {
     const fields = table.columns
       .filter(holdsFiles)
@@ -356,8 +356,8 @@ export class StrataRecordDialog extends LitElement {
   }
 
   /**
-   * Somebody else changed the record: their values stand beside the fields, and saving again
-   * decides.
+   * After a change by another person: shows their values next to the fields; saving again
+   * overwrites them.
    */
   private async tellChanges(table: Table, read: TableRecord): Promise<void> {
     const { api } = this.session;

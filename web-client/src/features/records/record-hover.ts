@@ -1,11 +1,11 @@
-// The record that a mouse rests on, where a tap would show its card. Nothing is asked for it: the
-// pointer's own questions tell what lies there.
+// The record that a mouse rests on, where a click would open its card. It sends no requests: it
+// uses the answers to the pointer's own ones.
 
 import type { PointerSample } from "../../ui/input";
 import type { Layer } from "../../core/types";
 
 const kRestMs = 350;
-const kTremble = 4; // window pixels that a resting hand moves
+const kTremble = 4; // window pixels of movement by a resting hand
 
 export interface RecordAt {
   layer: Layer;
@@ -13,22 +13,22 @@ export interface RecordAt {
 }
 
 export interface RecordHoverHost {
-  /** What is known to lie under the pointer. */
+  /** The record under the pointer, as far as known. */
   here(): RecordAt | null;
-  /** That is of where the pointer is now, and no answer is on its way. */
+  /** Whether that is for the pointer's current position, and no answer is pending. */
   settled(): boolean;
   changed(): void;
 }
 
 export class RecordHover {
   private _shown: RecordAt | null = null;
-  private _from: PointerSample | null = null; // where the mouse came to rest
-  // null while `_from` is set: it has rested
+  private _from: PointerSample | null = null; // the position where the mouse stopped
+  // null while `_from` is set: the waiting time is over
   private _timer: ReturnType<typeof setTimeout> | null = null;
 
   constructor(private readonly _host: RecordHoverHost) {}
 
-  /** Null once the pointer is no longer on it, however that came. */
+  /** Null after the pointer has left the record for any reason. */
   get shown(): RecordAt | null {
     const here = this._shown && this._host.here();
     return here && here.layer.id === this._shown?.layer.id && here.key === this._shown.key
@@ -36,7 +36,7 @@ export class RecordHover {
       : null;
   }
 
-  /** A mouse is there with nothing pressed; null: there is none. */
+  /** A mouse without a pressed button; null: no mouse. */
   move(sample: PointerSample | null): void {
     if (!sample) this.end();
     else if (
@@ -47,22 +47,22 @@ export class RecordHover {
     else if (this.shown) this._from = sample;
   }
 
-  /** What lies under the pointer has become known anew. */
+  /** Call this when the values under the pointer are known again. */
   picked(): void {
     if (this.shown) return;
-    // it moved off, and another card has to wait as the first
+    // the mouse left the record; the next card waits like the first
     if (this._shown && this._from) this.restFrom(this._from);
     else if (this._from && !this._timer) this.show();
   }
 
-  /** The view moved under the mouse, and the rest begins anew. */
+  /** The view moved under the mouse: the waiting time starts again. */
   waitAgain(): void {
     const told = this.shown !== null;
     if (this._from) this.restFrom(this._from);
     if (told) this._host.changed();
   }
 
-  /** The person does something else: the next move of the mouse begins anew. */
+  /** The person does something else: the next mouse move starts the waiting time. */
   end(): void {
     const told = this.shown !== null;
     this.stopWaiting();

@@ -1,5 +1,5 @@
-// <strata-review-panel>: what of the model's layers waits for review, and for curators what becomes
-// of it.
+// <strata-review-panel>: the edits that wait for review, and for curators the buttons to accept or
+// reject them.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { customElement, state } from "lit/decorators.js";
@@ -21,7 +21,7 @@ import { toldTime } from "../../domain/times";
 const words = texts.review;
 const kMostReason = 1000;
 
-/** Which strokes are being rejected, until a reason is given. */
+/** The strokes that are being rejected, until the reason is entered. */
 interface Rejecting {
   layer: number;
   what: Omit<Review, "decision" | "reason">;
@@ -47,7 +47,7 @@ export class StrataReviewPanel extends FoldingPanel {
     personMarkStyles,
     css`
       h3 {
-        flex: 1;
+        flex: 1 1 7rem;
         min-width: 0;
         margin: 0;
         overflow-wrap: anywhere;

@@ -1,5 +1,5 @@
-// What of the open model's layers waits for review, and what curators decide about it. It is read
-// anew soon after something changed on a layer.
+// The edits of the open model that wait for review, and the decisions of curators. Read again soon
+// after a change of a layer.
 
 import { labelOf } from "../../domain/cells";
 import { ApiError } from "../../net/api-error";
@@ -14,32 +14,32 @@ import type { ViewControl } from "../../session/view-control";
 import type { LayersPart } from "../../session/parts";
 
 const words = texts.review;
-const kAtOnce = 200; // strokes of a layer that are listed; the oldest come first
+const kAtOnce = 200; // listed strokes for each layer; the oldest come first
 
 export interface ReviewsHost {
   readonly view: ViewControl;
   readonly layers: LayersPart;
   me(): string;
-  /** What somebody is called. */
+  /** The name of a user. */
   nameOf(user: string): string;
   canPaint(): boolean;
   canCurate(): boolean;
   changed(): void;
 }
 
-/** Of a layer. */
+/** The queue of a layer. */
 export interface Waiting {
   layer: Layer;
   queue: ReviewQueue;
 }
 
 export class Reviews {
-  private readonly _failed = new Set<number>(); // layers of which it could not be read
-  // layers on which something waited, or was decided, since the page is open
+  private readonly _failed = new Set<number>(); // layers whose queue could not be read
+  // layers with waiting or decided edits since the page opened
   private readonly _told = new Set<number>();
   private readonly _queues = new Map<number, ReviewQueue>(); // by layer
   private readonly _outdated = new Set<number>();
-  // the newest question by layer; answers of older ones come too late
+  // the latest request by layer; answers to older ones are ignored
   private readonly _asked = new Map<number, number>();
   private readonly _again = new ReadAgain((last) => void this.load(last));
 
@@ -52,18 +52,18 @@ export class Reviews {
   get failed(): boolean {
     return this._failed.size > 0;
   }
-  /** Some layer asks for review, or something still waits. */
+  /** Whether a layer requires review, or edits still wait. */
   get isUsed(): boolean {
     return this._host.layers.all.some((layer) => layer.review) || this.count > 0;
   }
-  /** Layers of which something waits: for curators of anybody, for others of their own. */
+  /** Layers with waiting edits: for curators those of all authors, for others their own. */
   get waiting(): Waiting[] {
     return this._host.layers.all.flatMap((layer) => {
       const queue = this._queues.get(layer.id);
       return queue && queue.total > 0 ? [{ layer, queue }] : [];
     });
   }
-  /** Strokes, on all layers. */
+  /** Number of strokes on all layers. */
   get count(): number {
     return this.waiting.reduce((sum, { queue }) => sum + queue.total, 0);
   }
@@ -91,12 +91,12 @@ export class Reviews {
     );
   }
 
-  /** This person changed something, somewhere. */
+  /** Edits of this person were saved, on any layer. */
   saved(): void {
     for (const { id } of this._host.layers.all) this.outdated(id);
   }
 
-  /** Something changed there. */
+  /** The layer has changed. */
   outdated(layer: number): void {
     this._outdated.add(layer);
     this._again.news();
@@ -106,10 +106,7 @@ export class Reviews {
     this._again.stop();
   }
 
-  /**
-   * What curators see holds layers, too, that ask for no review any more, of which something still
-   * waits.
-   */
+  /** Curators also see layers that no longer require review but still have waiting edits. */
   async loadAll(): Promise<void> {
     if (!this._host.canPaint()) return;
     const layers = this._host.layers.all.filter((layer) => layer.review || this._host.canCurate());
@@ -151,7 +148,7 @@ export class Reviews {
     this._host.changed();
   }
 
-  /** The layer, as its author saw it. */
+  /** Shows the layer from its author's camera. */
   goTo(layer: Layer, { camera }: WaitingStroke): void {
     const { layers, view } = this._host;
     layers.select(layer);
@@ -160,7 +157,8 @@ export class Reviews {
   }
 
   /**
-   * True: it is decided, which the person can take back for a moment. Otherwise why not was told.
+   * Returns true after success; a notice offers to undo the decision for a moment. Otherwise the
+   * user was shown the reason.
    */
   async decide(layer: Layer, decision: Review): Promise<boolean> {
     const { strokes, total, people } = this._queues.get(layer.id) ?? {
@@ -180,7 +178,7 @@ export class Reviews {
         : (people.find(({ user }) => user === decision.user)?.strokes ?? 0);
     const done = await this.send(layer, decision);
     if (!done) return false;
-    // What is not listed cannot be named.
+    // Only listed strokes can be named.
     const act = (): void => void this.send(layer, { decision: "reopen", edits });
     const takeBack = edits.length === count && count > 0 ? { label: words.take_back, act } : null;
     notices.show(
@@ -203,7 +201,7 @@ export class Reviews {
       notices.error(error);
       done = false;
     }
-    await this.read(layer.id); // also where somebody else was quicker
+    await this.read(layer.id); // also if another person decided first
     return done;
   }
 }

@@ -1,5 +1,5 @@
-// Writing into a cell of a table: the field in its place, what it says of a record that somebody
-// else writes into, and what became of changes that could not be saved.
+// Editing of a table's cells: the field in the cell, the message about a record that another person
+// is editing, and the changes that could not be saved.
 
 import {
   html,
@@ -41,19 +41,19 @@ interface Editing {
   typed: string | null;
 }
 
-/** The table's part in it: where its cells lie. Columns of cells count from 1, after the key. */
+/** Callbacks to the table: positions of cells. Columns count from 1, after the key. */
 export interface CellEditorHost extends ReactiveControllerHost {
   readonly session: ModelSession;
   readonly view: TableView;
   readonly active: { row: number; column: number };
   readonly rowPx: number;
   widthOf(column: Column): number;
-  /** Where a bubble stands beside a row. */
+  /** Position of a bubble next to a row. */
   beside(row: number, left: number): Record<string, string | null>;
   shown(column: Column, value: CellValue): unknown;
-  /** Makes the cell the active one and scrolls to it. */
+  /** Activates the cell and scrolls to it. */
   show(row: number, at: number): void;
-  /** The same, within the table, and with the keyboard. */
+  /** The same within the table, with the keyboard focus. */
   moveTo(row: number, at: number): void;
   focusGrid(): void;
   openRecord(key: number): void;
@@ -63,7 +63,7 @@ export interface CellEditorHost extends ReactiveControllerHost {
 export class CellEditor implements ReactiveController {
   private _editing: Editing | null = null;
   private _problem = "";
-  private _claim: RecordClaim | null = null; // of the record that is written into
+  private _claim: RecordClaim | null = null; // of the record that is being edited
 
   constructor(private readonly _host: CellEditorHost) {
     _host.addController(this);
@@ -73,7 +73,7 @@ export class CellEditor implements ReactiveController {
     return this._editing !== null;
   }
 
-  /** Others see which record is written into. */
+  /** Shows other people the record that is being edited. */
   hostUpdate(): void {
     const { view } = this._host;
     const editing = this._editing;
@@ -97,7 +97,7 @@ export class CellEditor implements ReactiveController {
     this._host.requestUpdate();
   }
 
-  /** The field that is written into, with what is wrong there. */
+  /** The field of the edited cell, with its problem. */
   field(edges: readonly number[]): TemplateResult | typeof nothing {
     const editing = this._editing;
     const { table } = this._host.view;
@@ -134,7 +134,7 @@ export class CellEditor implements ReactiveController {
       }`;
   }
 
-  /** Somebody else has the record that is written into here. */
+  /** Whether another person has the record that is edited here. */
   private get isTaken(): boolean {
     return this._claim !== null && this._claim.other !== null;
   }
@@ -152,8 +152,8 @@ export class CellEditor implements ReactiveController {
   }
 
   /**
-   * Asks whoever would write into a record that somebody else has; `work` is done if it is, or was,
-   * to be had.
+   * Asks before it takes a record over from another person. Runs `work` if the record is free or
+   * was taken over.
    */
   private async takeOver(key: number, work: () => void = () => {}): Promise<void> {
     const words = texts.tables;
@@ -168,7 +168,7 @@ export class CellEditor implements ReactiveController {
     ) {
       if (other) claim.takeOver();
       work();
-      await this._host.updateComplete; // what is written into from now on has a claim of its own
+      await this._host.updateComplete; // the new edit then has its own claim
     }
     claim.release();
   }
@@ -178,7 +178,7 @@ export class CellEditor implements ReactiveController {
     this._host.focusGrid();
   }
 
-  /** What the server refused, and what somebody else wrote meanwhile. */
+  /** Changes that the server refused, and conflicts with changes of other people. */
   bubbles(table: Table, edges: readonly number[]): unknown {
     return this._host.view.edits.open.map((edit) => {
       const row = this._host.view.rows.indexOf(edit.key);
@@ -247,7 +247,7 @@ export class CellEditor implements ReactiveController {
     else clear();
   }
 
-  /** What a cell holds, for who writes into it: what is on its way to the server, too. */
+  /** The cell's value for editing, including one that is still being saved. */
   private baseOf({ key, values }: TableRecord, slug: string): CellValue {
     const edit = this._host.view.edits.of(key, slug);
     return edit?.state === "saving" ? edit.value : (values[slug] ?? null);
@@ -274,7 +274,10 @@ export class CellEditor implements ReactiveController {
     });
   }
 
-  /** False: what was typed is no value, or somebody took the record over; it stays in the field. */
+  /**
+   * Returns false for an invalid value, or if another person has taken the record over; the field
+   * keeps the text.
+   */
   private commit(): boolean {
     const editing = this._editing;
     const read = this._host.input()?.read();
@@ -305,7 +308,7 @@ export class CellEditor implements ReactiveController {
     event.stopPropagation();
   };
 
-  /** The next cell that can be written into; at the end of a row the first one of the next. */
+  /** Moves to the next editable cell; from the end of a row to the first cell of the next. */
   private editBeside(row: number, column: number, step: 1 | -1): void {
     const count = this._host.view.table?.columns.length ?? 0;
     const next = column + step;

@@ -1,5 +1,5 @@
-// Cells that this person wrote and that are not in the table yet: on their way, refused, or changed
-// by somebody else meanwhile.
+// Cell edits of this person that are not in the table yet: being saved, refused, or in conflict
+// with another person's change.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
@@ -12,14 +12,14 @@ export interface CellEdit {
   key: number;
   slug: string;
   /**
-   * What the cell may hold that it goes onto: as the person saw it, and what they wrote into it
-   * since.
+   * The values that the cell may have before the write: the displayed one, and those that this
+   * person wrote later.
    */
   onto: CellValue[];
   value: CellValue;
   state: "saving" | "refused" | "conflict";
   problem: string;
-  /** Of a conflict: what the cell holds now, and who wrote it. */
+  /** In a conflict: the cell's current value and its author. */
   theirs: { value: CellValue; user: string; time: string } | null;
 }
 
@@ -30,7 +30,7 @@ export interface CellEditsHost {
   changed(): void;
 }
 
-const kMostTries = 3; // where others write other cells of the record at the same time
+const kMostTries = 3; // while other people change other cells of the record
 const idOf = (key: number, slug: string): string => `${key} ${slug}`;
 
 export class CellEdits {
@@ -46,7 +46,7 @@ export class CellEdits {
   of(key: number, slug: string): CellEdit | null {
     return this._edits.get(idOf(key, slug)) ?? null;
   }
-  /** Those that wait for the person. */
+  /** Edits that need a decision of the person. */
   get open(): CellEdit[] {
     return [...this._edits.values()].filter((edit) => edit.state !== "saving");
   }
@@ -65,12 +65,12 @@ export class CellEdits {
     return this.send({ key, slug, onto, value, state: "saving", problem: "", theirs: null });
   }
 
-  /** Theirs stays, or what was refused is given up. */
+  /** Keeps the other person's value, or discards a refused edit. */
   forget(key: number, slug: string): void {
     if (this._edits.delete(idOf(key, slug))) this._host.changed();
   }
 
-  /** Mine goes over theirs. */
+  /** Overwrites the other person's value. */
   insist(edit: CellEdit): Promise<void> {
     return this.send({
       ...edit,
@@ -90,7 +90,7 @@ export class CellEdits {
 
   private async sendNow(edit: CellEdit): Promise<void> {
     const { key, slug, value } = edit;
-    if (this.of(key, slug) !== edit) return; // written again since
+    if (this.of(key, slug) !== edit) return; // edited again since
     try {
       for (let tries = 1; ; ++tries) {
         const row =
@@ -110,7 +110,7 @@ export class CellEdits {
         } catch (error) {
           if (!(error instanceof ApiError) || error.status !== 412 || tries === kMostTries)
             throw error;
-          // another cell of it may be all that changed
+          // possibly only another cell of the record has changed
           this._host.put(await readRecord(this._api, { table: this._host.table }, key));
         }
       }

@@ -1,4 +1,4 @@
-// <strata-column-dialog>: a new column of a table, or what one is called, holds and asks for.
+// <strata-column-dialog>: creates a column of a table, or changes its name, kind and rules.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -32,14 +32,14 @@ const kNoLabels = {};
 export class StrataColumnDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) table!: Table;
-  /** Null: a new one. */
+  /** Null: a new column. */
   @property({ attribute: false }) column: Column | null = null;
   @state() private _kind: ColumnKind = "text";
   @state() private _visibility: Visibility = "public";
   @state() private _tables: Table[] = [];
   @state() private _problem = "";
   @state() private _busy = false;
-  @state() private _outcome: ColumnChanged | null = null; // values were lost: is that well?
+  @state() private _outcome: ColumnChanged | null = null; // values were lost: confirm or undo?
   @query("strata-dialog") private _dialog!: StrataDialog;
   @query("form") private _form!: HTMLFormElement;
   @query("strata-labels-field") private _labels!: StrataLabelsField;
@@ -166,14 +166,14 @@ export class StrataColumnDialog extends LitElement {
       <p class="hint numeric">${words.lost_of(formatList(lostKeys.map(String)))}</p>`;
   }
 
-  /** Enter saves, also from a field in an element of its own. */
+  /** Enter saves, also from a field inside another element. */
   private onKey(event: KeyboardEvent): void {
     if (event.key !== "Enter" || event.composedPath()[0] instanceof HTMLButtonElement) return;
     event.preventDefault();
     this._form.requestSubmit();
   }
 
-  /** Otherwise what is wrong; empty where that is said at its field. */
+  /** Returns the input, or a problem; an empty text if the field itself shows the problem. */
   private wanted(): ColumnWanted | string {
     const data = new FormData(this._form);
     const text = (name: string): string => String(data.get(name) ?? "").trim();
@@ -218,8 +218,8 @@ export class StrataColumnDialog extends LitElement {
           } as ColumnCreate,
         });
       } else {
-        // In a call of its own, which is no entry of the journal; the first, so that what follows
-        // is seen by none who should not.
+        // A separate request, which has no journal entry. It comes first, so that the later changes
+        // are visible only to permitted people.
         if (this._visibility !== column.visibility)
           await session.api.json("PATCH /tables/{table}/columns/{column}", {
             path: { table: table.id, column: column.id },
@@ -242,7 +242,7 @@ export class StrataColumnDialog extends LitElement {
     });
   }
 
-  /** The column is as it was, with all its values. */
+  /** Restores the column with all its values. */
   private async takeBack(): Promise<void> {
     await this.work(async () => {
       await this.session.api.json("POST /tables/{table}/undo", { path: { table: this.table.id } });

@@ -1,6 +1,6 @@
-// <strata-column-filter>: what the rows of a table must hold in one column, chosen from what there
-// is: values with how many records have them, a range, a part of the text, nothing or anything.
-// Tells by "filter" what the filter of the table says then.
+// <strata-column-filter>: filters the rows of a table by one column: by values with the number of
+// their records, by a range, by a part of the text, or by empty or filled cells. The event "filter"
+// carries the new filter of the table.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -25,7 +25,7 @@ import { formStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.column_filter;
-const kSearched = 8; // values from which on they are searched
+const kSearched = 8; // from this number of values on, a search field appears
 const kMostShown = 300;
 
 interface Line {
@@ -39,7 +39,7 @@ export class StrataColumnFilter extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) table = 0;
   @property({ attribute: false }) column!: Column;
-  /** Of the table, as it is now. */
+  /** The current filter of the table. */
   @property({ attribute: false }) filter = "";
   @property({ attribute: false }) anchor!: HTMLElement;
   @state() private _kind: FilterKind = "one_of";
@@ -171,7 +171,7 @@ export class StrataColumnFilter extends LitElement {
     } else if (choice.is === "contains") this._text = choice.text;
   }
 
-  /** Of the records that the rest of the filter finds. */
+  /** Counts values in the records that match the rest of the filter. */
   private async count(): Promise<void> {
     try {
       const filter = withChoice(this.filter, this.column, null);
@@ -219,8 +219,7 @@ export class StrataColumnFilter extends LitElement {
     </div>`;
   }
 
-  // ── values
-  // ────────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── values ─────────────────────────────────────────────────────────────────────────────────────
 
   private lines(): Line[] {
     const { column, _counts: counts } = this;
@@ -230,7 +229,7 @@ export class StrataColumnFilter extends LitElement {
       text: this.textOf(value),
     }));
     const known = new Set(lines.map(({ value }) => value));
-    // What is chosen and what could be stand there, too.
+    // Also lists selected values and possible ones.
     const also = [
       ...this._values,
       ...(column.kind === "enumeration"
@@ -298,8 +297,7 @@ export class StrataColumnFilter extends LitElement {
       </p>`;
   }
 
-  // ── ranges and texts
-  // ──────────────────────────────────────────────────────────────────────────────────────────────
+  // ── ranges and texts ───────────────────────────────────────────────────────────────────────────
 
   private range(): TemplateResult {
     const { column } = this;
@@ -336,10 +334,9 @@ export class StrataColumnFilter extends LitElement {
     </label>`;
   }
 
-  // ── what becomes of it
-  // ────────────────────────────────────────────────────────────────────────────────────────────
+  // ── result ─────────────────────────────────────────────────────────────────────────────────────
 
-  /** Null: an end is no number. */
+  /** Null: an end is not a number. */
   private chosen(): ColumnFilter | null {
     switch (this._kind) {
       case "one_of":
@@ -371,7 +368,7 @@ export class StrataColumnFilter extends LitElement {
     this._sheet.hidePopover();
   }
 
-  /** Enter in a field chooses, Escape leaves: neither is for the page. */
+  /** Enter in a field applies, Escape closes; the page must not handle these keys. */
   private onKey(event: KeyboardEvent): void {
     if (event.key !== "Tab") event.stopPropagation();
   }

@@ -1,5 +1,5 @@
-// <strata-csv-dialog>: records from a CSV file: first what it would do, line by line where
-// something is wrong, then it is done.
+// <strata-csv-dialog>: imports records from a CSV file: first a preview of the changes, with
+// problems line by line, then the import.
 
 import { html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -57,7 +57,7 @@ export class StrataCsvDialog extends LitElement {
       this.dispatchEvent(new CustomEvent("closed"));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      // the table has changed since it was tried
+      // the table has changed since the preview
       if (error.problem.rows) this._report = error.problem.rows;
       else this._problem = error.message;
     } finally {

@@ -1,4 +1,4 @@
-// A column is dropped with its values, once somebody said that they mean it.
+// Drops a column with its values after a confirmation.
 
 import { labelOf } from "../../domain/cells";
 import type { Column } from "../../core/types";

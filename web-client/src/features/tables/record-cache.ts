@@ -1,5 +1,4 @@
-// Records that were looked at, kept until something tells that they changed. The oldest make room
-// for new ones.
+// Cache of viewed records, kept until an event reports a change. New records replace the oldest.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
@@ -9,7 +8,7 @@ import type { TableRecord } from "../../core/protocol.gen";
 const kMostKept = 300;
 
 export class RecordCache {
-  /** A symbol: it was asked for; null: there is none. */
+  /** Symbol: requested; null: no such record. */
   private readonly _kept = new Map<string, TableRecord | symbol | null>();
 
   constructor(
@@ -17,14 +16,14 @@ export class RecordCache {
     private readonly _changed: () => void,
   ) {}
 
-  /** Null until it is here, and where there is none; it is asked for once. */
+  /** Null until it is loaded, and where it does not exist; requested once. */
   find(table: number, key: number): TableRecord | null {
     const known = this._kept.get(nameOf(table, key));
     if (known === undefined) void this.load(table, key);
     return typeof known === "object" ? known : null;
   }
 
-  /** What was known of it is so no longer. */
+  /** The record has changed. */
   forget(table: number, key: number): void {
     if (this._kept.delete(nameOf(table, key))) this._changed();
   }
@@ -46,7 +45,7 @@ export class RecordCache {
     try {
       found = await readRecord(this._api, { table }, key);
     } catch (error) {
-      if (!(error instanceof ApiError)) throw error; // paint without a record
+      if (!(error instanceof ApiError)) throw error; // painted keys without a record
     }
     if (this._kept.get(name) === asked) this._kept.set(name, found);
     this._changed();

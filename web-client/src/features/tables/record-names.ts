@@ -1,6 +1,6 @@
-// What the records of a table are called: for relations, legends and the brush. Asked for once
-// somebody needs a name, all at once, since a search over them must not wait; of very large tables
-// the first ones.
+// Names of the records of a table, for relations, legends and the brush. Loaded at the first use
+// and completely, since a search over them must be immediate; for very large tables only the first
+// ones.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
@@ -18,13 +18,10 @@ const kAtOnce = 1000;
 export const kMostNames = 20_000;
 const kMostFound = 60;
 
-/**
- * Of other tables of the project: their terms' places in the list, and what their records are
- * called.
- */
+/** From other tables of the project: the order of terms, and names of records. */
 export interface OtherNames {
   nameOf: NameOfKey;
-  /** By key; null: the table is no list of terms, as far as is known. */
+  /** Order by key; null: not a list of terms, as far as known. */
   places(table: number): ReadonlyMap<number, number> | null;
 }
 const kNoOthers: OtherNames = { nameOf: () => null, places: () => null };
@@ -32,11 +29,11 @@ const kNoOthers: OtherNames = { nameOf: () => null, places: () => null };
 const collator = new Intl.Collator([...personLanguages()], { numeric: true });
 
 export class RecordNames {
-  private _records = new Map<number, Pick<TableRecord, "values">>(); // of what names them
+  private _records = new Map<number, Pick<TableRecord, "values">>(); // the naming values
   private _sorted: NamedRecord[] | null = null;
   private _state: "unasked" | "loading" | "loaded" = "unasked";
   private _again = false;
-  private _complete = false; // every record is in _names
+  private _complete = false; // _records has every record
 
   constructor(
     private readonly _api: Api,
@@ -45,22 +42,22 @@ export class RecordNames {
     private readonly _others: OtherNames = kNoOthers,
   ) {}
 
-  /** Null: there is no such record, or its name is not known yet. */
+  /** Null: no such record, or its name is not loaded yet. */
   label(key: number): string | null {
     this.want();
     const record = this._records.get(key);
     return (record && this.name(record)) || null;
   }
 
-  /** Whether it is known that there is no such record. */
+  /** Whether the record is known not to exist. */
   lacks(key: number): boolean {
     this.want();
     return this._complete && !this._records.has(key);
   }
 
   /**
-   * By the tree of the list, or the alphabet of the person's language. Where names begin with the
-   * text first, then where they hold it; by key, too.
+   * Finds records by name or key. Names that start with the text come first, then those that
+   * contain it; each in the order of the term list, or alphabetically in the person's language.
    */
   search(text: string): NamedRecord[] {
     this.want();
@@ -95,11 +92,11 @@ export class RecordNames {
     this.reorder();
     this._changed();
   }
-  /** What they are called by, or sorted by, may be another. */
+  /** Call this when names or the order may have changed. */
   reorder(): void {
     this._sorted = null;
   }
-  /** Many changed, or the column that names them. */
+  /** Call this when many records, or the naming column, have changed. */
   refresh(): void {
     if (this._state === "loading") this._again = true;
     else if (this._state === "loaded") void this.load();
@@ -165,7 +162,7 @@ export class RecordNames {
       this._state = "loaded";
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this._state = "loaded"; // the numbers stand for them; the next event asks again
+      this._state = "loaded"; // keys are shown instead; the next event tries again
     }
     this._changed();
   }

@@ -1,6 +1,5 @@
-// The records of a table in an order and by a filter, as far as somebody has looked at them. Rows
-// are asked for in pages; what was seen stays until its newer state is here, so that nothing
-// flickers.
+// The rows of a table in an order and with a filter, as far as they were viewed. Rows are requested
+// in pages; an old page stays until the new one arrives, which avoids flicker.
 
 import { ApiError } from "../../net/api-error";
 import type { RecordQuery } from "../../net/records";
@@ -10,35 +9,35 @@ import type { RecordList, TableRecord } from "../../core/protocol.gen";
 import type { ProblemBody } from "../../core/types";
 
 export const kPageRows = 100;
-const kSearchedRows = 1000; // asked for at once while a record is looked for
+const kSearchedRows = 1000; // requested at once during a search for a record
 const kMostKeptPages = 500;
 const kMostAtOnce = 2;
 
 interface Page {
   rows: TableRecord[];
-  generation: number; // of the question that it answers
+  generation: number; // of the request that it answers
 }
 
 export interface RecordRowsHost {
   ask(query: RecordQuery): Promise<RecordList>;
   changed(): void;
-  /** A record has other lines or points than before: what it measures on the model is not known. */
+  /** A record's lines or points have changed: its measures on the model are unknown. */
   measuresOutdated(): void;
 }
 
 export class RecordRows {
   total = 0;
-  loaded = false; // once
-  /** Why there is no answer: of the filter, or of the server. */
+  loaded = false; // at least once
+  /** The problem of the filter or of the server. */
   problem: ProblemBody | null = null;
 
   private _sortby = "";
   private _filter = "";
   private readonly _pages = new Map<number, Page>();
   private _generation = 0;
-  private _asked = new Set<number>(); // pages of this generation that are on their way
+  private _asked = new Set<number>(); // requested pages of this generation
   private _wanted: [number, number] = [0, 0];
-  private _replaces = false; // the next answer is of another order: what is shown goes with it
+  private _replaces = false; // the next answer has another order and replaces all pages
 
   constructor(private readonly _host: RecordRowsHost) {}
 
@@ -49,7 +48,7 @@ export class RecordRows {
     return this._filter;
   }
 
-  /** What is here answers the filter. */
+  /** Whether the loaded rows match the filter. */
   get settled(): boolean {
     return this.loaded && !this._replaces && !this.problem;
   }
@@ -58,7 +57,7 @@ export class RecordRows {
     return this._pages.get(Math.floor(index / kPageRows))?.rows[index % kPageRows] ?? null;
   }
 
-  /** Rows that are to be shown, from first to last. */
+  /** Requests the rows from first to last. */
   want(first: number, last: number): void {
     this._wanted = [
       Math.floor(Math.max(0, first) / kPageRows),
@@ -76,7 +75,7 @@ export class RecordRows {
     this.refresh();
   }
 
-  /** Records came, went or changed: all is asked for again as it is looked at. */
+  /** Records were added, removed or changed: rows are requested again when viewed. */
   refresh(): void {
     this._generation += 1;
     this._asked = new Set();
@@ -90,7 +89,7 @@ export class RecordRows {
     return index === null ? null : this.row(index);
   }
 
-  /** Where the record is among the rows that are here. */
+  /** The record's index among the loaded rows. */
   indexOf(key: number): number | null {
     for (const [page, { rows }] of this._pages) {
       const at = rows.findIndex((row) => row.key === key);
@@ -99,7 +98,7 @@ export class RecordRows {
     return null;
   }
 
-  /** Where the record is among all rows; null where it is not one of them. */
+  /** The record's index among all rows; null if it is not one of them. */
   async locate(key: number): Promise<number | null> {
     const { _generation } = this;
     for (let offset = 0; ; offset += kSearchedRows) {
@@ -124,14 +123,14 @@ export class RecordRows {
     }
   }
 
-  /** The newest state of a record, in the place where its row is. */
+  /** Replaces a loaded record by its latest version. */
   put(record: TableRecord): void {
     for (const page of this._pages.values()) {
       const at = page.rows.findIndex((row) => row.key === record.key);
       if (at < 0) continue;
       const before = page.rows[at]!;
-      if (record.version < before.version) return; // told before, and late
-      // the table's own answers do not know the layer, or its model
+      if (record.version < before.version) return; // a late answer
+      // answers for the table have no measures, which depend on layer and model
       const { area_m2: areaM2, length_m: lengthM, point_count: pointCount } = before;
       const measures = Object.fromEntries(
         Object.entries({ area_m2: areaM2, length_m: lengthM, point_count: pointCount }).filter(
@@ -174,7 +173,7 @@ export class RecordRows {
       if (this._replaces) this._pages.clear();
       this._replaces = false;
       this.takeTotal(total);
-      this._pages.delete(page); // the newest is the last
+      this._pages.delete(page); // re-inserted as the newest
       this._pages.set(page, { rows: records, generation: _generation });
       for (const old of this._pages.keys()) {
         if (this._pages.size <= kMostKeptPages) break;

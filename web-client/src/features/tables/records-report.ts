@@ -1,4 +1,4 @@
-// What an import would do, or has done: how many rows are new, and line by line what is wrong.
+// The report of an import, before or after it: the number of new rows, and the problems by line.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { formatCount } from "../../core/locale";
@@ -47,11 +47,11 @@ export const reportStyles = css`
   }
 `;
 
-/** It would be written, and change something. */
+/** Whether the import is possible and changes something. */
 export const isUseful = (report: RecordsReport): boolean =>
   report.problems.length === 0 && report.created + report.changed > 0;
 
-/** `rows`: what the file's rows are called. */
+/** `rows`: the term for the file's rows. */
 export function recordsReport(report: RecordsReport, rows: string): TemplateResult {
   const counts: [string, number][] = [
     [rows, report.rows],
@@ -65,7 +65,7 @@ export function recordsReport(report: RecordsReport, rows: string): TemplateResu
     ${report.problems.length === 0 ? html`<p>${report.created + report.changed > 0 ? words.good : words.same}</p>` : whatIsWrong(report)}`;
 }
 
-/** A file without lines says which term it is, and one with lines need not. */
+/** The list of problems, by line or, in files without lines, by code of the term. */
 function whatIsWrong({ problems }: RecordsReport): TemplateResult {
   const sorted = [...problems].sort((a, b) => a.line - b.line);
   const hasLines = sorted.some(({ line }) => line > 0);

@@ -1,4 +1,5 @@
-// <strata-table-bar>: over a table, what it holds, the filter, and what is done with all of it.
+// <strata-table-bar>: the bar above a table: its title, the filter, and commands for the whole
+// table.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -21,7 +22,7 @@ import type { TablePanelRequest } from "../../session/requests";
 export class StrataTableBar extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) view!: TableView;
-  /** One row of tools has no room for all. */
+  /** The panel is too narrow for a single row of tools. */
   @property({ type: Boolean, reflect: true }) narrow = false;
   @query(".filter input") private _filter!: HTMLInputElement;
 
@@ -46,7 +47,7 @@ export class StrataTableBar extends LitElement {
     }
     .bar h2 {
       font-size: 1.02rem;
-      flex: 0 1 auto; /* rather than push the last buttons out of the panel */
+      flex: 0 1 auto; /* shrinks instead of pushing the last buttons out of the panel */
       min-width: 4rem;
       max-width: 30%;
     }
@@ -108,7 +109,7 @@ export class StrataTableBar extends LitElement {
         display: none;
       }
     }
-    /* the title with what closes it, then the filter */
+    /* the title and the close button, then the filter */
     :host([narrow]) .bar {
       flex-wrap: wrap;
       row-gap: 3px;
@@ -223,7 +224,7 @@ export class StrataTableBar extends LitElement {
     </div>`;
   }
 
-  /** Undo and redo, beside the other tools or in the menu. */
+  /** Undo and redo, among the tools or in the menu. */
   private turns(place: "tool" | "menuitem"): TemplateResult[] {
     const { view } = this;
     const words = texts.tables;
@@ -255,7 +256,7 @@ export class StrataTableBar extends LitElement {
       <hr />`;
   }
 
-  /** Whether the rows that are chosen, or that the filter finds, stand out on the model. */
+  /** Buttons that highlight the selected or filtered rows on the model. */
   private onModel(): TemplateResult {
     const words = texts.tables;
     const { view } = this;
@@ -288,7 +289,7 @@ export class StrataTableBar extends LitElement {
     </div>`;
   }
 
-  // ── the filter, and files
+  // ── filter and files
 
   private onFilter(): void {
     this.dispatchEvent(new CustomEvent("filter", { detail: this._filter.value.trim() }));
@@ -299,7 +300,7 @@ export class StrataTableBar extends LitElement {
     else if (event.key === "Escape") this._filter.value = this.view.rows.filter;
   }
 
-  /** Of the rows that the filter finds, in their order. */
+  /** Saves the filtered rows in their order. */
   private saveWorkbook(
     table: Table,
     format: "csv" | "xlsx",

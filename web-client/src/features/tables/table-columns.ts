@@ -1,4 +1,4 @@
-// How wide the columns of a table are drawn: by what they hold, until somebody drags their edges.
+// Column widths of a table: by the kind of their values, until a user drags their edges.
 
 import type { Column, Table } from "../../core/protocol.gen";
 import { measuresOf } from "../../session/fields/record-measures";
@@ -19,7 +19,7 @@ const kUsualWidth = 150;
 const kLeastWidth = 56;
 
 export class TableColumns {
-  /** How much larger than usual words are. */
+  /** Ratio of the text size to the default. */
   growth = 1;
   private readonly _dragged = new Map<string, number>();
 
@@ -27,7 +27,7 @@ export class TableColumns {
     return this._dragged.get(slug) ?? (kWidths[kind] ?? kUsualWidth) * this.growth;
   }
 
-  /** Left edges of the columns, then of what is measured; at last the right one. */
+  /** Left edges of the columns and of the measures, then the right edge of the last one. */
   edges(table: Table): number[] {
     const edges = [this._dragged.get("key") ?? kKeyWidth * this.growth];
     const widths = [

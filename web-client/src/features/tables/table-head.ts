@@ -1,5 +1,4 @@
-// The heads of a table's columns: what they are called, how the rows are sorted, how wide the columns
-// are, and what may be done with each.
+// The column headers of a table: names, sorting, column widths, and a menu for each column.
 
 import { html, nothing, type ReactiveControllerHost, type TemplateResult } from "lit";
 import { canBeTitle, isNumber, labelColumn, labelOf } from "../../domain/cells";
@@ -29,7 +28,7 @@ export interface TableHeadHost extends ReactiveControllerHost {
 }
 
 export class TableHead {
-  // whose filter is open
+  // the column with the open filter
   private _filtered: { column: Column; anchor: HTMLElement } | null = null;
 
   constructor(private readonly _host: TableHeadHost) {}
@@ -90,7 +89,7 @@ export class TableHead {
     </button>`;
   }
 
-  /** Records are called by what they have in the column. */
+  /** Makes the column the source of the records' names. */
   private titleButton(column: Column): TemplateResult | typeof nothing {
     const words = texts.tables;
     const { table } = this._host.view;
@@ -142,7 +141,7 @@ export class TableHead {
     this.choose({ column, anchor: event.currentTarget as HTMLElement });
   }
 
-  /** The choice of what a column may hold, once it is open. */
+  /** The filter of a column, while it is open. */
   filter(table: Table): TemplateResult | typeof nothing {
     const { view } = this._host;
     const filtered = this._filtered;

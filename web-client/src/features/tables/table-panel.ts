@@ -1,5 +1,5 @@
-// <strata-table-panel>: the records of a database layer as a table: sorted, filtered, written into.
-// Only the rows in sight are drawn.
+// <strata-table-panel>: the records of a layer of records as a table, with sorting, filter and
+// editing. Only visible rows are rendered.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -32,8 +32,8 @@ import type { TablePanelRequest } from "../../session/requests";
 
 const kRowPx = 32;
 const kHeadPx = 34;
-const kNarrowPx = 820; // of the panel, where one row of tools has no room for all
-const kAbove = 6; // rows drawn beyond those in sight
+const kNarrowPx = 820; // width below which one row of tools is too narrow
+const kAbove = 6; // rows rendered beyond the visible ones
 @customElement("strata-table-panel")
 export class StrataTablePanel extends LitElement implements CellEditorHost, TableHeadHost {
   @property({ attribute: false }) session!: ModelSession;
@@ -51,7 +51,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
   private readonly _editor = new CellEditor(this);
   private _observer: ResizeObserver | null = null;
   private _growth = 1;
-  private _from = 0; // the row that the next one with Shift goes on from
+  private _from = 0; // start row of a selection with Shift
 
   constructor() {
     super();
@@ -81,7 +81,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
     if (this.view.sought !== null) void this.seek();
   }
 
-  // ── what is in sight
+  // ── visible rows
 
   get rowPx(): number {
     return kRowPx * this._growth;
@@ -106,7 +106,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
     return this.session.canPaint;
   }
 
-  // ── drawing
+  // ── rendering
 
   override render(): TemplateResult {
     const { view, layer } = this;
@@ -152,7 +152,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
     </div>`;
   }
 
-  /** The filter with the character that is wrong. */
+  /** The filter text with the wrong character marked. */
   private filterProblem(): TemplateResult | typeof nothing {
     const { problem, filter } = this.view.rows;
     if (!problem) return nothing;
@@ -282,7 +282,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
     return shownValue(this.session, column, value);
   }
 
-  // ── for what writes into cells
+  // ── callbacks of the cell editor
 
   widthOf(column: Column): number {
     return this.columns.widthOf(column);
@@ -319,7 +319,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
     };
   }
 
-  // ── keys and the pointer
+  // ── keyboard and pointer
 
   private activate(row: number, column: number): void {
     this.active = { row, column };
@@ -352,7 +352,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
   }
 
   private readonly onKey = (event: KeyboardEvent): void => {
-    if (event.target !== this._scroller) return; // a button in it
+    if (event.target !== this._scroller) return; // a button in the table
     const { row, column } = this.active;
     const { table, rows } = this.view;
     if (!table) return;
@@ -412,7 +412,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
     return true;
   }
 
-  /** A cell is written into; the key and what is measured open the whole record. */
+  /** Edits a cell; the key and the measures open the whole record. */
   private enter(record: TableRecord | null, row: number, column: number): void {
     const { layer } = this;
     if (this.view.table?.columns[column - 1]) this._editor.editAt(row, column, null);
@@ -442,7 +442,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
     this._from = row;
   }
 
-  // ── the filter, files, and what else is asked for
+  // ── filter, files and other requests
 
   setFilter(filter: string): void {
     if (this._scroller) this._scroller.scrollTop = 0;
@@ -475,7 +475,7 @@ export class StrataTablePanel extends LitElement implements CellEditorHost, Tabl
   }
 
   /**
-   * One text is records, or terms where the table is a list of them; everything else is files of
+   * Imports one CSV file as records, or as terms for a list of terms; other files are attached to
    * records.
    */
   private takeFiles(files: File[]): void {

@@ -31,7 +31,7 @@ export const tableStyles = css`
     border-radius: 3px;
     vertical-align: middle;
   }
-  /* below the rows, which stay where they are when one is chosen */
+  /* below the rows, which do not move when one is selected */
   .chosen {
     display: flex;
     align-items: center;

@@ -1,5 +1,5 @@
-// One table as it is looked at below the stage, under the layer whose areas it shows: its rows,
-// what is written into them and which are chosen.
+// A table that is open below the stage, for the layer with the displayed areas: its rows, edits and
+// selection.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
@@ -17,17 +17,17 @@ import { notices } from "../../ui/notices";
 import { RecordRows } from "./record-rows";
 import { texts } from "../../texts";
 
-const kRefreshAfterMs = 250; // a stroke is many edits, and records often come several at once
-const kMostHighlighted = 10_000; // that are named one by one
+const kRefreshAfterMs = 250; // a stroke has many edits, and records often arrive several at once
+const kMostHighlighted = 10_000; // the limit for highlights by key
 
 export interface TableViewHost {
   modelId: string;
   layer_id: number;
   table_id: number;
-  table(): Table | null; // as it is now
+  table(): Table | null; // its current definition
   changed(): void;
   columnsChanged(): Promise<void>;
-  /** On the model; null: nothing. */
+  /** Highlights on the model; null: nothing. */
   highlight(what: Highlight | null): void;
   flyTo(bounds: NonNullable<Extent["bounds"]>): void;
 }
@@ -35,24 +35,24 @@ export interface TableViewHost {
 export class TableView {
   readonly rows: RecordRows;
   readonly edits: CellEdits;
-  /** Keys of the rows that are chosen. */
+  /** Keys of the selected rows. */
   readonly selected = new Set<number>();
-  /** What undo or redo did; a notice would lie over the model. */
+  /** The result of undo or redo; a notice would cover the model. */
   told = "";
-  /** A record to be brought into sight. */
+  /** The record to scroll to. */
   sought: number | null = null;
 
-  /** Rows that are chosen, or the filter finds, stand out on the model. */
+  /** Highlights the selected or filtered rows on the model. */
   lightsUp = true;
-  /** And the others are not drawn. */
+  /** And hides the others. */
   isolates = false;
-  /** Where they lie, once it is known. */
+  /** Their bounds on the model, once known. */
   extent: Extent | null = null;
 
   private _timer: ReturnType<typeof setTimeout> | null = null;
   private _refreshesRows = false;
   private _highlighted = "null"; // as JSON
-  private _flies = false; // once the extent is here
+  private _flies = false; // when the extent arrives
 
   constructor(
     private readonly _api: Api,
@@ -87,12 +87,11 @@ export class TableView {
     return this._host.table();
   }
 
-  // ── order and choice
-  // ──────────────────────────────────────────────────────────────────────────────────────────────
+  // ── order and selection ────────────────────────────────────────────────────────────────────────
 
   /**
-   * `name`: the slug of a column, `key` or `area_m2`. Again turns the order round; a third time
-   * takes it away.
+   * `name`: the slug of a column, `key` or `area_m2`. A second call reverses the order; a third one
+   * removes it.
    */
   sort(name: string): void {
     const { sortby } = this.rows;
@@ -109,7 +108,7 @@ export class TableView {
     else this.selected.add(key);
     this.changed();
   }
-  /** All rows between the two that are here. */
+  /** Selects all loaded rows between two rows. */
   selectRows(from: number, to: number): void {
     for (let index = Math.min(from, to); index <= Math.max(from, to); ++index) {
       const row = this.rows.row(index);
@@ -122,7 +121,7 @@ export class TableView {
     this.changed();
   }
 
-  /** Brings the record into sight: the panel scrolls there. */
+  /** Scrolls the panel to the record. */
   show(key: number): void {
     this.selected.clear();
     this.selected.add(key);
@@ -130,10 +129,9 @@ export class TableView {
     this.changed();
   }
 
-  // ── on the model
-  // ──────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── on the model ───────────────────────────────────────────────────────────────────────────────
 
-  /** What is to stand out: the rows that are chosen, else those that the filter finds. */
+  /** The highlight: the selected rows, else the filtered ones. */
   get highlight(): Highlight | null {
     const { filter, settled } = this.rows;
     const isolate = this.isolates ? { isolate: true } : {};
@@ -151,15 +149,15 @@ export class TableView {
     if (isolates) this.lightsUp = true;
     this.changed();
   }
-  /** To where they are. */
+  /** Moves the camera to them. */
   fly(): void {
     this._flies = true;
     void this.findExtent();
   }
 
   /**
-   * What others wrote brought records into the filter, or took some out of it, that the rows do not
-   * follow by themselves.
+   * Whether changes by other people moved records into or out of the filter; the rows do not follow
+   * them automatically.
    */
   get outdated(): boolean {
     const { extent, rows } = this;
@@ -194,14 +192,13 @@ export class TableView {
       this.extent = extent;
       if (this._flies && extent.bounds) this._host.flyTo(extent.bounds);
     } catch (error) {
-      if (!(error instanceof ApiError)) throw error; // what is wrong with the filter, the rows tell
+      if (!(error instanceof ApiError)) throw error; // the rows report problems of the filter
     }
     this._flies = false;
     this._host.changed();
   }
 
-  // ── changes
-  // ───────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── changes ────────────────────────────────────────────────────────────────────────────────────
 
   write(key: number, slug: string, value: CellValue, base: CellValue): void {
     this.told = "";
@@ -237,18 +234,17 @@ export class TableView {
     }
   }
 
-  /** It was deleted here. */
+  /** The record was deleted here. */
   forget(key: number): void {
     this.selected.delete(key);
     this.rows.refresh();
   }
 
-  // ── what others do
-  // ────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── changes by others ──────────────────────────────────────────────────────────────────────────
 
   onRecord(event: RecordEvent): void {
     if (event.event === "changed" && event.record) {
-      // where it stands: rows that jump away while somebody reads them help nobody
+      // Keeps its place: moving rows would disturb readers.
       this.rows.put(event.record);
       this.refreshSoon(false);
       return;
@@ -257,7 +253,7 @@ export class TableView {
     this.refreshSoon();
   }
 
-  /** Rows came or went, or their areas changed; or only what the filter finds of them. */
+  /** Reads again after rows or areas have changed; `rows` false: only the extent. */
   refreshSoon(rows = true): void {
     this._refreshesRows ||= rows;
     if (this._timer) return;

@@ -1,5 +1,5 @@
-// The tables of the project that this page has needed so far: their columns, and what their records
-// are called.
+// The tables of the project that this page has needed so far: their columns and the names of their
+// records.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
@@ -34,7 +34,7 @@ export class Tables {
   /** The table that is open below the stage. */
   view: TableView | null = null;
 
-  /** The record that somebody took from the surface; `record` once it is here. */
+  /** The record that was clicked on the surface; `record` once it is loaded. */
   card: { layer: Layer; key: number; record: TableRecord | null } | null = null;
 
   private readonly _tables = new Map<number, Table | "asked">();
@@ -54,14 +54,14 @@ export class Tables {
     this._records = new RecordCache(_api, () => _host.changed());
   }
 
-  /** Null until it is here; it is asked for. */
+  /** Null until it is loaded; the call requests it. */
   find(id: number): Table | null {
     const known = this._tables.get(id);
     if (known === undefined) void this.load(id);
     return typeof known === "object" ? known : null;
   }
 
-  /** Null until its columns are known. */
+  /** Null until its columns are loaded. */
   names(id: number): RecordNames | null {
     const table = this.find(id);
     if (!table) return null;
@@ -78,32 +78,32 @@ export class Tables {
     return names;
   }
 
-  /** What a record of the table is called; null where it has no name, or none that is known yet. */
+  /** The name of a record; null where it has none, or it is not loaded yet. */
   label(id: number, key: number): string | null {
     return this.names(id)?.label(key) ?? null;
   }
 
-  /** Null until it is here, and where there is none. */
+  /** Null until it is loaded, and where it does not exist. */
   record(id: number, key: number): TableRecord | null {
     return this._records.find(id, key);
   }
 
-  /** Whether it is known that the table has no such record. */
+  /** Whether the record is known not to exist. */
   lacks(id: number, key: number): boolean {
     return this.names(id)?.lacks(key) ?? false;
   }
 
-  /** What a record that is here is called; empty where it has no name. */
+  /** The name of a loaded record; empty where it has none. */
   title(table: Table, record: Pick<TableRecord, "values">): string {
     return labelOfRecord(table, record, undefined, this._others.nameOf);
   }
 
-  /** What a term is called; null where the table is no list of terms, or its name is not known. */
+  /** The name of a term; null where the table is not a list of terms, or the name is unknown. */
   term(id: number, key: number): string | null {
     return this.find(id)?.kind === "terms" ? this.label(id, key) : null;
   }
 
-  /** Null: the table is no list of terms, as far as is known. */
+  /** Null: not a list of terms, as far as known. */
   terms(id: number): TermTree | null {
     if (this.find(id)?.kind !== "terms") return null;
     let terms = this._terms.get(id);
@@ -117,7 +117,7 @@ export class Tables {
     return terms;
   }
 
-  /** All of the project, for a choice among them. */
+  /** All tables of the project, for a choice. */
   async all(): Promise<Table[]> {
     const project = this._host.project();
     if (project === null) return [];
@@ -151,7 +151,8 @@ export class Tables {
   }
 
   /**
-   * The card of the record that was taken; none where the layer has no records, or is not painted.
+   * Opens the card of the record that was clicked; closes it where the layer has no records or is
+   * not painted.
    */
   showCard(layer: Layer | null, { values }: Picked): void {
     const found = layer ? values?.[layer.slug] : undefined;
@@ -165,13 +166,13 @@ export class Tables {
     this.card = null;
     this._host.changed();
   }
-  /** Brings the record's row into sight, in the table of its layer. */
+  /** Scrolls to the record's row in the table of its layer. */
   showRow(layer: Layer, key: number): void {
     this.open(layer);
     this.view?.show(key);
   }
 
-  /** This person's newest change of the table is taken back, or the one that was comes again. */
+  /** Undoes or redoes this person's latest change of the table. */
   undo(table: number): Promise<void> {
     return this.turn(table, "undo");
   }
@@ -196,13 +197,13 @@ export class Tables {
     }
   }
 
-  /** With the areas that strokes leave. */
+  /** Reads the rows again, with the areas after a stroke. */
   refreshAreas(): void {
     this.view?.refreshSoon();
     void this.loadCard();
   }
 
-  /** The connection was away: what happened meanwhile was not told. */
+  /** Call this after a reconnection: events in between were lost. */
   refresh(): void {
     for (const id of this._tables.keys()) void this.load(id);
     for (const kept of [...this._names.values(), ...this._terms.values()]) kept.refresh();
@@ -246,7 +247,7 @@ export class Tables {
     if (this.card?.layer.id === layer) this.closeCard();
   }
 
-  /** This person changed its columns: the rows are read anew with them. */
+  /** This person changed the columns: the rows are read again. */
   async reload(id: number): Promise<void> {
     await this.load(id);
     this._records.forgetTable(id);
@@ -268,7 +269,7 @@ export class Tables {
       this.card = { ...card, record };
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      // paint that an undo brought back, without its record
+      // a key that an undo painted again, without its record
       if (this.card === card) this.card = null;
     }
     this._host.changed();

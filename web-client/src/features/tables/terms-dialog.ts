@@ -1,5 +1,5 @@
-// <strata-terms-dialog>: a list of terms from a CSV or SKOS file, or more terms for one: first what
-// the file would do, then it is done.
+// <strata-terms-dialog>: imports a term list, or further terms of one, from a CSV or SKOS file:
+// first a preview of the changes, then the import.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -20,14 +20,14 @@ import { texts } from "../../texts";
 
 const words = texts.terms_dialog;
 
-const kMostOfU16 = 30_000; // terms of a new layer's list: there is room for as many again
+const kMostOfU16 = 30_000; // terms of a new layer's list, which can then double
 
 @customElement("strata-terms-dialog")
 export class StrataTermsDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** Id; null: a new list is made. */
+  /** Id; null: creates a new list. */
   @property({ attribute: false }) table: number | null = null;
-  /** The one that is looked at first, where there is one. */
+  /** The file to preview first, if any. */
   @property({ attribute: false }) file: File | null = null;
   @state() private _file: File | null = null;
   @state() private _name = "";
@@ -36,7 +36,7 @@ export class StrataTermsDialog extends LitElement {
   @state() private _problem = "";
   @state() private _busy = false;
   @query("strata-dialog") private _dialog!: StrataDialog;
-  private _named = false; // by the person, and not after the file
+  private _named = false; // the person typed the name; otherwise the file provides it
   private _asked = 0;
 
   static override styles = [sharedStyles, reportStyles];
@@ -95,7 +95,7 @@ export class StrataTermsDialog extends LitElement {
   }
 
   /**
-   * Makes a new list of the project, or adds to one. `dryRun` only reports. Where terms are wrong
+   * Creates a new list in the project, or adds to one. `dryRun`: report only. With invalid terms,
    * nothing is written.
    */
   private import(body: File, type: TermsType, dryRun: boolean): Promise<RecordsReport> {
@@ -111,7 +111,7 @@ export class StrataTermsDialog extends LitElement {
       : api.json("POST /tables/{table}/terms", { path: { table: this.table }, query, body, type });
   }
 
-  /** What it would do. The newest question counts. */
+  /** Previews the changes. Only the latest request counts. */
   private async look(file: File): Promise<void> {
     const asked = ++this._asked;
     const type = termsType(file.name);
@@ -154,8 +154,8 @@ export class StrataTermsDialog extends LitElement {
   }
 
   /**
-   * Where that is refused the list is there all the same: it is told as what it is, and not as a
-   * failed import.
+   * Creates a layer of the list. If this is refused, the list exists all the same, so the message
+   * does not report a failed import.
    */
   private async makeLayer({ id, name }: Table, terms: number): Promise<void> {
     const { session } = this;
@@ -175,7 +175,7 @@ export class StrataTermsDialog extends LitElement {
     }
   }
 
-  /** The list may have changed since the file was tried. */
+  /** The list may have changed since the preview. */
   private refuse(error: ApiError): void {
     if (error.problem.rows) this._report = error.problem.rows;
     else this._problem = error.message;

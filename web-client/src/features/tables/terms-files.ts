@@ -1,6 +1,6 @@
-// Files that lists of terms come in, known by their names.
+// File formats of term lists, by file name.
 
-/** What files of terms are sent as. */
+/** Media types of term lists. */
 export type TermsType = "text/csv" | "text/turtle" | "application/rdf+xml";
 
 const kTypes: [TermsType, string[]][] = [
@@ -9,12 +9,12 @@ const kTypes: [TermsType, string[]][] = [
   ["application/rdf+xml", ["rdf", "xml", "owl"]],
 ];
 
-/** For a file chooser. */
+/** For a file field. */
 export const kTermsEndings = kTypes
   .flatMap(([, endings]) => endings.map((ending) => `.${ending}`))
   .join(",");
 
-/** What a file is sent as; null: it is no list of terms. */
+/** The media type of a file; null: not a term list. */
 export function termsType(name: string): TermsType | null {
   const ending = /\.([a-z]+)$/i.exec(name)?.[1]?.toLowerCase() ?? "";
   return kTypes.find(([, endings]) => endings.includes(ending))?.[0] ?? null;

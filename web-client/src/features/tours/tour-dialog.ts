@@ -1,6 +1,6 @@
-// <strata-tour-dialog>: makes a tour of the model's views, or changes one: its languages, its
-// stops, what is said and shown at each. Nothing is sent before it is saved; what others save
-// meanwhile is told, and nothing that was written here is lost by it.
+// <strata-tour-dialog>: creates a tour of the model's views, or changes one: its languages and
+// stops, with the texts and contents of each. Nothing is sent before the user saves. If other
+// people save the tour in the meantime, the dialog says so and keeps all input.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -47,21 +47,21 @@ const words = texts.tours;
 @customElement("strata-tour-dialog")
 export class StrataTourDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** Null: a new one. */
+  /** Null: a new tour. */
   @property({ attribute: false }) tour: TourEntry | null = null;
-  @state() private _draft: TourDraft | null = null; // null: it is being read
+  @state() private _draft: TourDraft | null = null; // null: still loading
   @state() private _chosen: number | null = null; // id of a stop
-  @state() private _language = ""; // written beside the first
+  @state() private _language = ""; // edited next to the first one
   @state() private _trying = false;
   @state() private _busy = false;
   @state() private _problem: { field: string; text: string } | null = null;
-  @state() private _theirs: Tour | null = null; // what somebody else saved meanwhile
+  @state() private _theirs: Tour | null = null; // a version that another person has saved since
   @query("strata-dialog") private _dialog!: StrataDialog | null;
   @query("strata-tour-stop-fields") private _fields!: StrataTourStopFields | null;
-  private _base: Tour | null = null; // as this person knows it; null: there is none yet
-  private _saved: TourDraft = emptyTour(""); // what nothing is lost of
+  private _base: Tour | null = null; // the version that this person has seen; null: not created yet
+  private _saved: TourDraft = emptyTour(""); // an equal draft can be discarded
   private _key = newId();
-  private _asked: Promise<boolean> | null = null; // whether it may be lost
+  private _asked: Promise<boolean> | null = null; // whether to discard the draft
   private _letGo = (): void => {};
 
   constructor() {
@@ -100,7 +100,7 @@ export class StrataTourDialog extends LitElement {
         border-top: var(--edge) solid var(--line);
       }
       strata-tour-stops {
-        position: sticky; /* beside the fields of a stop, which are longer */
+        position: sticky; /* stays visible next to the fields of a stop, which are longer */
         top: 0;
         align-self: start;
         max-height: calc(100dvh - 11.875rem);
@@ -163,7 +163,7 @@ export class StrataTourDialog extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     addEventListener("beforeunload", this.onUnload);
-    // a stop is tried on the page, whose links lead elsewhere
+    // a stop is previewed on the page, where links lead elsewhere
     this._letGo = holdPage(this.mayClose);
     void this.read();
   }
@@ -212,11 +212,10 @@ export class StrataTourDialog extends LitElement {
       yes: words.leave_yes,
       danger: true,
     }).finally(() => (this._asked = null));
-    return this._asked; // once, whichever way somebody wants to leave by
+    return this._asked; // one question for all ways to leave
   };
 
-  // ── what is seen
-  // ──────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── rendering ──────────────────────────────────────────────────────────────────────────────────
 
   override render(): TemplateResult {
     const { _draft: draft, _problem: problem } = this;
@@ -334,7 +333,7 @@ export class StrataTourDialog extends LitElement {
     ></strata-tour-trial>`;
   }
 
-  /** Of the stop that is looked at: wide windows always show one. */
+  /** Index of the selected stop; wide windows always show one. */
   private shownIndex({ stops }: TourDraft): number {
     return Math.max(
       0,
@@ -349,15 +348,14 @@ export class StrataTourDialog extends LitElement {
       ? this._problem.text
       : "";
   }
-  /** What no field of the dialog shows. */
+  /** Whether the problem belongs to no field of the dialog. */
   private general(field: string): boolean {
     const { stop } = placeOf(field);
     if (stop !== null) return this._draft?.stops[stop] === undefined;
     return !["name", "idle_s", "text", "languages", "stops"].some((each) => isAbout(field, each));
   }
 
-  // ── what is changed
-  // ───────────────────────────────────────────────────────────────────────────────────────────────
+  // ── changes ────────────────────────────────────────────────────────────────────────────────────
 
   private put(change: Partial<TourDraft>): void {
     if (!this._draft) return;
@@ -410,8 +408,7 @@ export class StrataTourDialog extends LitElement {
     this.take(draftOf(theirs));
   }
 
-  // ── saving
-  // ────────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── saving ─────────────────────────────────────────────────────────────────────────────────────
 
   private async save(): Promise<void> {
     const { _draft: draft } = this;
@@ -444,7 +441,7 @@ export class StrataTourDialog extends LitElement {
       } catch (again) {
         if (!(again instanceof ApiError)) throw again;
         if (again.status !== 404) return this.refuse("", again.message);
-        this._base = null; // the next attempt makes it anew
+        this._base = null; // the next attempt creates the tour again
         this._theirs = null;
         this._key = newId();
         return this.refuse("", words.gone);
@@ -453,7 +450,7 @@ export class StrataTourDialog extends LitElement {
     this.refuse(error.problem.field ?? "", error.message);
   }
 
-  /** At the field that is meant, which is brought into sight. */
+  /** Shows the problem at its field and scrolls to it. */
   private refuse(field: string, text: string): void {
     this._problem = { field, text };
     const place = placeOf(field);

@@ -1,4 +1,4 @@
-// <strata-tour-languages>: the languages of a tour, of which the first is that of who chooses none.
+// <strata-tour-languages>: the languages of a tour; the first is the default.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

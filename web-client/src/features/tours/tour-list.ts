@@ -1,5 +1,5 @@
-// <strata-tour-list>: the tours of the model, for those who make them; part of the panel of the
-// view, below the views that tours are made of.
+// <strata-tour-list>: the tours of the model, for curators; part of the view panel, below the views
+// from which tours are made.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

@@ -1,5 +1,5 @@
-// <strata-tour-records>: the records that a stop of a tour shows: of which tables, which of them,
-// with which columns, and what these are called there.
+// <strata-tour-records>: the records of a stop of a tour: their tables, keys, columns and the
+// labels of these columns.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -25,9 +25,9 @@ const words = texts.tours;
 export class StrataTourRecords extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) records: readonly TourRecords[] = [];
-  /** Those whose names of columns are written just now. */
+  /** The languages in which the labels of columns are edited. */
   @property({ attribute: false }) languages: readonly string[] = [];
-  /** What was refused, as `records[0].keys[2]`. */
+  /** The refused field, as `records[0].keys[2]`. */
   @property() wrong = "";
   @property() problem = "";
   @state() private _tables: readonly Table[] = [];
@@ -131,7 +131,7 @@ export class StrataTourRecords extends LitElement {
     </section>`;
   }
 
-  /** What the column is called on the card, in the languages that are written just now. */
+  /** The labels of the column on the card, in the edited languages. */
   private labels(index: number, table: Table, slug: string): TemplateResult {
     const column = table.columns.find((each) => each.slug === slug);
     const labels = this.records[index]?.columns.find((each) => each.column === slug)?.labels ?? {};

@@ -1,5 +1,5 @@
-// <strata-tour-stop-fields>: one stop of a tour: its view, what is said of it in each language, how
-// long and how one comes there, what there is to see.
+// <strata-tour-stop-fields>: one stop of a tour: its view, its texts in each language, its times
+// and transition, its layers and records.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -36,9 +36,9 @@ export class StrataTourStopFields extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) stop!: StopDraft;
   @property({ attribute: false }) languages: readonly string[] = [];
-  /** The one that is written beside the first. */
+  /** The language that is edited next to the first one. */
   @property() language = "";
-  /** What was refused, as `title.fr`; nothing: nothing here. */
+  /** The refused field, as `title.fr`; empty: none here. */
   @property() wrong = "";
   @property() problem = "";
 
@@ -121,13 +121,13 @@ export class StrataTourStopFields extends LitElement {
     `,
   ];
 
-  /** To what was refused. */
+  /** Focuses the refused field. */
   async focusWrong(): Promise<void> {
     await this.updateComplete;
     const find = (selector: string): HTMLElement | null =>
       this.renderRoot.querySelector<HTMLElement>(selector);
     const field = find('[aria-invalid="true"]') ?? find("#refusal") ?? find("strata-tour-records");
-    field?.scrollIntoView({ block: "center" }); // with what is said of it, below
+    field?.scrollIntoView({ block: "center" }); // with the problem below it
     field?.focus({ preventScroll: true });
   }
 
@@ -176,8 +176,7 @@ export class StrataTourStopFields extends LitElement {
   }
 
   /**
-   * What visitors read on the buttons of the layers. It is the layers' own, and kept with them at
-   * once.
+   * The names on visitors' layer buttons. They belong to the layers and are saved there at once.
    */
   private layerNames(): TemplateResult | typeof nothing {
     const { session, stop } = this;
@@ -241,10 +240,9 @@ export class StrataTourStopFields extends LitElement {
     </div>`;
   }
 
-  // ── what is said of it
-  // ────────────────────────────────────────────────────────────────────────────────────────────
+  // ── texts ──────────────────────────────────────────────────────────────────────────────────────
 
-  /** The first language, and the one that is written beside it. */
+  /** The first language, and the one that is edited next to it. */
   private get written(): string[] {
     const [first = ""] = this.languages;
     const other =
@@ -321,8 +319,7 @@ export class StrataTourStopFields extends LitElement {
     </div>`;
   }
 
-  // ── how long, and how one comes there
-  // ─────────────────────────────────────────────────────────────────────────────
+  // ── times and transition ───────────────────────────────────────────────────────────────────────
 
   private times(): TemplateResult {
     const { stop } = this;

@@ -1,5 +1,5 @@
-// <strata-tour-trial>: a stop of a tour that is being written, tried on the model: what visitors
-// read of it, the stops beside it, and the way back to the editor.
+// <strata-tour-trial>: previews a stop of an edited tour on the model: the visitors' texts, buttons
+// to the previous and next stop, and back to the editor.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -24,7 +24,7 @@ export class StrataTourTrial extends LitElement {
         position: fixed;
         z-index: 30;
         left: 50%;
-        top: 66px; /* below the head of the page: notices, and on phones the panel, are at the foot */
+        top: 66px; /* below the header: notices and, on phones, the panel are at the bottom */
         transform: translateX(-50%);
         display: grid;
         gap: 8px;

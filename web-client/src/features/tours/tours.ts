@@ -1,5 +1,5 @@
-// The tours of the open model, for those who make them. Nobody tells this page what others do to
-// them, so they are read again where that matters.
+// The tours of the open model, for curators. The page receives no events about other people's
+// changes of tours, so it reads the tours again where that matters.
 
 import { ApiError } from "../../net/api-error";
 import { type Api, ifVersion } from "../../net/api";
@@ -18,11 +18,11 @@ export class Tours {
   get loaded(): boolean {
     return this._known.loaded;
   }
-  /** They could not be read. */
+  /** The last read of the tours failed. */
   get failed(): boolean {
     return this._known.failed;
   }
-  /** In the order in which they were made. */
+  /** In order of creation. */
   get all(): TourEntry[] {
     return this._known.all.sort((a, b) => a.id - b.id);
   }
@@ -36,7 +36,7 @@ export class Tours {
       this._changed();
   }
 
-  /** With its stops, as it is now. */
+  /** The current version, with its stops. */
   async read(id: number): Promise<Tour> {
     try {
       return this.put(
@@ -50,7 +50,7 @@ export class Tours {
     }
   }
 
-  /** `key`: the same for each attempt at one tour. */
+  /** `key`: the idempotency key, the same for all attempts at one tour. */
   async make(tour: TourCreate, key: string): Promise<Tour> {
     return this.put(
       await this._api.json("POST /models/{model}/tours", {
@@ -60,7 +60,10 @@ export class Tours {
       }),
     );
   }
-  /** Of what was read: another's change in between is an ApiError of status 412. */
+  /**
+   * Changes the version that was read; after another person's change the result is an ApiError with
+   * status 412.
+   */
   async change(
     { id, version }: { id: number; version: number },
     change: TourCreate,
@@ -73,7 +76,7 @@ export class Tours {
       }),
     );
   }
-  /** The same about changes in between. */
+  /** Deletes under the same condition. */
   async remove({ id, version }: TourEntry): Promise<void> {
     try {
       await this._api.send("DELETE /models/{model}/tours/{tour}", {

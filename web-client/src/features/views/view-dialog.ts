@@ -1,5 +1,5 @@
-// <strata-view-dialog>: keeps what this person sees under a name, or with `view` names and
-// describes one anew.
+// <strata-view-dialog>: saves the current view under a name, or with `view` changes its name and
+// text.
 
 import { html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -18,8 +18,8 @@ const words = texts.kept_views;
 export class StrataViewDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) view: View | null = null;
-  private _base: View | null = null; // the view as this person knows it
-  private _content: ViewContent | null = null; // of a new one: what was seen when this was opened
+  private _base: View | null = null; // the version that this person has seen
+  private _content: ViewContent | null = null; // of a new view: the state when the dialog opened
 
   override connectedCallback(): void {
     super.connectedCallback();

@@ -1,5 +1,5 @@
-// <strata-view-list>: the named views of the model, each a button that leads there; part of the
-// panel of the view.
+// <strata-view-list>: the named views of the model, each with a button that applies it; part of the
+// view panel.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -50,7 +50,7 @@ export class StrataViewList extends LitElement {
       li:has(> .go[aria-current="true"]) {
         background: var(--accent-soft);
       }
-      /* also below the pointer: words on both tints are hard to read */
+      /* also below the pointer: text is hard to read on both tints together */
       li button.go[aria-current="true"]:not(:disabled) {
         background: none;
       }
@@ -166,8 +166,8 @@ export class StrataViewList extends LitElement {
 }
 
 /**
- * Selects a text that stands nowhere in the page, and leaves the keyboard where it is. Returns what
- * lets go of it.
+ * Selects a text that is not visible on the page, and keeps the keyboard focus. Returns a function
+ * that removes the selection.
  */
 function selectHidden(text: string): () => void {
   const span = document.createElement("span");

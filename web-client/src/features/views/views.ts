@@ -1,5 +1,4 @@
-// The named views of the open model: which there are, how this person comes to see it as one of
-// them has it, and how they come back.
+// The named views of the open model: the list, applying a view, and returning from it.
 
 import { ApiError } from "../../net/api-error";
 import { type Api, ifVersion } from "../../net/api";
@@ -21,7 +20,7 @@ export interface ViewsHost {
   readonly layers: LayersPart;
   readonly appearance: AppearancePart;
   readonly tables: TablesPart;
-  /** Runs the action now, or as soon as no stroke is under way. */
+  /** Runs the action now, or after the current stroke. */
   whenFree(action: () => void): void;
   canCurate(): boolean;
   changed(): void;
@@ -30,7 +29,7 @@ export interface ViewsHost {
 export class Views {
   private _me = "";
   private readonly _known = new KnownItems<View>();
-  // the newest that was gone to, and what was seen then
+  // the last applied view, and the state after it
   private _shown: { id: number; place: string; settings: string } | null = null;
   private _back: (() => void) | null = null;
   private _notice = 0;
@@ -41,24 +40,23 @@ export class Views {
     private readonly _host: ViewsHost,
   ) {}
 
-  // ── what there is
-  // ─────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── list ───────────────────────────────────────────────────────────────────────────────────────
 
   get loaded(): boolean {
     return this._known.loaded;
   }
-  /** They could not be read. */
+  /** The last read of the views failed. */
   get failed(): boolean {
     return this._known.failed;
   }
-  /** In the order in which they were made. */
+  /** In order of creation. */
   get all(): View[] {
     return this._known.all.sort((a, b) => a.id - b.id);
   }
   find(id: number): View | null {
     return this._known.find(id);
   }
-  /** The view that is seen: nothing was moved or changed since this person came there. */
+  /** The applied view, as long as nothing was moved or changed since. */
   get current(): View | null {
     return this._shown && this.isAtView ? this.find(this._shown.id) : null;
   }
@@ -69,7 +67,7 @@ export class Views {
     return `${location.origin}${pathOfModel(this._modelId)}${hashOfView(slug)}`;
   }
 
-  /** The server said who this is; what happened before, nobody told this page. */
+  /** The server has identified this person. Earlier events are unknown, so all views are loaded. */
   welcome(user: string): void {
     this._me = user;
     void this.load();
@@ -98,7 +96,7 @@ export class Views {
       );
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      // otherwise it is as it was, until they are all read again
+      // otherwise it remains until the next full read
       if (error.status === 404) this.drop(id);
     }
   }
@@ -112,12 +110,11 @@ export class Views {
     this._host.changed();
   }
 
-  // ── there and back
-  // ────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── applying and returning ─────────────────────────────────────────────────────────────────────
 
   /**
-   * This person sees the model as the view has it, fitted to their window. `tells`: by a notice,
-   * for who does not have the list before them.
+   * Applies the view, fitted to this person's window. `tells`: with a notice, for people without
+   * the list in sight.
    */
   goTo(view: View, tells = false): void {
     this._host.whenFree(() => {
@@ -130,14 +127,14 @@ export class Views {
     });
   }
 
-  /** By slug or id, as addresses have it. */
+  /** By slug or id, as in addresses. */
   follow(ref: string): void {
     const view = this.all.find(({ id, slug }) => slug === ref || String(id) === ref);
     if (view) this.goTo(view, true);
     else notices.show("info", words.missing);
   }
 
-  /** To the next view of the list, or with −1 to the one before. */
+  /** Applies the next view of the list, or with −1 the previous one. */
   step(by: 1 | -1): void {
     const { all } = this;
     const at = all.findIndex(({ id }) => id === this._shown?.id);
@@ -146,7 +143,7 @@ export class Views {
     else notices.show("info", words.none_yet);
   }
 
-  /** There is something that this person saw before they went to views. */
+  /** Whether there is a state before the first applied view to return to. */
   get leadsBack(): boolean {
     return this._back !== null;
   }
@@ -161,7 +158,7 @@ export class Views {
 
   private show(view: View): void {
     const { view: control, layers, appearance, tables } = this._host;
-    const wasAtView = this.isAtView; // whose way back is this one's, too
+    const wasAtView = this.isAtView; // then its way back is kept
     const { place } = control;
     const waysBack = [layers.showView(view), appearance.showView(view)];
     control.fly(placeLike(view.camera, control.camera));
@@ -195,16 +192,15 @@ export class Views {
     return JSON.stringify([layers.toKeep(), appearance.toKeep(), appearance.section]);
   }
 
-  // ── what is kept
-  // ──────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── saving ─────────────────────────────────────────────────────────────────────────────────────
 
-  /** What this person sees now. */
+  /** The current view of this person. */
   content(): ViewContent {
     const { view, layers, appearance } = this._host;
     return { camera: view.camera.message(), layers: layers.toKeep(), ...appearance.toKeep() };
   }
 
-  /** `key`: the same for each attempt at one view. */
+  /** `key`: the idempotency key, the same for all attempts at one view. */
   async keep(
     called: { name: string; text: string },
     content: ViewContent,
@@ -216,13 +212,13 @@ export class Views {
       header: { "Idempotency-Key": key },
     });
     this.put(made);
-    this._back = null; // what was seen before has a name now
+    this._back = null; // the state is saved under a name now
     this.remember(made);
   }
 
   /**
-   * Of what was read: another's change in between is an ApiError of status 412, and the view is
-   * then as it is now.
+   * Changes the version that was read. If another person has changed it since, the function throws
+   * an ApiError with status 412, and the view is updated.
    */
   async describe(view: View, called: { name: string; text: string }): Promise<void> {
     await this.newestAfter(view, async () =>
@@ -235,7 +231,7 @@ export class Views {
       ),
     );
   }
-  /** Under the view's name what this person sees now; the same about changes in between. */
+  /** Saves the current view under the existing name, under the same condition. */
   async replace(view: View): Promise<void> {
     const changed = await this.putContent(view, this.content());
     this.remember(changed);
@@ -245,7 +241,7 @@ export class Views {
       void this.putContent(changed, before).catch((error: unknown) => notices.error(error));
     notices.show("success", words.replaced(view.name), "", { label: words.undo, act: undo });
   }
-  /** The same about changes in between. */
+  /** Deletes under the same condition. */
   async remove(view: View): Promise<void> {
     await this.newestAfter(view, () =>
       this._api.send("DELETE /models/{model}/views/{view}", {

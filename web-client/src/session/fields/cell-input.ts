@@ -1,5 +1,5 @@
-// <strata-cell-input>: the field for a value of a column, by its kind. In a cell of the table and
-// in the form of a record alike.
+// <strata-cell-input>: the field for a value of a column, by its kind. Used in cells of the table
+// and in the form of a record.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -25,7 +25,7 @@ import { texts } from "../../texts";
 
 export type CellRead = { value: CellValue } | { problem: string };
 
-/** Whether what is typed can begin a new value; the others are chosen. */
+/** Whether typing can start a new value; other kinds are chosen. */
 export const takesTyping = (column: Column): boolean =>
   !namesRecords(column) &&
   !holdsMarks(column) &&
@@ -35,8 +35,8 @@ export const takesTyping = (column: Column): boolean =>
   column.kind !== "date";
 
 /**
- * Whether a character may be meant as text in a cell of the column. What may not is left to the
- * keys of the page.
+ * Whether a character can be input for a cell of the column. Other characters are left to the
+ * page's shortcuts.
  */
 export function mayBeText(column: Column, character: string): boolean {
   if (isNumber(column)) return /[-+.,\d]/.test(character);
@@ -49,12 +49,12 @@ export class StrataCellInput extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) column!: Column;
   @property({ attribute: false }) value: CellValue = null;
-  /** What was typed to begin with: it takes the place of the value. */
+  /** The first typed text, which replaces the value. */
   @property({ attribute: false }) typed: string | null = null;
   @property({ type: Boolean }) invalid = false;
-  /** What it holds can be read and copied, but not changed. */
+  /** The value can be read and copied, but not changed. */
   @property({ type: Boolean, reflect: true }) fixed = false;
-  /** Columns of files: the record that they are of, where it is there already. */
+  /** For columns of files: the record, if it exists. */
   @property({ attribute: false }) record: { table: number; key: number | null } | null = null;
   @query("strata-files-field") private _files!: StrataFilesField | null;
   @query("strata-marks-field") private _marks!: StrataMarksField | null;
@@ -108,7 +108,7 @@ export class StrataCellInput extends LitElement {
       (this._control as HTMLInputElement).value = this.typed;
   }
 
-  /** What is in the field now. */
+  /** The current value of the field. */
   read(): CellRead {
     const { column } = this;
     if (this._files) return { value: this._files.ids.length > 0 ? [...this._files.ids] : null };
@@ -126,7 +126,7 @@ export class StrataCellInput extends LitElement {
     return { problem: parsed.wrong === "whole" ? texts.tables.bad_whole : texts.tables.bad_number };
   }
 
-  /** In place of what was typed. */
+  /** Replaces the typed text. */
   put(value: CellValue): void {
     if (this._files) {
       this._files.ids = namedKeys(value);
@@ -141,12 +141,12 @@ export class StrataCellInput extends LitElement {
     else control.value = cellText(value);
   }
 
-  /** Files that wait to be sent. */
+  /** The field with pending files. */
   get files(): StrataFilesField | null {
     return this._files;
   }
 
-  /** To write on: all of the value, or behind what was typed. */
+  /** Starts editing: selects the whole value, or places the caret after the typed text. */
   begin(): void {
     this.focus({ preventScroll: true });
     const control = this._control;

@@ -1,5 +1,5 @@
-// <strata-files-field>: the pictures or documents of a record in its form. Files that are added
-// wait until the form is saved.
+// <strata-files-field>: the pictures or documents of a record in its form. Added files wait until
+// the form is saved.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -21,14 +21,14 @@ const words = texts.files;
 export class StrataFilesField extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) column!: Column;
-  /** Ids of the table and the record; null: a record that is not there yet. */
+  /** Ids of the table and the record; null: a record that does not exist yet. */
   @property({ attribute: false }) table = 0;
   @property({ attribute: false }) record: number | null = null;
-  /** Of the files that the record has, in their order. */
+  /** Ids of the record's files, in their order. */
   @property({ attribute: false }) ids: number[] = [];
   @state() private _pending: File[] = [];
   @state() private _known = new Map<number, Attachment>();
-  @state() private _isKnown = false; // which of the files this person sees
+  @state() private _isKnown = false; // the visible files are loaded
   @query("input") private _input!: HTMLInputElement;
   private readonly _drop = new FileDrop(
     this,
@@ -113,11 +113,11 @@ export class StrataFilesField extends LitElement {
       void this.load();
   }
 
-  /** Files that are to be sent once the record is there. */
+  /** Files to send after the record exists. */
   get pending(): readonly File[] {
     return this._pending;
   }
-  /** It is sent. */
+  /** The file was sent. */
   sent(file: File): void {
     this._pending = this._pending.filter((each) => each !== file);
   }
@@ -171,7 +171,7 @@ export class StrataFilesField extends LitElement {
     </figure>`;
   }
 
-  /** Counts at once, as the file is there already. */
+  /** Applies at once, since the file exists already. */
   private seenBy(file: Attachment): TemplateResult | typeof nothing {
     const { session } = this;
     if (!session.canCurate && file.user !== session.user) return nothing;

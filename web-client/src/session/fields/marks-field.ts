@@ -1,5 +1,6 @@
 // <strata-marks-field>: the lines or points of a record in its form: those on this model one by
-// one, those on others as a number. New ones are drawn on the model: it asks for that with `draw`.
+// one, those on others as a number. New ones are drawn on the model; the event `draw` requests
+// this.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -16,7 +17,7 @@ const words = texts.marks;
 @customElement("strata-marks-field")
 export class StrataMarksField extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** Of lines or of points. */
+  /** A column of lines or points. */
   @property({ attribute: false }) column!: Column;
   @property({ attribute: false }) marks: readonly Mark[] = [];
 

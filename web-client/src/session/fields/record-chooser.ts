@@ -1,5 +1,5 @@
-// <strata-record-chooser>: one or several records of a table, found by what they are called. Terms
-// stand as in their list, each below the one above it.
+// <strata-record-chooser>: chooses one or several records of a table by their names. Terms are in
+// the order of their list, indented by depth.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -14,12 +14,12 @@ import { termsWith } from "./term-rows";
 import type { TermTree } from "./term-tree";
 import { texts } from "../../texts";
 
-/** One that may be chosen. */
+/** A record on offer. */
 interface Option {
   key: number;
   label: string;
   depth: number; // in a tree
-  match: boolean; // false: it is shown for what is below it
+  match: boolean; // false: shown as a parent of a match
 }
 
 const kIndentPx = 16;
@@ -33,7 +33,7 @@ export class StrataRecordChooser extends LitElement {
   @property({ type: Boolean }) multiple = false;
   @property() label = "";
   @property({ type: Boolean }) invalid = false;
-  /** Not to be chosen. */
+  /** A key that is not on offer. */
   @property({ attribute: false }) without: number | null = null;
   @state() private _text = "";
   @state() private _open = false;
@@ -158,7 +158,7 @@ export class StrataRecordChooser extends LitElement {
     `,
   ];
 
-  /** Null: the table is no list of terms, or its terms are too many to be here. */
+  /** Null: not a list of terms, or too many terms to load. */
   private get terms(): TermTree | null {
     const terms = this.session.tables.terms(this.table);
     terms?.want();
@@ -182,7 +182,7 @@ export class StrataRecordChooser extends LitElement {
     return found.filter(({ key }) => key !== this.without);
   }
 
-  /** Records may come after what was typed: then Enter takes the first that fits. */
+  /** Records may load after the typing: Enter takes the first match. */
   override willUpdate(): void {
     if (this._open && this._text !== "" && this._at < 0)
       this._at = this.found.findIndex(({ match }) => match);
@@ -246,14 +246,14 @@ export class StrataRecordChooser extends LitElement {
     this.show();
   }
 
-  /** The list opens where somebody asks for it, and not because the form begins here. */
+  /** Opens the list on request only, not when the form focuses its first field. */
   private onField(event: Event): void {
     const onChip = event.composedPath().some((each) => each instanceof HTMLButtonElement);
     this._input.focus();
     if (!onChip) this.show();
   }
 
-  /** Somebody begins to choose. */
+  /** Starts the choice. */
   open(): void {
     this.show();
   }
@@ -276,7 +276,7 @@ export class StrataRecordChooser extends LitElement {
     if (this._list.matches(":popover-open")) this._list.hidePopover();
   };
 
-  /** Keys that it has no use for go on: Enter with nothing found takes the whole field. */
+  /** Unused keys are passed on: Enter without a match applies the whole field. */
   private onKey(event: KeyboardEvent): void {
     const { found } = this;
     if (event.key === "ArrowDown" || event.key === "ArrowUp") {
@@ -317,5 +317,5 @@ export class StrataRecordChooser extends LitElement {
   }
 }
 
-/** A press on the list leaves the focus in the field. */
+/** A click on the list keeps the focus in the field. */
 const keepFocus = (event: Event): void => event.preventDefault();

@@ -1,5 +1,5 @@
-// What a record has on the model beside what its columns hold: surface, length of its lines, number
-// of its points.
+// Measures of a record on the model, in addition to its columns: area, length of lines, number of
+// points.
 
 import { formatCount } from "../../core/locale";
 import { markColumns } from "../../domain/marks";
@@ -8,14 +8,14 @@ import type { Table, TableRecord } from "../../core/protocol.gen";
 import { texts } from "../../texts";
 
 export interface RecordMeasure {
-  /** As the server calls it, and orders records by it. */
+  /** The server's name, which also sorts records. */
   name: "area_m2" | "length_m" | "point_count";
   label: string;
-  /** Empty where the record has nothing of it. */
+  /** Empty where the record has none. */
   text(record: TableRecord): string;
 }
 
-/** Those that the table's records can have, in the order of the server. */
+/** The measures that the table's records can have, in the server's order. */
 export function measuresOf(table: Pick<Table, "columns">): RecordMeasure[] {
   const words = texts.tables;
   const area: RecordMeasure = {

@@ -1,4 +1,4 @@
-// A value of a record as people read it, in a cell of the table and on a card.
+// The display of a record's value, in cells of the table and on cards.
 
 import { html } from "lit";
 import { cellText, namedKeys, namesRecords } from "../../domain/cells";
@@ -11,14 +11,14 @@ import { texts } from "../../texts";
 
 const kMostPictures = 4; // in a cell
 
-/** A file that this person does not see has no picture either. */
+/** A file that is invisible to this person has no picture either. */
 const showWhether =
   (isThere: boolean) =>
   (event: Event): void => {
     (event.target as HTMLElement).hidden = !isThere;
   };
 
-/** For a template; records are called by their names. */
+/** For a template; records are shown by name. */
 export function shownValue(session: ModelSession, column: Column, value: CellValue): unknown {
   if (value === null) return "";
   if (namesRecords(column)) {
@@ -46,7 +46,7 @@ export function shownValue(session: ModelSession, column: Column, value: CellVal
   return text;
 }
 
-/** "2 lines · 1.24 m": on this model; others are counted. */
+/** "2 lines · 1.24 m": on this model; marks on others are counted. */
 export function shownMarks(
   { model }: ModelSession,
   { kind }: Pick<Column, "kind">,

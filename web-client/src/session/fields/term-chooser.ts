@@ -1,5 +1,5 @@
-// <strata-term-chooser>: which term of a list is painted: a tree that is searched by typing and
-// gone through by keys, as it is coloured on the model.
+// <strata-term-chooser>: chooses the painted term of a list, in a tree with search and keyboard
+// control, with the colors of the model.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -26,12 +26,12 @@ const kFingers = hasFingers();
 const kRowPx = Math.round((kFingers ? 44 : 30) * growth());
 const kTreePx = Math.round(300 * growth());
 const kIndentPx = 16;
-const kAbove = 4; // rows drawn beyond those in sight
+const kAbove = 4; // rows rendered beyond the visible ones
 
 @customElement("strata-term-chooser")
 export class StrataTermChooser extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** Of a list of terms. */
+  /** A layer of a term list. */
   @property({ attribute: false }) layer!: Layer;
   /** Key of a term. */
   @property({ attribute: false }) chosen = 0;
@@ -44,10 +44,10 @@ export class StrataTermChooser extends LitElement {
   @query("input") private _input!: HTMLInputElement;
   @query(".tree") private _tree!: HTMLElement | null;
   private _rows: TermRow[] = [];
-  // height of the tree without a search: what lies below does not jump while one types
+  // height of the tree without a search, so that the content below stays in place
   private _wholePx = 0;
-  private _walks = false; // the arrow keys go through the tree, and not through the text
-  private _generation = 0; // of the terms that were folded
+  private _walks = false; // the arrow keys move in the tree, not in the text
+  private _generation = 0; // of the folded terms
   private _searching: Promise<void> | null = null;
 
   static override shadowRootOptions = { ...LitElement.shadowRootOptions, delegatesFocus: true };
@@ -177,7 +177,7 @@ export class StrataTermChooser extends LitElement {
       : rowsOf(terms?.terms ?? [], this._folded);
   }
 
-  /** The terms are here, or have changed. */
+  /** The terms were loaded or have changed. */
   private take(terms: TermTree): void {
     if (this._generation === 0) this._folded = foldedAtFirst(terms.terms, this.chosen);
     this._generation = terms.generation;
@@ -185,7 +185,7 @@ export class StrataTermChooser extends LitElement {
     if (this._text !== "") this.search();
   }
 
-  /** The chosen one is brought into sight, where it is. */
+  /** Unfolds and scrolls to the chosen term. */
   private reveal(): void {
     const above = pathTo(this.terms?.terms ?? [], this.chosen);
     if (above.some(({ key }) => this._folded.has(key)))
@@ -237,8 +237,8 @@ export class StrataTermChooser extends LitElement {
   }
 
   /**
-   * What the brush has now, in words also for those who do not see the tree, and cannot point at a
-   * term to read about it.
+   * Describes the brush's term in words, also for people who cannot see the tree or hover over a
+   * term.
    */
   private now({ terms }: TermTree): TemplateResult {
     const { chosen, _found: found } = this;
@@ -246,7 +246,7 @@ export class StrataTermChooser extends LitElement {
       [terms, found?.terms ?? []].find((some) => some.some(({ key }) => key === chosen)) ?? [];
     const term = known.find(({ key }) => key === chosen);
     const above = pathTo(known, chosen);
-    // of a very large list
+    // in a very large list
     const name =
       term?.name ??
       this.session.tables.label(this.layer.table ?? 0, chosen) ??
@@ -278,10 +278,7 @@ export class StrataTermChooser extends LitElement {
     </div>`;
   }
 
-  /**
-   * As the layer draws it for this person; nothing where something else than the term says its
-   * colour.
-   */
+  /** The term's color in this person's palette; none where another column sets the color. */
   private swatch(key: number): TemplateResult {
     const palette = this.session.layers.palette(this.layer);
     const color = colorOf(palette, key);
@@ -291,7 +288,7 @@ export class StrataTermChooser extends LitElement {
       : html`<span></span>`;
   }
 
-  /** How much of the list is not shown; empty: all of it is. */
+  /** The note about terms that are not shown; empty: all are shown. */
   private told(terms: TermTree, found: FoundTerms | null): string {
     if (found)
       return found.total === 0
@@ -324,21 +321,20 @@ export class StrataTermChooser extends LitElement {
       tree.scrollTop = top + kRowPx - tree.clientHeight;
   }
 
-  // ── choosing
-  // ──────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── choice ─────────────────────────────────────────────────────────────────────────────────────
 
   private choose(key: number): void {
     this._at = key;
     this.dispatchEvent(new CustomEvent<number>("chosen", { detail: key }));
   }
 
-  /** A press on the tree leaves the focus, and the keyboard of a phone, as they are. */
+  /** A press on the tree keeps the focus, and with it a phone's on-screen keyboard. */
   private keepFocus(event: Event): void {
     event.preventDefault();
   }
 
   private onFold(event: Event, term: ListedTerm, parent: boolean, folded: boolean): void {
-    if (!parent) return; // a press before its name is one on the term
+    if (!parent) return; // without children, the press selects the term
     event.stopPropagation();
     this.fold(term.key, !folded);
   }
@@ -366,7 +362,7 @@ export class StrataTermChooser extends LitElement {
     event.stopPropagation();
   }
 
-  /** Left and right are for the text until the arrows have gone into the tree. */
+  /** Left and right move the text's caret until the arrow keys have entered the tree. */
   private onTreeKey(key: string): boolean {
     if ((key === "ArrowLeft" || key === "ArrowRight") && !this._walks && this._text !== "")
       return false;
@@ -386,7 +382,7 @@ export class StrataTermChooser extends LitElement {
     return true;
   }
 
-  /** What was typed may still be looked for. */
+  /** Waits for the search of the typed text. */
   private async onEnter(): Promise<void> {
     await this._searching;
     if (this._at === null) return;
@@ -399,8 +395,7 @@ export class StrataTermChooser extends LitElement {
     else this.clear();
   }
 
-  // ── searching
-  // ─────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── search ─────────────────────────────────────────────────────────────────────────────────────
 
   private onInput(): void {
     this._text = this._input.value;
@@ -417,7 +412,7 @@ export class StrataTermChooser extends LitElement {
     this._searching ??= this.find().finally(() => (this._searching = null));
   }
 
-  /** Until what was found is what is asked for now. */
+  /** Searches until the result matches the current text. */
   private async find(): Promise<void> {
     for (;;) {
       const { terms } = this;
@@ -436,7 +431,7 @@ export class StrataTermChooser extends LitElement {
     }
   }
 
-  /** Null: the whole tree again. */
+  /** Null: shows the whole tree. */
   private show(found: FoundTerms | null): void {
     this._found = found;
     this._walks = false;

@@ -1,23 +1,20 @@
-// A tree of terms as rows from top to bottom, and how the keys of the keyboard go through it.
+// A tree of terms as rows from top to bottom, and its keyboard control.
 
 import type { ListedTerm } from "../../core/protocol.gen";
 
 export interface TermRow {
   term: ListedTerm;
-  /** Terms of this tree are below it. */
+  /** Whether terms of this tree are below it. */
   parent: boolean;
   folded: boolean;
-  /** Its place among those of the same parent, from 1, and how many these are. */
+  /** Position among the siblings, from 1, and their number. */
   place: number;
   of: number;
 }
 
-const kMostUnfolded = 60; // terms of a tree that is shown whole at first
+const kMostUnfolded = 60; // a larger tree is folded at first
 
-/**
- * Keys of the terms that are folded when a tree is shown first: of a long one all but those above
- * `chosen`.
- */
+/** Keys of the terms that are folded at first: in a large tree all except those above `chosen`. */
 export function foldedAtFirst(terms: readonly ListedTerm[], chosen: number): Set<number> {
   const folded = new Set<number>();
   if (terms.length <= kMostUnfolded) return folded;
@@ -28,7 +25,7 @@ export function foldedAtFirst(terms: readonly ListedTerm[], chosen: number): Set
   return folded;
 }
 
-/** The terms above one, the topmost first. */
+/** The terms above a term, the topmost first. */
 export function pathTo(terms: readonly ListedTerm[], key: number): ListedTerm[] {
   const path: ListedTerm[] = [];
   let index = terms.findIndex((term) => term.key === key);
@@ -45,8 +42,8 @@ export function pathTo(terms: readonly ListedTerm[], key: number): ListedTerm[] 
 const plain = (text: string): string => text.normalize("NFD").replace(/\p{M}/gu, "").toLowerCase();
 
 /**
- * Those that have all of the words in their names, whatever the case and the accents, with those
- * above them, which do not `match`.
+ * The terms with all of the words in their names, ignoring case and accents, together with their
+ * ancestors, which do not `match`.
  */
 export function termsWith(terms: readonly ListedTerm[], words: string): ListedTerm[] {
   const wanted = plain(words)
@@ -54,7 +51,7 @@ export function termsWith(terms: readonly ListedTerm[], words: string): ListedTe
     .filter((word) => word !== "");
   const matches = terms.map(({ name }) => wanted.every((word) => plain(name).includes(word)));
   const shown = new Set<number>();
-  let depth = 0; // of what was shown below: who is above it is less deep
+  let depth = 0; // of the shown term below; its ancestors have smaller depths
   for (let index = terms.length - 1; index >= 0; --index) {
     const term = terms[index]!;
     if (matches[index] || term.depth < depth) {
@@ -69,10 +66,10 @@ export function termsWith(terms: readonly ListedTerm[], words: string): ListedTe
   );
 }
 
-/** `terms`: each before those below it. */
+/** `terms`: each before its children. */
 export function rowsOf(terms: readonly ListedTerm[], folded: ReadonlySet<number>): TermRow[] {
   const rows: TermRow[] = [];
-  let hiddenBelow = Infinity; // depth of the folded term that hides what comes
+  let hiddenBelow = Infinity; // depth of the folded term that hides the following ones
   terms.forEach((term, index) => {
     if (term.depth > hiddenBelow) return;
     const parent = hasBelow(terms, index);
@@ -87,7 +84,7 @@ export function rowsOf(terms: readonly ListedTerm[], folded: ReadonlySet<number>
 const hasBelow = (terms: readonly ListedTerm[], index: number): boolean =>
   (terms[index + 1]?.depth ?? 0) > terms[index]!.depth;
 
-/** Rows of one parent stand at one depth, with nothing less deep between them. */
+/** Siblings have the same depth, without a smaller depth between them. */
 function numberSiblings(rows: readonly TermRow[]): void {
   const open: TermRow[][] = []; // by depth: the siblings so far
   const close = (depth: number): void => {
@@ -104,8 +101,8 @@ function numberSiblings(rows: readonly TermRow[]): void {
 }
 
 /**
- * What a key does at a row (-1: at none): goes to another one, folds its term or unfolds it. Null:
- * nothing, it is for others. `page`: rows in sight.
+ * The effect of a key at a row (-1: none): moves to another row, folds or unfolds its term. Null:
+ * the tree does not use the key. `page`: number of visible rows.
  */
 export function treeStep(
   key: string,

@@ -1,5 +1,5 @@
-// The terms of a list in the person's language. Asked for once somebody needs them, and again when
-// the list changes; of very large lists the first ones, since the server finds the others.
+// The terms of a list in the person's language. Loaded at the first use, and again when the list
+// changes; for very large lists only the first ones, since the server can search the others.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
@@ -11,15 +11,15 @@ export const kMostTerms = 2000;
 const kMostFound = 300;
 
 export class TermTree {
-  terms: readonly ListedTerm[] = []; // each before those below it
-  total = 0; // with those that are not here
+  terms: readonly ListedTerm[] = []; // each before its children
+  total = 0; // including terms that are not loaded
   problem = "";
-  /** Grows when the terms change. */
+  /** Increases when the terms change. */
   generation = 0;
   private _state: "unasked" | "loading" | "loaded" = "unasked";
   private _again = false;
   private _places: ReadonlyMap<number, number> = new Map();
-  private _placed = 0; // generation of `_places`
+  private _placed = 0; // the generation of `_places`
 
   constructor(
     private readonly _api: Api,
@@ -28,7 +28,7 @@ export class TermTree {
     private readonly _language = personLanguages()[0]!,
   ) {}
 
-  /** Where each stands in the tree, by key; asks for the terms. */
+  /** Position of each term in the tree, by key; loads the terms. */
   get places(): ReadonlyMap<number, number> {
     this.want();
     if (this._placed !== this.generation) {
@@ -38,7 +38,7 @@ export class TermTree {
     return this._places;
   }
 
-  /** To be called by who shows them. */
+  /** Call this before showing the terms. */
   want(): void {
     if (this._state === "unasked") void this.load();
   }
@@ -46,12 +46,12 @@ export class TermTree {
     return this.generation > 0;
   }
 
-  /** Those that have all of the words, with those above them. */
+  /** The terms with all of the words, together with their ancestors. */
   async search(words: string): Promise<FoundTerms> {
     return this.ask({ limit: kMostFound, offset: 0, ...(words === "" ? {} : { q: words }) });
   }
 
-  /** A page of the tree as it is written down. */
+  /** A page of the tree in depth-first order. */
   private ask(page: { limit: number; offset: number; q?: string }): Promise<FoundTerms> {
     return this._api.json("GET /tables/{table}/terms", {
       path: { table: this._table },
@@ -74,7 +74,7 @@ export class TermTree {
         while (terms.length < Math.min(total, kMostTerms)) {
           const page = await this.ask({ limit: kAtOnce, offset: terms.length });
           total = page.total;
-          if (page.terms.length === 0) break; // some were deleted meanwhile
+          if (page.terms.length === 0) break; // some were deleted in the meantime
           terms.push(...page.terms);
         }
         this.terms = terms;

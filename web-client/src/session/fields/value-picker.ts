@@ -1,5 +1,5 @@
-// <strata-value-picker>: which value is painted in the selected layer: a class, a term, a number,
-// or the only one there is.
+// <strata-value-picker>: chooses the painted value of the selected layer: a class, a term or a
+// number, or shows the only possible one.
 
 import { readRecord } from "../../net/records";
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
@@ -27,7 +27,7 @@ export class StrataValuePicker extends LitElement {
   @property({ attribute: false }) value = 0;
   @state() private _wrongValue = "";
   @state() private _asking = false;
-  @state() private _missing: number | null = null; // a number that was typed and has no record
+  @state() private _missing: number | null = null; // a typed key without a record
 
   constructor() {
     super();
@@ -174,7 +174,10 @@ export class StrataValuePicker extends LitElement {
     this.setValue(layer, key);
   }
 
-  /** Only records can be painted: a number that has none is offered to be made. */
+  /**
+   * Only keys of records can be painted: for a key without one, the picker offers to create the
+   * record.
+   */
   private async findRecord(layer: Layer, table: number, key: number): Promise<void> {
     try {
       await readRecord(this.session.api, { table }, key);

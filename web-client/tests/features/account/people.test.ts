@@ -45,7 +45,7 @@ const person = (user: string, fullName = "", more: Partial<Person> = {}): Person
 const refusal = (status: number, more: { field?: string; detail?: string } = {}): ApiError =>
   new ApiError({ status, title: "Refused", ...more });
 
-/** An interface whose server gives these answers in turn, and what it was asked. */
+/** An Api whose server gives these answers in turn, with the requests that it received. */
 function apiOf(...answers: [status: number, body: unknown, headers?: Record<string, string>][]): {
   api: Api;
   asked: { what: string; body: unknown; headers: Record<string, string> }[];

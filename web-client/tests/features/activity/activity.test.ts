@@ -104,7 +104,7 @@ describe("the activity of a model", () => {
     activity.outdated();
     vi.advanceTimersByTime(200);
     await settle();
-    expect(asked).toHaveLength(4); // the second may not have been saved by then
+    expect(asked).toHaveLength(4); // the second event may not have been saved by then
     vi.advanceTimersByTime(2900);
     await settle();
     expect(asked).toHaveLength(5);

@@ -211,7 +211,7 @@ describe("what is seen of pins", () => {
   });
 
   it("is what nothing lies before, once it rests", async () => {
-    // Something stands before the place at the side; the back is seen through a hole.
+    // An obstacle is in front of the place at the side; the back is visible through a hole.
     surface = () => [front.position, back.position, [0.55, -1.5, 0]];
     await sight.look();
     expect(asked[0]).toHaveLength(3);
@@ -229,10 +229,10 @@ describe("what is seen of pins", () => {
   });
 
   it("is nothing that a section cuts away, which the server is not asked of", async () => {
-    camera.section = [[0, 1, 0, 0]]; // keeps what is behind
+    camera.section = [[0, 1, 0, 0]]; // keeps the half behind
     surface = () => [back.position, back.position];
     await sight.look();
-    expect(asked[0]).toHaveLength(2); // one place is asked of as two
+    expect(asked[0]).toHaveLength(2); // a single place is requested twice
     expect([front, back, side].map((place) => sight.isSeen(place))).toEqual([false, true, false]);
   });
 

@@ -228,8 +228,7 @@ describe("what is asked for", () => {
   });
 });
 
-// ── with a server
-// ───────────────────────────────────────────────────────────────────────────────────────────────────
+// ── with a server ────────────────────────────────────────────────────────────────────────────────
 
 let answers: Map<string, () => Response | Promise<Response>>; // by method and path
 let calls: { method: string; path: string; body: unknown; headers: Record<string, string> }[];
@@ -286,7 +285,7 @@ beforeEach(() => {
   );
 });
 afterEach(() => {
-  vi.advanceTimersByTime(120_000); // notices go
+  vi.advanceTimersByTime(120_000); // closes notices
   unsubscribe();
   vi.unstubAllGlobals();
   vi.useRealTimers();
@@ -302,7 +301,7 @@ describe("a figure", () => {
     state = job("running");
     answers.set(kFigures, () => json(job("queued"), 202));
     answers.set("GET /api/v1/jobs/5", () => json(state));
-    // As the server does: who takes JSON alone gets no drawing.
+    // As on the server: a request that accepts only JSON gets no drawing.
     answers.set("GET /api/v1/jobs/5/file", () =>
       calls.at(-1)!.headers["Accept"] === "*/*"
         ? new Response("%PDF-1.7")

@@ -10,7 +10,7 @@ import type { Project } from "../../../src/core/protocol.gen";
 class FakeServer {
   now: Project = { id: 4, name: "Villa", slug: "villa", description: "Frescoes" };
   version = 1;
-  /** Happens after the next reading. */
+  /** Runs after the next read. */
   meanwhile: (() => void) | null = null;
 
   readonly api = fakeApi({
@@ -45,7 +45,7 @@ const wanted = { name: "Villa Giulia", text: "Frescoes" };
 describe("a change of a project", () => {
   it("is made of the project that this person sees", async () => {
     const server = new FakeServer();
-    const seen = { ...server.now, role: "administrator" } as Project; // as lists have it
+    const seen = { ...server.now, role: "administrator" } as Project; // as in lists
     expect(await new ProjectChange(server.api, seen).save(wanted, false)).toMatchObject({
       name: "Villa Giulia",
     });

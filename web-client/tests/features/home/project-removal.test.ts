@@ -8,10 +8,10 @@ import type { Project, Table } from "../../../src/core/protocol.gen";
 const villa: Project = { id: 4, name: "Villa  Ñuño", slug: "villa", description: "" };
 const table = (id: number): Table => ({ id }) as Table;
 
-/** A server with tables, each of which names others, and one project. */
+/** A server with tables that refer to others, and one project. */
 class FakeServer {
   readonly done: (number | string)[] = [];
-  /** By table, what else is answered first, once. */
+  /** Errors to answer first, once for each table. */
   readonly faults = new Map<number, ApiError>();
 
   readonly api = fakeApi({
@@ -86,7 +86,7 @@ describe("deleting a project", () => {
     expect(server.done).toEqual([1]);
     await removeProject(server.api, villa, [table(1), table(2)]);
     expect(server.done).toEqual([1, 2, "villa"]);
-    await removeProject(server.api, villa, []); // somebody else was faster
+    await removeProject(server.api, villa, []); // another person was faster
   });
 
   it("fails where there is more in it than was shown", async () => {

@@ -7,14 +7,14 @@ import { Api } from "../../../src/net/api";
 import { OrbitCamera } from "../../../src/math/camera";
 import { MeasureTool, type MeasureHost } from "../../../src/features/measuring/measure-tool";
 
-// A wall in the plane y = 0, 100 mm wide and high, seen from the front in parallel: a pixel is a
-// millimetre.
+// A wall in the plane y = 0, 100 mm wide and high, seen from the front in parallel projection: a
+// pixel is a millimeter.
 const comes = (check: () => void): Promise<void> => vi.waitFor(check, { timeout: 20_000 });
 const atMm = (x: number, z: number): { x: number; y: number } => ({ x: 200 + x, y: 200 - z });
 
 let camera: OrbitCamera;
 let asked: { path: string; body: Record<string, unknown> }[];
-let hold: Promise<void> | null; // answers wait for it
+let hold: Promise<void> | null; // delays answers
 let sees: (x: number, z: number) => boolean;
 let measuring: Measuring;
 
@@ -142,7 +142,7 @@ describe("measuring", () => {
     let go = (): void => {};
     hold = new Promise((done) => (go = done));
     measuring.setAt(atMm(0, 0));
-    expect(measuring.begun).toBe(true); // Escape takes away what is on its way, too
+    expect(measuring.begun).toBe(true); // Escape also cancels a pending tap
     await comes(() => expect(asked).toHaveLength(1));
     measuring.clear();
     expect(measuring.begun).toBe(false);
@@ -175,7 +175,7 @@ describe("measuring", () => {
   it("follows what is nearest where not all places are seen from here, or where that is wanted", async () => {
     measuring.setAt(atMm(-30, 0));
     await comes(() => expect(measuring.places).toHaveLength(1));
-    sees = (x) => x > 0; // something stands before the first one now
+    sees = (x) => x > 0; // an obstacle is now in front of the first one
     measuring.setAt(atMm(30, 0));
     await comes(() => expect(measuring.profile?.way).toBe("nearest"));
     expect(measuring.along).toBeCloseTo(60, 6);

@@ -27,7 +27,7 @@ const isTold = (title: string): Promise<void> =>
   comes(() => expect(shown.at(-1)?.title).toBe(title));
 
 let stored: { key: number; version: number; values: Record<string, unknown> };
-let told: string[]; // what the server was asked
+let told: string[]; // requests to the server
 let beforeChange: () => void;
 let newest: number; // entry of the table's journal
 let undone: number[];
@@ -138,7 +138,7 @@ describe("what is drawn on the surface", () => {
     const mine = { model: 9, coordinates: [[1, 2, 3]] };
     await comes(() => expect(stored.values["samples"]).toEqual([other, mine, mine]));
     await isTold(texts.marks.point_set("North"));
-    expect(shown).toHaveLength(1); // the newest can be taken back
+    expect(shown).toHaveLength(1); // offers to undo the latest
   });
 
   it("is taken back by its notice, unless something came after it", async () => {

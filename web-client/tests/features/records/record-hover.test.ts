@@ -16,7 +16,7 @@ describe("the record that the mouse rests on", () => {
   let hover: RecordHover;
   let changes: number;
   const rest = (): unknown => vi.advanceTimersByTime(kLongMs);
-  /** The answer to what the pointer asked there. */
+  /** The answer to the pointer's request there. */
   const lies = (found: RecordAt | null): void => {
     here = found;
     hover.picked();
@@ -47,11 +47,11 @@ describe("the record that the mouse rests on", () => {
   });
 
   it("is shown when the answer comes late, and only the answer about that place", () => {
-    [here, settled] = [record(3), false]; // of where the pointer was
+    [here, settled] = [record(3), false]; // at the pointer's previous position
     hover.move({ x: 10, y: 10 });
     rest();
     expect(hover.shown).toBeNull();
-    lies(record(4)); // of on the way
+    lies(record(4)); // at a position in between
     expect(hover.shown).toBeNull();
     settled = true;
     lies(record(7));

@@ -1,4 +1,4 @@
-// What waits for review, as the page knows it, against a server of a few lines.
+// The edits that wait for review, against a small fake server.
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { notices, type Notice } from "../../../src/ui/notices";
 import { Reviews } from "../../../src/features/review/reviews";

@@ -28,7 +28,7 @@ import {
 import { FakeSocket, welcome } from "../../fake-socket";
 
 const words = texts.kept_views;
-// A building in UTM coordinates: doubles must hold millimetres there.
+// A building in UTM coordinates: doubles must resolve millimeters there.
 const bounds = {
   min: [500_000, 4_100_000, 600] as [number, number, number],
   max: [500_040, 4_100_020, 612] as [number, number, number],
@@ -121,7 +121,7 @@ describe("the section of a view", () => {
           ),
         );
         if (choice.mode !== "box") expect(again.mode).toBe(choice.mode);
-        // a box of one side is a cut
+        // a box with one side is a cut
         else expect(planes.length > 1 ? again.mode : "box").toBe("box");
       }),
     );
@@ -209,8 +209,7 @@ describe("the address of a view", () => {
   });
 });
 
-// ── in a session
-// ────────────────────────────────────────────────────────────────────────────────────────────────────
+// ── in a session ─────────────────────────────────────────────────────────────────────────────────
 
 let sockets: FakeSocket[];
 let answers: Map<string, [status: number, body: unknown]>; // by method and path
@@ -291,7 +290,7 @@ beforeEach(() => {
 });
 afterEach(() => {
   discardUnsaved();
-  vi.advanceTimersByTime(60_000); // notices go
+  vi.advanceTimersByTime(60_000); // closes notices
   unsubscribe();
   vi.unstubAllGlobals();
   vi.useRealTimers();
@@ -358,7 +357,7 @@ function see(seen: Seen): void {
   });
 }
 
-/** Where the points of the model come to lie in the window. */
+/** Positions of the model's corners in the window. */
 function places({ view, projection }: Pick<CameraMessage, "view" | "projection">): number[] {
   const points = [0, 1, 2, 3, 4, 5, 6, 7].map((corner) =>
     [0, 1, 2].map((axis) => (corner & (1 << axis) ? bounds.max : bounds.min)[axis]!),
@@ -388,7 +387,7 @@ function expectSame({ camera, ...rest }: ViewContent, then: ViewContent | View):
     expect(Math.abs(placesNow[index]! - place) / Math.max(1, Math.abs(place))).toBeLessThan(1e-6),
   );
 }
-/** What the server was told last. */
+/** The last message to the server. */
 const sent = (): ViewContent["layers"] =>
   [...(socket().of("layers").at(-1)?.layers ?? [])].sort(
     (a, b) => Number(a.layer) - Number(b.layer),
@@ -613,7 +612,7 @@ describe("the list of views", () => {
     await settle();
     socket().receive({ op: "view", event: "deleted", view: 2 });
     expect(names()).toEqual(["West", "V3"]);
-    answers.set(`GET ${path}/1`, [200, viewWith(1, content)]); // an answer that was under way
+    answers.set(`GET ${path}/1`, [200, viewWith(1, content)]); // a pending answer
     socket().receive({ op: "view", event: "changed", view: 1 });
     await settle();
     answers.set(`GET ${path}/3`, [404, { title: "Not found" }]);
