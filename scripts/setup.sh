@@ -1,7 +1,7 @@
-# Sourced by ./run and ./test: installs what is missing on Debian 12 and leaves everything else alone.
-# Sets STRATA_CMAKE_ARGS. Quick when nothing is missing. Callers set pipefail.
+# Sourced by ./run and ./test: installs missing packages on Debian 12 and changes nothing else. Sets
+# STRATA_CMAKE_ARGS. Quick if nothing is missing. Callers set pipefail.
 # shellcheck shell=bash
-# shellcheck disable=SC2034  # the lists of packages are for who sources this
+# shellcheck disable=SC2034  # the scripts that source this use the lists of packages
 
 # shellcheck source=scripts/progress.sh
 . "$(dirname "${BASH_SOURCE[0]}")/progress.sh"
@@ -16,8 +16,8 @@ as_root() {
   else die "This step needs root: $* — run as root, or install sudo."; fi
 }
 
-# A package is there when dpkg says so; asking for all at once takes a few milliseconds. On an empty machine dpkg-query has
-# never heard of most of them, and fails.
+# dpkg lists the installed packages; one query for all packages takes a few milliseconds. On a new
+# machine dpkg-query has no entry for most of them, and fails.
 missing_packages() {
   local installed package
   installed=$({ dpkg-query -W -f='${Package} ${Status}\n' "$@" 2>/dev/null || true; } | awk '/install ok installed/ {print $1}')
@@ -32,7 +32,7 @@ update_package_lists() {
   apt_updated=1
 }
 
-# --no-remove: a package of the user's is never taken away to make room for one of ours.
+# --no-remove: never removes an installed package to resolve a conflict.
 install_packages() {
   local missing
   mapfile -t missing < <(missing_packages "$@")
@@ -40,13 +40,14 @@ install_packages() {
   command -v apt-get >/dev/null || die "Strata is built on Debian 12, and there is no apt-get here. docker/README.md tells of containers."
   [ "$(id -u)" = 0 ] || command -v sudo >/dev/null || die "Packages are missing: ${missing[*]}. Run this as root, or install sudo."
   begin_step Packages
-  # Without this, Debian's PostgreSQL starts a cluster of its own that nobody asked for.
+  # Without this, Debian's PostgreSQL starts an unneeded cluster.
   if [[ " ${missing[*]}" == *" postgresql"* ]] && [ ! -e /etc/postgresql-common/createcluster.conf ]; then
     as_root mkdir -p /etc/postgresql-common
     echo 'create_main_cluster = false' | as_root tee /etc/postgresql-common/createcluster.conf >/dev/null
   fi
   update_package_lists
-  # Progress has a descriptor of its own: apt closes it for dpkg, whose scripts would be left without standard output.
+  # The progress uses a separate descriptor: apt closes it for dpkg, whose scripts would otherwise
+  # have no standard output.
   # shellcheck disable=SC2016  # the inner shell expands its parameters
   as_root env DEBIAN_FRONTEND=noninteractive sh -c 'exec apt-get "$@" 3>&1' apt-get -q -o Dpkg::Use-Pty=0 -o APT::Status-Fd=3 \
     install -y --no-install-recommends --no-remove "${missing[@]}" 2>&1 | show_apt_progress ||
@@ -54,21 +55,24 @@ install_packages() {
   end_step
 }
 
-# Of the packages that conflict with others, those that can be installed here. For the rest there is setup_conflicting.
+# Lists the conflicting packages that can be installed on this machine. setup_conflicting unpacks
+# the rest.
 installable_conflicting() {
   # Boost 1.81 conflicts with Debian's 1.74.
   [ -z "$(missing_packages libboost1.74-dev)" ] || echo libboost1.81-dev
-  # Raptor's headers bring libcurl's, which we use as well, of one flavour, which conflict with those of the others; any will do.
+  # Raptor's development package depends on one flavor of libcurl's, which conflicts with the
+  # others. Strata also uses libcurl; any flavor is suitable.
   if [ -n "$(missing_packages libcurl4-openssl-dev)" ] && [ -n "$(missing_packages libcurl4-nss-dev)" ]; then echo libraptor2-dev
   else echo libraptor2-0; fi
 }
 
-# Any Node from 18 on will do; Debian's is installed only where there is none.
+# Any Node from version 18 is suitable; Debian's is installed only if the machine has no Node.
 node_packages() {
   if ! command -v node >/dev/null || ! command -v npm >/dev/null; then printf '%s\n' nodejs npm; fi
 }
 
-# packages_to_build: all that the server and the page are built with here, one a line.
+# packages_to_build: prints the packages that building the server and the page needs here, one per
+# line.
 packages_to_build() {
   printf '%s\n' "${build_packages[@]}"
   installable_conflicting
@@ -83,7 +87,8 @@ run_packages=(libegl1 libopengl0 libegl-mesa0 libgl1-mesa-dri postgresql-15 font
 test_packages=(libgtest-dev libgmock-dev dpkg-dev chromium openssl libpcre2-8-0 poppler-utils clang-format-14 clang-tidy-16 black flake8 isort shellcheck xz-utils python3-pytest python3-pandas python3-openpyxl)
 fuzz_packages=(clang-14 libclang-rt-14-dev llvm-14)
 
-# A package that had better not be installed: its files are unpacked into build/deps instead. unpack_beside PACKAGE FILE-OF-IT WHY
+# unpack_beside PACKAGE FILE-OF-IT WHY: unpacks a package that should not be installed into
+# build/deps.
 unpack_beside() {
   local package=$1 file=$2 why=$3 deps=$PWD/build/deps
   [ ! -e "$deps/$file" ] || return 0
@@ -94,7 +99,7 @@ unpack_beside() {
     die "Could not download $package."
 }
 
-# Sets STRATA_CMAKE_ARGS to where the libraries are that are not the system's.
+# Sets STRATA_CMAKE_ARGS to the folders of the unpacked libraries.
 setup_conflicting() {
   STRATA_CMAKE_ARGS=()
   if [ -n "$(missing_packages libboost1.81-dev)" ]; then
@@ -107,7 +112,7 @@ setup_conflicting() {
   fi
 }
 
-# nginx is tested in front of the server. Installed, it would start and take port 80.
+# The tests run nginx in front of the server. An installed nginx would start and use port 80.
 setup_nginx() {
   PATH=$PATH:/usr/sbin command -v nginx >/dev/null || unpack_beside nginx usr/sbin/nginx "installed, it would start a server of its own"
 }
@@ -118,7 +123,8 @@ require_node() {
   [ "$major" -ge 18 ] || die "Node $major is too old: 18 or newer is needed."
 }
 
-# A stamp holds the sum of the files that something was made from: stamp_of FILES on standard input; is_current NAME STAMP.
+# A stamp holds the checksum of the source files of a result: stamp_of FILES on standard input;
+# is_current NAME STAMP.
 stamp_of() { xargs -d '\n' sha256sum | sha256sum; }
 is_current() { [ "$(cat "build/stamps/$1" 2>/dev/null)" = "$2" ]; }
 write_stamp() {
@@ -126,41 +132,58 @@ write_stamp() {
   echo "$2" >"build/stamps/$1"
 }
 
-web_modules_stamp() { printf '%s\n' web-client/package.json web-client/package-lock.json | stamp_of; }
+# The page is web-client; its guide is docs, built into web-client/dist/guide, where the server
+# finds it.
+modules_stamp() { printf '%s\n' "$1/package.json" "$1/package-lock.json" | stamp_of; }
+modules_are_current() { [ -d "$1/node_modules" ] && is_current "${1//\//-}-modules" "$(modules_stamp "$1")"; }
 web_client_stamp() {
   find web-client/src web-client/public web-client/*.html web-client/*.json web-client/*.ts \
     protocol/generated/openapi.json -type f 2>/dev/null | sort | stamp_of
 }
-web_client_is_current() {
-  [ -d web-client/node_modules ] && [ -f web-client/dist/index.html ] && is_current web-modules "$(web_modules_stamp)" &&
-    is_current web-client "$(web_client_stamp)"
+guide_stamp() {
+  find docs -path docs/node_modules -prune -o -path docs/.vitepress/cache -prune -o -path docs/.vitepress/dist -prune -o \
+    -type f -print | sort | stamp_of
 }
+page_is_current() {
+  modules_are_current web-client && [ -f web-client/dist/index.html ] && is_current web-client "$(web_client_stamp)"
+}
+guide_is_current() { modules_are_current docs && [ -f docs/.vitepress/dist/index.html ] && is_current docs "$(guide_stamp)"; }
+web_client_is_current() { page_is_current && guide_is_current && [ -f web-client/dist/guide/index.html ]; }
 
-setup_web_modules() {
-  local stamp
+# setup_modules FOLDER
+setup_modules() {
   require_node
-  stamp=$(web_modules_stamp)
-  if [ -d web-client/node_modules ] && is_current web-modules "$stamp"; then return 0; fi
-  in_step "installing its modules" npm --prefix web-client ci --no-audit --no-fund --loglevel=error || fail_step "npm ci failed in web-client."
-  write_stamp web-modules "$stamp"
+  modules_are_current "$1" && return 0
+  in_step "installing modules of $1" npm --prefix "$1" ci --no-audit --no-fund --loglevel=error || fail_step "npm ci failed in $1."
+  write_stamp "${1//\//-}-modules" "$(modules_stamp "$1")"
 }
 setup_web_client() {
   web_client_is_current && return 0
   begin_step Page
-  setup_web_modules
-  in_step "building" npm --prefix web-client run --silent build || fail_step "The page did not build."
-  write_stamp web-client "$(web_client_stamp)"
+  if ! page_is_current; then
+    setup_modules web-client
+    in_step "building" npm --prefix web-client run --silent build || fail_step "The page did not build."
+    write_stamp web-client "$(web_client_stamp)"
+  fi
+  if ! guide_is_current; then
+    setup_modules docs
+    in_step "building the guide" npm --prefix docs run --silent build || fail_step "The guide did not build."
+    write_stamp docs "$(guide_stamp)"
+  fi
+  rm -rf web-client/dist/guide
+  cp -r docs/.vitepress/dist web-client/dist/guide
   end_step
 }
 
-# Compilers at once: as many as there are cores, and fewer where memory is short, which a unit may take 1.2 GB of.
+# Number of compilers that run at once: one for each core, fewer if memory is short. A unit may take
+# 1.2 GB.
 build_jobs() {
   local cores memory
   cores=$(nproc) memory=$(awk '/^MemAvailable/ { print int($2 / 1200000) }' /proc/meminfo)
   if [ "$memory" -lt "$cores" ]; then echo $((memory > 1 ? memory : 1)); else echo "$cores"; fi
 }
 
-# needs_build PRESET [TARGET…]: is there anything to compile?
+# needs_build PRESET [TARGET…]: succeeds if there are units to compile.
 needs_build() {
   local preset=$1
   shift
@@ -170,7 +193,7 @@ needs_build() {
 
 # configure_and_build PRESET [TARGET…]
 configure_and_build() {
-  # A unit takes a core 1.6 seconds, by experience.
+  # A unit usually takes a core 1.6 seconds.
   local preset=$1 targets=() jobs=${STRATA_BUILD_JOBS:-$(build_jobs)} name=Server unit_ms=1600 weight
   shift
   needs_build "$preset" "$@" || return 0

@@ -1,13 +1,14 @@
-// Leaves `FILE.br` and `FILE.gz` beside each text of the build, for the server to send as they are.
+// Writes `FILE.br` and `FILE.gz` next to each text file of the build. The server sends them as they
+// are.
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { brotliCompressSync, constants, gzipSync } from "node:zlib";
 import type { Plugin } from "vite";
 
 const kTexts = /\.(js|css|html|svg|webmanifest|txt)$/;
-const kMinBytes = 1024; // below, a packet is a packet
+const kMinBytes = 1024; // a smaller file fits into one packet anyway
 
-function compress(folder: string): void {
+export function compress(folder: string): void {
   for (const entry of readdirSync(folder, { withFileTypes: true })) {
     const file = join(folder, entry.name);
     if (entry.isDirectory()) compress(file);

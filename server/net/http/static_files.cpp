@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The document that finds its way by the address; none where there is nothing to show.
+// Returns the document that reads the address in the browser; empty if there is nothing to show.
 std::string_view document_of(const Request& request) {
   if (request.path == "/") return "index.html";
   if (request.path == "/docs" || request.path == "/api/v1/docs") return "docs.html";
@@ -19,6 +19,14 @@ std::string_view document_of(const Request& request) {
   const bool is_app =
       first == "models" || first == "projects" || first == "join" || first == "kiosk";
   return is_app ? "index.html" : "";
+}
+
+// The address of a page of the guide is that of its file, without the extension.
+fs::path guide_page(const fs::path& address) {
+  fs::path page = address;
+  page += ".html";
+  std::error_code error;
+  return fs::is_regular_file(page, error) ? page : address / "index.html";
 }
 
 bool is_safe(const std::string& segment) {
@@ -31,7 +39,7 @@ bool is_inside(const fs::path& file, const fs::path& folder) {
   return end_of_folder == folder.end() && at != file.end();
 }
 
-// Size and time of change name a version well enough: the files are replaced as a whole by a build.
+// Size and modification time identify a version, since a build replaces whole files.
 std::string etag_of(const fs::path& file) {
   std::error_code error;
   const auto size = fs::file_size(file, error);
@@ -76,7 +84,7 @@ StaticFiles::StaticFiles(fs::path folder) {
 
 Response StaticFiles::serve(const Request& request) const {
   const Error missing{
-      ErrorCode::not_found, "Not found", "There is nothing at " + request.path + ".", {}};
+      ErrorCode::not_found, "Not found", "The server has nothing at " + request.path + ".", {}};
   fs::path file = folder_;
   for (const auto& segment : request.segments) {
     if (segment.empty()) continue;
@@ -84,7 +92,14 @@ Response StaticFiles::serve(const Request& request) const {
     file /= segment;
   }
   std::error_code error;
-  if (file == folder_ || !fs::is_regular_file(file, error)) {
+  const bool is_guide = !request.segments.empty() && request.segments.front() == "guide";
+  bool is_missing_page = false;
+  if (is_guide && !fs::is_regular_file(file, error)) {
+    file = guide_page(file);
+    is_missing_page = !fs::is_regular_file(file, error);
+    if (is_missing_page) file = folder_ / "guide" / "404.html";
+    if (!fs::is_regular_file(file, error)) return problem_response(missing);
+  } else if (file == folder_ || !fs::is_regular_file(file, error)) {
     const std::string_view document = document_of(request);
     if (document.empty()) return problem_response(missing);
     file = folder_ / document;
@@ -92,21 +107,23 @@ Response StaticFiles::serve(const Request& request) const {
       return problem_response(
           {ErrorCode::unavailable,
            "Page not built",
-           "The web page is not part of this installation; the API works. Build web-client and start again.",
+           "This installation does not contain the web page; only the API works. Build "
+           "web-client and start the server again.",
            {}});
   }
   file = fs::canonical(file, error);
   if (error || !is_inside(file, folder_)) return problem_response(missing);
 
-  // The build leaves files beside those that are worth it: `main-….js.br`, `main-….js.gz`.
+  // The build writes compressed copies where they save bytes: `main-….js.br`, `main-….js.gz`.
   fs::path sent = file;
   const auto coding = accepted_coding(request.header("accept-encoding"));
   const bool has_codings = fs::is_regular_file(coded(file, Coding::gzip), error);
   if (coding && fs::is_regular_file(coded(file, *coding), error)) sent = coded(file, *coding);
   std::string etag = etag_of(file);
-  const bool unchanging = request.segments.size() > 1 && request.segments.front() == "assets";
+  const bool unchanging = request.segments.size() > 1 && !is_missing_page &&
+                          request.segments[is_guide ? 1 : 0] == "assets";
   Response response;
-  if (names_tag(request.header("if-none-match"), etag)) {
+  if (!is_missing_page && names_tag(request.header("if-none-match"), etag)) {
     response = empty_response(304);
   } else {
     response.with("Content-Type", std::string(media_type(file)));
@@ -117,6 +134,7 @@ Response StaticFiles::serve(const Request& request) const {
     }
   }
   if (has_codings) response.with("Vary", "Accept-Encoding");
+  if (is_missing_page) response.status = 404;
   response.with("ETag", etag);
   response.with("Cache-Control", unchanging ? "public, max-age=31536000, immutable" : "no-cache");
   return response;

@@ -9,11 +9,11 @@ namespace strata::net {
 
 std::string_view media_type(const std::filesystem::path& file);
 
-// The page's files. Only files inside the folder are served, links included; `/`, `/models/…`,
-// `/projects/…` and `/kiosk/…` are the page itself, which finds its way by the address; `/docs` and
-// `/api/v1/docs` are the page of the contract. Files under /assets/ carry a hash in their name and
-// never change. Where the build has left `FILE.br` and `FILE.gz`, a client that takes them gets
-// these.
+// Serves the files of the web client. Serves only files inside the folder, after following links.
+// `/`, `/models/…`, `/projects/…` and `/kiosk/…` are the page itself, which reads the address;
+// `/docs` and `/api/v1/docs` are the page of the contract; `/guide/PAGE` is a page of the guide,
+// without the extension of its file. Files under /assets/ and /guide/assets/ have a hash in their
+// name and never change. A client that accepts it gets `FILE.br` or `FILE.gz` if the build made it.
 class StaticFiles {
  public:
   explicit StaticFiles(std::filesystem::path folder);

@@ -210,7 +210,7 @@ TEST(Origin, an_upgrade_by_cookie_needs_an_origin_and_by_token_does_not) {
   EXPECT_TRUE(check_upgrade_origin(from("http://strata.local:8080", true), {}));
 }
 
-// --- what a client takes
+// --- types that a client accepts
 
 TEST(Accept, takes_a_type_by_its_closest_range) {
   EXPECT_TRUE(accepts_type("", "application/json"));
@@ -338,6 +338,47 @@ TEST(StaticFiles, the_contract_has_a_page_of_its_own) {
   const StaticFiles files(folder.path());
   for (const char* target : {"/docs", "/api/v1/docs"})
     EXPECT_EQ(text_of(files.serve(parsed(target)).file), "<p>contract</p>") << target;
+}
+
+TEST(StaticFiles, pages_of_the_guide_have_addresses_without_an_ending) {
+  const Folder folder;
+  folder.write("index.html", "<p>page</p>");
+  folder.write("guide/index.html", "<p>guide</p>");
+  folder.write("guide/how-to/index.html", "<p>how to</p>");
+  folder.write("guide/how-to/measure.html", "<p>measure</p>");
+  folder.write("guide/assets/app.1a2b.js", "run()");
+  folder.write("guide/404.html", "<p>missing</p>");
+  const StaticFiles files(folder.path());
+  const std::vector<std::pair<const char*, const char*>> pages = {
+      {"/guide", "<p>guide</p>"},
+      {"/guide/", "<p>guide</p>"},
+      {"/guide/how-to/", "<p>how to</p>"},
+      {"/guide/how-to/measure", "<p>measure</p>"},
+      {"/guide/how-to/measure.html", "<p>measure</p>"}};
+  for (const auto& [target, text] : pages) {
+    const Response response = files.serve(parsed(target));
+    EXPECT_EQ(response.status, 200) << target;
+    EXPECT_EQ(text_of(response.file), text) << target;
+    EXPECT_EQ(response.header("Cache-Control"), "no-cache") << target;
+  }
+  EXPECT_NE(
+      files.serve(parsed("/guide/assets/app.1a2b.js")).header("Cache-Control").find("immutable"),
+      std::string_view::npos);
+
+  const Response missing = files.serve(parsed("/guide/assets/nothing.js"));
+  EXPECT_EQ(missing.status, 404);
+  EXPECT_EQ(text_of(missing.file), "<p>missing</p>");
+  EXPECT_EQ(missing.header("Cache-Control"), "no-cache");
+  Request again = parsed("/guide/nothing");
+  again.headers = {{"if-none-match", std::string(missing.header("ETag"))}};
+  EXPECT_EQ(files.serve(again).status, 404);
+  EXPECT_EQ(files.serve(parsed("/guide/%2e%2e/index.html")).status, 404);
+}
+
+TEST(StaticFiles, a_page_without_a_guide_has_none_at_its_address) {
+  const Folder folder;
+  folder.write("index.html", "<p>page</p>");
+  EXPECT_EQ(StaticFiles(folder.path()).serve(parsed("/guide")).status, 404);
 }
 
 TEST(StaticFiles, nothing_outside_the_folder_is_served) {

@@ -1,0 +1,92 @@
+// The guide: the Markdown files of this folder as a site, which the server shows at /guide.
+import { fileURLToPath } from "node:url";
+import { transformerStyleToClass } from "@shikijs/transformers";
+import { defineConfig } from "vitepress";
+import { thirdPartyNotices } from "../../web-client/notices";
+import { titled } from "./titles";
+import { withoutInline } from "./without-inline";
+import { linksWithinTheGuide } from "./links";
+
+const file = (path: string): string => fileURLToPath(new URL(path, import.meta.url));
+const classes = transformerStyleToClass({ classPrefix: "code-" });
+
+// The order of the side bar. A page that is missing here, or there, fails the build.
+const howTo = {
+  "Work on the surface": ["use-the-page", "paint-a-layer", "measure", "import-maps"],
+  "Keep records": ["keep-records", "use-lists-of-terms", "attach-files"],
+  "Work with others": [
+    "work-together",
+    "comment",
+    "review-edits",
+    "follow-activity",
+    "use-the-trash",
+  ],
+  "Show results": ["save-views", "print-figures", "make-tours", "run-a-kiosk"],
+  Scripts: ["write-scripts", "query-with-sql"],
+  Administration: [
+    "install",
+    "operate-a-site",
+    "back-up-and-restore",
+    "manage-people",
+    "limit-visibility",
+  ],
+};
+const reference = [
+  "glossary",
+  "keyboard",
+  "conditions",
+  "queries",
+  "computed-layers",
+  "tables",
+  "formats",
+  "settings",
+  "http",
+  "errors",
+  "security",
+];
+const explanation = ["texels", "areas", "history", "review", "layers-and-records"];
+
+export default defineConfig({
+  lang: "en",
+  title: "Strata",
+  description: "GIS layers on the surface of 3D heritage models",
+  base: "/guide/",
+  head: [["link", { rel: "icon", href: "/favicon.svg", type: "image/svg+xml" }]],
+  cleanUrls: true,
+  srcExclude: ["developer/**"],
+  metaChunk: true,
+  markdown: {
+    codeTransformers: [classes],
+    config: linksWithinTheGuide,
+  },
+  vite: {
+    plugins: [thirdPartyNotices()],
+    resolve: {
+      alias: [
+        { find: /^.*\/VPAlgoliaSearchBox\.vue$/, replacement: file("theme/nothing.ts") },
+        { find: "@docsearch/css", replacement: file("theme/search-button.css") },
+      ],
+    },
+  },
+  buildEnd: withoutInline(() => classes.getCSS()),
+  themeConfig: {
+    nav: [
+      { text: "Get started", link: "/get-started" },
+      { text: "How to", link: "/how-to/", activeMatch: "/how-to/" },
+      { text: "Reference", link: "/reference/", activeMatch: "/reference/" },
+      { text: "Explanation", link: "/explanation/", activeMatch: "/explanation/" },
+    ],
+    sidebar: [
+      { text: "Get started", link: "/get-started" },
+      ...Object.entries(howTo).map(([text, pages]) => ({
+        text,
+        items: titled("how-to", pages),
+      })),
+      { text: "Reference", collapsed: false, items: titled("reference", reference) },
+      { text: "Explanation", collapsed: false, items: titled("explanation", explanation) },
+    ],
+    outline: [2, 3],
+    search: { provider: "local" },
+    docFooter: { prev: "Previous", next: "Next" },
+  },
+});
