@@ -5,7 +5,7 @@ import { defineConfig } from "vitepress";
 import { thirdPartyNotices } from "../../web-client/notices";
 import { titled } from "./titles";
 import { withoutInline } from "./without-inline";
-import { linksWithinTheGuide } from "./links";
+import { alignedByClass, linksWithinTheGuide } from "./markdown";
 
 const file = (path: string): string => fileURLToPath(new URL(path, import.meta.url));
 const classes = transformerStyleToClass({ classPrefix: "code-" });
@@ -53,11 +53,16 @@ export default defineConfig({
   base: "/guide/",
   head: [["link", { rel: "icon", href: "/favicon.svg", type: "image/svg+xml" }]],
   cleanUrls: true,
+  // A style element that would stop transitions while the theme changes is not allowed.
+  appearance: { disableTransition: false },
   srcExclude: ["developer/**"],
   metaChunk: true,
   markdown: {
     codeTransformers: [classes],
-    config: linksWithinTheGuide,
+    config: (md) => {
+      linksWithinTheGuide(md);
+      alignedByClass(md);
+    },
   },
   vite: {
     plugins: [thirdPartyNotices()],
@@ -82,8 +87,8 @@ export default defineConfig({
         text,
         items: titled("how-to", pages),
       })),
-      { text: "Reference", collapsed: false, items: titled("reference", reference) },
-      { text: "Explanation", collapsed: false, items: titled("explanation", explanation) },
+      { text: "Reference", items: titled("reference", reference) },
+      { text: "Explanation", items: titled("explanation", explanation) },
     ],
     outline: [2, 3],
     search: { provider: "local" },

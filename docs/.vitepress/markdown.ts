@@ -9,6 +9,18 @@ function isOutside(page: string, target: string): boolean {
   return path.startsWith("..") || path.startsWith("developer/");
 }
 
+/** Cells of a table say by a class, and not by a style, on which side they are aligned. */
+export function alignedByClass(md: MarkdownRenderer): void {
+  md.core.ruler.push("aligned-by-class", (state) => {
+    for (const token of state.tokens) {
+      const side = /^text-align:(\w+)$/.exec(token.attrGet("style") ?? "")?.[1];
+      if (!side) continue;
+      token.attrs = (token.attrs ?? []).filter(([name]) => name !== "style");
+      token.attrJoin("class", `align-${side}`);
+    }
+  });
+}
+
 export function linksWithinTheGuide(md: MarkdownRenderer): void {
   md.core.ruler.push("links-within-the-guide", (state) => {
     const page = (state.env as { relativePath?: string }).relativePath ?? "";
