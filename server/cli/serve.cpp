@@ -37,6 +37,7 @@ struct ServeOptions {
   std::uint64_t gpu_memory = 0, memory = 0;
   int trash_days = net::ServerOptions{}.trash_days;
   net::Timeouts timeouts;
+  int samples_at_rest = 16;
   bool debug = false;
 };
 
@@ -53,7 +54,7 @@ Result<Address> parse_address(const std::string& text, const std::string& option
   const auto colon = text.rfind(':');
   if (colon == std::string::npos)
     return fail(ErrorCode::malformed, "Listen address",
-                "Give HOST:PORT, for example 127.0.0.1:8080.", option);
+                "Enter HOST:PORT, for example 127.0.0.1:8080.", option);
   Address address{text.substr(0, colon), 0};
   if (address.host.size() > 2 && address.host.front() == '[')
     address.host = address.host.substr(1, address.host.size() - 2);
@@ -69,7 +70,7 @@ Result<Address> parse_address(const std::string& text, const std::string& option
 
 Result<Address> parse_listen(const std::string& text) { return parse_address(text, "--listen"); }
 
-// A server that others can reach is protected by its accounts alone.
+// Only accounts protect a server that others can reach.
 Result<void> check_reach(store::Store& store, const Address& address, bool has_tls) {
   if (is_loopback(address.host)) return {};
   const auto has_account = STRATA_TRY(store.accounts().administrator_has_password());
@@ -83,8 +84,8 @@ Result<void> check_reach(store::Store& store, const Address& address, bool has_t
   return fail(
       ErrorCode::forbidden, "No account",
       "Others can reach " + address.host +
-          ", and nobody has an account with a password who could let them in. Make one: strata user add NAME --role "
-          "administrator --password-stdin. Or listen on 127.0.0.1.",
+          ", but no administrator has a password. Create an account: strata user add NAME --role administrator "
+          "--password-stdin. Or listen on 127.0.0.1.",
       "--listen");
 }
 
@@ -92,7 +93,7 @@ Result<store::Cluster::SqlListen> parse_sql_listen(const std::string& text) {
   auto address = STRATA_TRY(parse_address(text, "--sql-listen"));
   if (address.port == 0)
     return fail(ErrorCode::malformed, "Listen address",
-                "The database needs a port of its own: give one from 1 to 65535.", "--sql-listen");
+                "The database needs its own port: enter a number from 1 to 65535.", "--sql-listen");
   if (!is_loopback(address.host))
     return fail(
         ErrorCode::forbidden, "Listen address not allowed",
@@ -102,7 +103,7 @@ Result<store::Cluster::SqlListen> parse_sql_listen(const std::string& text) {
   return store::Cluster::SqlListen{address.host, address.port};
 }
 
-// For CLI11: what cannot be an address is wrong usage.
+// For CLI11: text that is not an address is wrong usage.
 template <class Parse>
 std::string usage_of(Parse parse, const std::string& text) {
   const auto address = parse(text);
@@ -115,8 +116,8 @@ std::string owner_token() {
   return token ? token : "";
 }
 
-// Signals are taken by `wait_for_end`, not by handlers: blocked before any thread starts, they are
-// inherited blocked.
+// `wait_for_end` receives the signals instead of handlers: all threads inherit the mask that is set
+// before they start.
 sigset_t block_signals() {
   sigset_t ending;
   sigemptyset(&ending);
@@ -134,7 +135,7 @@ void wait_for_end(const sigset_t& ending) {
   }
 }
 
-// A connection takes one, and the usual limit is half of what the server holds.
+// Each connection needs a descriptor, and the default limit is half of the server's maximum.
 void raise_descriptor_limit() {
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
@@ -165,7 +166,7 @@ int run(ServeOptions options) {
     if (!options.data.database.empty())
       return report(
           {ErrorCode::malformed, "Not a private database",
-           "With --database, let analysts into that PostgreSQL itself: docs/how-to/query-with-sql.md has the statements.",
+           "With --database, give analysts access to that PostgreSQL itself. docs/how-to/query-with-sql.md lists the statements.",
            "--sql-listen"});
     options.data.sql = std::move(*sql);
   }
@@ -193,7 +194,8 @@ int run(ServeOptions options) {
   stream::JpegPool encoder(std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1));
   room::RoomOptions room_options;
   room_options.memory_bytes = options.memory;
-  room::Rooms rooms(store, **renderer, {renderer->get(), &encoder}, room_options);
+  room::Rooms rooms(store, **renderer, {renderer->get(), &encoder, options.samples_at_rest},
+                    room_options);
   jobs::JobQueue jobs(&store.jobs());
 
   net::ServerOptions server_options;
@@ -222,7 +224,7 @@ int run(ServeOptions options) {
     std::cout << "SQL on " << options.data.sql->host << ":" << options.data.sql->port
               << ": database strata, user strata_reader, password in "
               << (options.data.data / "sql-password").string() << std::endl;
-  // Who has a password needs no link, which would stand in logs.
+  // An owner with a password needs no link, which would be in logs.
   if (owner->has_password) {
     std::cout << "sign in at: " << url << "/" << std::endl;
   } else {
@@ -246,21 +248,26 @@ Command add_serve(CLI::App& app) {
   auto* command = app.add_subcommand("serve", "Run the server");
   auto options = std::make_shared<ServeOptions>();
   add_data_options(*command, options->data);
-  command->add_option("--listen", options->listen, "HOST:PORT; port 0 takes a free one")
+  command
+      ->add_option("--listen", options->listen,
+                   "Address of the server, HOST:PORT; port 0 takes a free port")
       ->envname("STRATA_LISTEN")
       ->check([](const std::string& text) { return usage_of(parse_listen, text); })
       ->capture_default_str();
   command
       ->add_option("--sql-listen", options->sql_listen,
-                   "HOST:PORT where analysts read with SQL (docs/how-to/query-with-sql.md)")
+                   "Address for reading with SQL, HOST:PORT (docs/how-to/query-with-sql.md)")
       ->envname("STRATA_SQL_LISTEN")
       ->check([](const std::string& text) { return usage_of(parse_sql_listen, text); });
-  command->add_option("--origin", options->origins, "Further web origins that may connect (repeat)")
+  command
+      ->add_option("--origin", options->origins,
+                   "Allow connections from this web origin (repeat for several)")
       ->envname("STRATA_ORIGIN");
   auto* tls_cert =
       command
-          ->add_option("--tls-cert", options->tls_cert,
-                       "Speak https with this certificate chain (PEM; docs/how-to/operate-a-site.md)")
+          ->add_option(
+              "--tls-cert", options->tls_cert,
+              "Serve https with this certificate chain (PEM; docs/how-to/operate-a-site.md)")
           ->envname("STRATA_TLS_CERT");
   auto* tls_key = command
                       ->add_option("--tls-key", options->tls_key,
@@ -269,32 +276,40 @@ Command add_serve(CLI::App& app) {
   tls_cert->needs(tls_key);
   tls_key->needs(tls_cert);
   command
-      ->add_option("--gpu-memory", options->gpu_memory,
-                   "Budget of GPU memory, e.g. 4GiB (default: what the driver has)")
+      ->add_option(
+          "--gpu-memory", options->gpu_memory,
+          "Limit of GPU memory, for example 4GiB (default: 70 % of the GPU's memory, or 4GiB)")
       ->envname("STRATA_GPU_MEMORY")
       ->transform(CLI::AsSizeValue(false));
   command
       ->add_option(
           "--memory", options->memory,
-          "Budget of main memory for open models, e.g. 8GiB (default: 60 % of the machine's)")
+          "Limit of main memory for open models, for example 8GiB (default: 60 % of the machine's memory)")
       ->envname("STRATA_MEMORY")
       ->transform(CLI::AsSizeValue(false));
   command
       ->add_option(
           "--bin-days", options->trash_days,
-          "Days for which deleted layers and models can be restored; 0: they are erased at once")
+          "Days for which deleted layers and models stay in the trash; 0 erases them at once")
       ->envname("STRATA_BIN_DAYS")
       ->check(CLI::Range(0, kMaxTrashDays))
       ->capture_default_str();
   add_timeout(*command, "head-timeout", options->timeouts.head,
-              "Seconds from connecting to the end of the first request head");
+              "Seconds for the first request head, from the connection on");
   add_timeout(*command, "idle-timeout", options->timeouts.idle,
-              "Seconds for the next request head, and for the answer to a ping");
+              "Seconds for the next request head and for the reply to a ping");
   add_timeout(*command, "stall-timeout", options->timeouts.stall,
-              "Seconds for a body, or an answer, that does not move");
+              "Seconds without progress in a body or an answer");
   add_timeout(*command, "recheck-every", options->timeouts.recheck,
               "Seconds between checks whether a connected user is still signed in");
-  command->add_flag("--gl-debug", options->debug, "Ask the driver for debug messages (slow)");
+  command
+      ->add_option("--samples-at-rest", options->samples_at_rest,
+                   "Samples for each pixel of a picture that nothing changes; 1 refines no picture")
+      ->envname("STRATA_SAMPLES_AT_REST")
+      ->check(CLI::Range(1, render::kMaxSamples))
+      ->capture_default_str();
+  command->add_flag("--gl-debug", options->debug,
+                    "Log debug messages of the graphics driver (slow)");
   return [options] { return run(*options); };
 }
 

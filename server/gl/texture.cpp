@@ -12,6 +12,7 @@ std::size_t bytes_per_texel(GLenum format) {
     case GL_R8UI:
     case GL_R8: return 1;
     case GL_R16UI: return 2;
+    case GL_RGBA16:
     case GL_RG32UI: return 8;
     case GL_RGBA32F: return 16;
     default: return 4;  // R32UI, R32F, RGBA8, DEPTH_COMPONENT32F

@@ -12,6 +12,7 @@
 #include "render/thread/gpu_scene.h"
 #include "render/thread/gpu_thread.h"
 #include "render/thread/paint_job.h"
+#include "render/thread/refinements.h"
 #include "render/thread/upload_jobs.h"
 
 namespace strata::render {
@@ -27,13 +28,14 @@ struct Renderer::Impl {
   gl::DebugMessages messages;
   GpuThread thread;
   FrameQueue frames;
+  Refinements refinements;
   GpuMemory memory;
   std::unique_ptr<GpuScene> scene;                       // GPU thread
   std::uint64_t generation = 0;                          // GPU thread
   std::vector<std::weak_ptr<const FrameJob>> under_way;  // GPU thread
   std::atomic<bool> lose_context{false};
 
-  // held during the call, so that whoever takes the callback away waits for it
+  // held during the call, so that the removal of the callback waits for it
   std::mutex lost_callback_mutex;
   std::function<void()> lost_callback;
 
@@ -57,13 +59,14 @@ struct Renderer::Impl {
       layer_bytes.clear();
     }
     STRATA_TRY(make_scene());
-    log::warning("The GPU context was lost and made anew; models are uploaded again.");
+    log::warning(
+        "The GPU context was lost and created again; the server uploads the models again.");
     std::lock_guard lock(lost_callback_mutex);
     if (lost_callback) lost_callback();
     return {};
   }
 
-  // A rectangle whose turn is before that of every frame under way.
+  // A rectangle that precedes all frames in progress.
   std::optional<Job> next_part() {
     std::erase_if(under_way, [](const auto& frame) { return frame.expired(); });
     std::vector<FrameTask::Turn> turns;
@@ -84,7 +87,28 @@ struct Renderer::Impl {
                [frame](const Error& problem) { frame->abort(problem); }};
   }
 
-  // Posts a job object with `step(GpuScene&)` and `abort`; answers it when the queue is full.
+  void refine(FrameRequest request, Done<SharedFrame> done) {
+    const auto task = refinements.push(std::move(request), std::move(done));
+    if (!task) return;
+    const auto answer = [this, task](const Result<SharedFrame>& frame) {
+      refinements.answer(*task, frame);
+    };
+    auto frame =
+        std::make_shared<FrameJob>(FrameTask{task->request, {{task->request.view, answer}}, {}});
+    Job job{[this, task, frame] {
+              return refinements.continues(*task) ? frame->step(*scene) : Step::done;
+            },
+            [frame](const Error& problem) { frame->abort(problem); }};
+    if (thread.post(Lane::idle, std::move(job))) return;
+    thread.post_reply([frame] {
+      frame->abort({ErrorCode::busy,
+                    "GPU queue full",
+                    "Too many pictures wait for their refinement. Try again in a moment.",
+                    {}});
+    });
+  }
+
+  // Posts a job object with `step(GpuScene&)` and `abort`; answers it if the queue is full.
   template <class JobType>
   void post(Lane lane, std::shared_ptr<JobType> job) {
     Job posted{[this, job] { return job->step(*scene); },
@@ -93,12 +117,12 @@ struct Renderer::Impl {
     thread.post_reply([job] {
       job->abort({ErrorCode::busy,
                   "GPU queue full",
-                  "More work waits for the GPU than its queue holds. Try again in a moment.",
+                  "The queue of the GPU is full. Try again in a moment.",
                   {}});
     });
   }
 
-  // A one-step job that makes a T.
+  // A one-step job that returns a T.
   template <class T>
   void post_simple(Done<T> done, std::function<Result<T>(GpuScene&)> work) {
     struct Simple {
@@ -127,8 +151,8 @@ struct Renderer::Impl {
                              });
   }
 
-  // Removals are never refused: a full queue must not keep memory. A lost context has removed all
-  // by itself.
+  // Removals are never refused: a full queue must not prevent freeing memory. After a lost context
+  // there is nothing to remove.
   void post_removal(std::function<void(GpuScene&)> work) {
     Job job{[this, work = std::move(work)] {
               work(*scene);
@@ -247,21 +271,21 @@ void Renderer::add_view(ModelHandle model, Done<ViewHandle> done) {
 
 void Renderer::remove_view(ViewHandle view) {
   impl_->frames.forget(view);
+  impl_->refinements.forget(view);
   impl_->post_removal([view](GpuScene& scene) { scene.remove_view(view); });
 }
 
 void Renderer::draw(FrameRequest request, Done<SharedFrame> done) {
+  if (request.samples > 1) return impl_->refine(std::move(request), std::move(done));
+  impl_->refinements.overtake(request.view);
   auto pushed = impl_->frames.push(std::move(request), std::move(done));
   if (pushed.displaced) {
-    const Error problem = pushed.accepted
-                              ? Error{ErrorCode::superseded,
-                                      "Superseded",
-                                      "A newer request of the same view took its place.",
-                                      {}}
-                              : Error{ErrorCode::busy,
-                                      "GPU queue full",
-                                      "Too many views wait for a frame. Try again in a moment.",
-                                      {}};
+    const Error problem =
+        pushed.accepted ? superseded_error()
+                        : Error{ErrorCode::busy,
+                                "GPU queue full",
+                                "Too many views are waiting for a frame. Try again in a moment.",
+                                {}};
     impl_->thread.post_reply([displaced = std::move(*pushed.displaced), problem] {
       displaced(tl::unexpected(problem));
     });

@@ -23,15 +23,15 @@
 
 namespace strata::render {
 
-// Handles stay valid until removed or until the context is lost; 0 is none. A handle of another
+// Handles are valid until removed or until the context is lost; 0 is no handle. A handle of another
 // generation is refused.
 using ModelHandle = std::uint64_t;
 using LayerHandle = std::uint64_t;
 using ViewHandle = std::uint64_t;
 using SurfaceImageHandle = std::uint64_t;
 
-// Where strokes are painted: a compute pass, or a kernel on the CPU, which is several times faster
-// where the GPU is a CPU.
+// Where strokes are painted: by a compute pass, or by a kernel on the CPU, which is several times
+// faster if the GPU is a CPU.
 enum class EditPath { automatic, compute, kernel };
 
 struct RendererOptions {
@@ -45,11 +45,11 @@ struct RendererOptions {
 struct GpuInfo {
   std::string vendor, renderer, version;
   bool software = false;
-  EditPath edit_path = EditPath::compute;  // what was chosen
+  EditPath edit_path = EditPath::compute;  // the chosen path
   int max_texture_size = 0, max_array_layers = 0, max_texture_units = 0, max_image_units = 0;
 };
 
-// What one stroke batch did. Tiles whose written mask is empty are not in it.
+// The result of one stroke batch. Tiles whose written mask is empty are left out.
 struct WrittenTile {
   TileAddress address;
   TileMask written;  // surface and gutter texels the tool wrote, whether or not the value changed
@@ -59,11 +59,11 @@ struct StrokeOutcome {
   std::vector<WrittenTile> tiles;
   // model-space box of the written blocks; for changed screen rectangles
   glm::vec3 written_min{0}, written_max{0};
-  // from choosing the blocks until the texels are written; with EditPath::compute until that is
-  // known
+  // from the selection of the blocks until the texels are written; with EditPath::compute until the
+  // result is read back
   double edit_ms = 0;
-  // of it, EditPath::compute: both passes, by timer queries; kernel: tiles read, changed and
-  // uploaded
+  // share of this, EditPath::compute: both passes, by timer queries; kernel: reading, changing and
+  // uploading tiles
   double gpu_ms = 0;
   std::size_t bytes_up = 0, bytes_down = 0;  // between CPU and GPU
 };
@@ -76,26 +76,26 @@ struct TileUpload {
 
 struct LayerStyle {  // one layer in a view, bottom to top
   LayerHandle layer = 0;
-  std::shared_ptr<const Palette> palette;  // told apart by the object: nothing of it may change
+  std::shared_ptr<const Palette> palette;  // identified by its address: it must not change
   float opacity = 1;
-  // its hatch and dots have neither tint nor border: a sign over another layer, which is no class
-  // of its own
+  // its hatch and dots have neither tint nor border: a mark over another layer, not a class
   bool bare = false;
   bool operator==(const LayerStyle&) const = default;
 };
 
 struct SurfaceImageStyle {
-  // one picture of the surface in a view, bottom to top, over the colours of the vertices
+  // one picture of the surface in a view, bottom to top, over the colors of the vertices
   SurfaceImageHandle image = 0;
   float opacity = 1;
   bool operator==(const SurfaceImageStyle&) const = default;
 };
 constexpr std::size_t kMaxSurfaceImagesShown = 4;
 
-// Told apart by the object: nothing of it may change. Null: none.
+// Identified by its address: it must not change. Null: no features.
 using FeaturesShown = std::shared_ptr<const std::vector<DrawnFeature>>;
 
-struct ViewStyle {  // what a view shows of its model
+// the content of a view of its model
+struct ViewStyle {
   std::vector<LayerStyle> layers;
   std::vector<SurfaceImageStyle> images;  // kMaxSurfaceImagesShown at most
   FeaturesShown features;                 // over the layers, the last ones on top
@@ -110,40 +110,49 @@ struct PixelRect {
   bool operator==(const PixelRect&) const = default;
 };
 
+constexpr int kMaxSamples = 64;
+
 struct FrameRequest {
   ViewHandle view = 0;
-  // Of the view. Given: views of this model that ask for the same picture are served with one,
-  // which any of them may draw.
+  // Model of the view. If set: views of this model that request the same picture share one, which
+  // any of them may draw.
   ModelHandle model = 0;
   Camera camera;
-  // a coarser copy of the model may be shown, so that the picture comes in time
+  // a coarser copy of the model may be shown, so that the picture is fast enough
   bool moving = false;
-  // a band of a large picture: others' smaller pictures go before it, also when it is half done
+  // a band of a large picture: smaller pictures of others precede it, even between its steps
   bool large = false;
-  bool acting = false;  // for someone who is doing something, so that onlookers do not hold it up
+  bool acting = false;        // the person is acting: viewers do not delay the frame
   int width = 0, height = 0;  // pixels of the picture (the camera's window scaled to this size)
+  // Of each pixel, 1 to kMaxSamples. More than one: a refinement, which is the mean of that many
+  // pictures whose cameras differ by parts of a pixel. It is drawn while the GPU thread has nothing
+  // else to do, ends as `superseded` when its view requests something else, and leaves the view's
+  // own picture as it is. On a CPU it takes at most about two seconds, with fewer samples if
+  // necessary, or is refused as `too_large`. `changed` is ignored.
+  int samples = 1;
   ViewStyle style;
   // Empty: everything is shaded. Otherwise only these model-space boxes changed since this view's
-  // last frame: the rectangles they cover are shaded and returned. A changed camera, size or style
-  // shades everything anyway.
+  // last frame: only the rectangles that they cover are shaded and returned. A changed camera, size
+  // or style always shades everything.
   struct Box {
     glm::vec3 min, max;
     bool operator==(const Box&) const = default;
   };
   std::optional<std::vector<Box>> changed;
-  // The part of the background's height that the picture has, from the top: 0 … 1 but for a band.
+  // The part of the background's height that the picture covers, from the top: 0 … 1 except for a
+  // band.
   glm::vec2 background_rows{0, 1};
   bool align_to_16 = true;  // grow the rectangles to multiples of 16 for JPEG parts
 };
 struct Frame {
-  // what `pixels` covers: all of it, or what changed; none: nothing did
+  // the area of `pixels`: the whole picture or the changed parts; empty: no change
   std::vector<PixelRect> rects;
   int width = 0, height = 0;         // of the whole picture
   std::vector<std::uint8_t> pixels;  // RGBA8 of one rectangle after the other, top row first
   double render_ms = 0;
-  int level = 0;  // of the model that is shown: 0 is the full mesh, 1 the finest coarser copy
+  int level = 0;  // of the drawn model: 0 is the full mesh, 1 the finest coarser copy
 };
-using SharedFrame = std::shared_ptr<const Frame>;  // one for all who asked for the same picture
+using SharedFrame = std::shared_ptr<const Frame>;  // shared by all requests of the same picture
 
 // A mesh and its coarser copies, finest first (mesh::make_detail_levels).
 struct ModelGeometry {
@@ -151,24 +160,24 @@ struct ModelGeometry {
   std::vector<std::shared_ptr<const mesh::Geometry>> coarser;
 };
 
-// Owns the GPU: one thread with the EGL context and a bounded queue (invariant 1 of
-// ARCHITECTURE.md). All functions are thread-safe and return at once; callbacks run on the GPU
-// thread and must be quick. Order: edits and layer changes in the order given, before frames,
-// before background work (uploads of models and surface maps, in slices). A full queue or a stopped
-// renderer answers with an Error unavailable; a lost context answers pending work with an Error
-// unavailable titled "GPU lost". (Only a stopped renderer calls back on the caller's thread: there
-// is no other left.)
+// Owns the GPU: one thread with the EGL context and a bounded queue
+// (docs/developer/architecture/overview.md, "The GPU thread"). All functions are thread-safe and
+// return at once; callbacks run on the GPU thread and must be short. Order: edits and layer changes
+// in the given order, then frames, then background work (uploads of models and surface maps, in
+// slices). If the queue is full or the renderer is stopped, the answer is an Error unavailable;
+// after a lost context pending work is answered with an Error unavailable titled "GPU lost". (Only
+// a stopped renderer calls back on the caller's thread, because no other thread is left.)
 class Renderer {
  public:
-  // Starts the thread and waits for the context. The error says what was tried and how to mend it.
+  // Starts the thread and waits for the context. The error lists what was tried and how to fix it.
   static Result<std::unique_ptr<Renderer>> start(RendererOptions options);
   ~Renderer();  // asks to stop and joins
 
   GpuInfo info() const;
-  // false while a lost context cannot be replaced: what is asked for meanwhile is refused
+  // false while a lost context cannot be replaced: requests in this time are refused
   bool ready() const;
   std::uint64_t gpu_bytes_used() const;
-  // page table and pages that are on the GPU
+  // bytes of the page table and of the pages on the GPU
   std::uint64_t layer_bytes_used(LayerHandle layer) const;
   int debug_errors() const;
 
@@ -180,42 +189,42 @@ class Renderer {
   void add_surface_image(ModelHandle model, std::shared_ptr<const MipmappedPicture> image,
                          Done<SurfaceImageHandle> done);
   void remove_surface_image(SurfaceImageHandle handle);
-  // Needed before strokes at this resolution; baked by the caller, uploaded in slices.
+  // Required before strokes at this resolution; baked by the caller, uploaded in slices.
   void add_surface_map(ModelHandle model, std::shared_ptr<const mesh::SurfaceMap> map,
                        Done<void> done);
 
-  // strokes at it are refused (conflict) from then on
+  // afterwards strokes at this resolution are refused (conflict)
   void remove_surface_map(ModelHandle model, int resolution);
 
-  // A layer that holds what `mirror` does, now and later: it is brought to the GPU when it is first
-  // shown or painted, and may leave it again while `mirror` is not held (TileMirror::hold) and no
-  // frame shows it.
+  // Adds a layer with the content of `mirror`, now and later. It is uploaded when it is first shown
+  // or painted, and may be evicted while `mirror` is not held (TileMirror::hold) and no frame shows
+  // it.
   void add_layer(ModelHandle model, std::shared_ptr<const TileMirror> mirror,
                  Done<LayerHandle> done);
-  // An empty layer that is known to the GPU alone.
+  // Adds an empty layer that exists on the GPU only.
   void add_layer(ModelHandle model, ValueType type, int resolution, Done<LayerHandle> done);
   void remove_layer(LayerHandle layer);
-  // Sets whole tiles (fill, undo, import); done after the GPU has them. In order with strokes.
-  // Frames that are drawn before `done` may show some of the tiles as they were.
+  // Sets whole tiles (fill, undo, import), in order with strokes; calls `done` after the GPU has
+  // them. Frames drawn before `done` may show some of the old tiles.
   void write_tiles(LayerHandle layer, std::vector<TileUpload> tiles, Done<void> done);
   void paint(LayerHandle layer, StrokeBatch stroke, Done<StrokeOutcome> done);
 
-  // Views keep a g-buffer and the last picture. Requests of one view replace each other while they
-  // wait ("latest wins"): the replaced request's callback gets the Error `superseded`.
-  // Views take turns by what drawing for them has taken (render/thread/frame_queue).
+  // Views keep a g-buffer and the last picture. While requests of one view wait, a new one replaces
+  // the old one ("latest wins"): the callback of the replaced request gets the Error `superseded`.
+  // Views take turns by the drawing time that they have used (render/thread/frame_queue).
   void add_view(ModelHandle model, Done<ViewHandle> done);
   void remove_view(ViewHandle view);
   void draw(FrameRequest request, Done<SharedFrame> done);
 
-  // Returns when all that was asked before, frames excepted, is answered. Blocks.
+  // Blocks until all earlier requests, except frames, are answered.
   void finish();
 
-  // Called on the GPU thread after a lost context was replaced: every handle given before is void.
-  // There is one callback: a new one takes the place of the last, an empty one removes it. The last
-  // is not running any more when this returns.
+  // Sets the callback that the GPU thread calls after a lost context was replaced: all earlier
+  // handles are void. There is one callback: a new one replaces the last, an empty one removes it.
+  // When this returns, the old callback is not running.
   void on_context_lost(std::function<void()> callback);
   void lose_context_for_test();  // destroys the context, as a driver reset would
-  // Runs `work` with the context current, in order with edits, and returns after it.
+  // Runs `work` with the context current, in order with edits, and returns afterwards.
   void run_on_gpu_thread_for_test(std::function<void()> work);
 
  private:

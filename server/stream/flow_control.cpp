@@ -11,6 +11,10 @@ void FlowControl::on_ready() { ready_ = true; }
 void FlowControl::on_news() {
   news_ = true;
   refused_ = false;
+  rests_ = false;
+  refined_ = false;
+  // It would show what was; what is new does not wait for it.
+  if (out_ && out_->samples > 1) out_.reset();
 }
 
 void FlowControl::on_reset() {
@@ -62,15 +66,19 @@ std::optional<FlowControl::Draw> FlowControl::next() {
   if (!ready_ || !camera_ || out_ || refused_) return std::nullopt;
   if (last_frame_ - acked_ >= static_cast<std::uint64_t>(window_)) return std::nullopt;
   const bool refine = refine_waits_ && !moving_;
-  if (!everything_waits_ && !refine && boxes_.empty()) return std::nullopt;
+  const bool changes = everything_waits_ || refine || !boxes_.empty();
+  // A refinement waits until the client has all frames, so that the next camera does not wait for
+  // it.
+  if (!changes && (!rests_ || refined_ || moving_ || acked_ < last_frame_)) return std::nullopt;
 
-  Draw draw{++tickets_, camera_seq_, sequence_, *camera_, std::nullopt, Quality::still};
-  if (everything_waits_ || refine) {
+  Draw draw{++tickets_, camera_seq_, sequence_, *camera_, std::nullopt, Quality::still, 1};
+  if (!changes) draw.samples = samples_at_rest_;
+  if (everything_waits_ || refine || !changes) {
     draw.quality = moving_ ? Quality::moving : Quality::still;
     everything_waits_ = false;
   } else {
     draw.changed = boxes_;
-    // its camera moves still, and the whole is refined once it stands
+    // the camera still moves, and the whole picture is refined when it stops
     if (refine_waits_) draw.quality = Quality::moving;
   }
   boxes_.clear();
@@ -84,6 +92,7 @@ std::optional<FlowControl::Numbered> FlowControl::on_drawn(std::uint64_t ticket,
   if (!out_ || out_->ticket != ticket) return std::nullopt;
   const bool everything = !out_->changed;
   // An empty full picture leaves nothing to refine, either.
+  if (out_->samples > 1) refined_ = true;
   if (everything) refine_waits_ = sent && out_->quality == Quality::moving;
   out_.reset();
   if (!sent) return std::nullopt;
@@ -97,6 +106,14 @@ bool FlowControl::on_failed(std::uint64_t ticket) {
   else
     everything_waits_ = true;
   out_.reset();
+  return true;
+}
+
+bool FlowControl::on_not_refined(std::uint64_t ticket, bool again) {
+  if (!out_ || out_->ticket != ticket) return false;
+  out_.reset();
+  rests_ = false;
+  refined_ = !again;
   return true;
 }
 

@@ -7,8 +7,8 @@
 
 namespace strata::stream {
 
-// An encoded message as it goes to the socket: frame header (protocol/frame_header.h) and payload
-// in one buffer.
+// An encoded message for the socket: frame header (protocol/frame_header.h) and payload in one
+// buffer.
 using FrameBytes = std::shared_ptr<const std::vector<std::uint8_t>>;
 // of one frame, a message for each rectangle, in order
 using FrameMessages = std::vector<FrameBytes>;

@@ -17,18 +17,18 @@
 namespace strata::stream {
 namespace {
 
-// One picture with one setting, and who wants it. Kept as long as somebody holds the frame, who
-// might still ask.
+// One picture with one setting, and its callbacks. Kept as long as the frame exists, because
+// another viewer may request the same.
 struct Work {
   std::weak_ptr<const render::Frame> frame;
   JpegSettings settings;
-  std::vector<JpegPool::Done> wanted;
+  std::vector<JpegPool::Done> waiting;
   bool encoded = false;
   Jpegs jpegs;
   double took_ms = 0;
 
-  bool is_of(const render::SharedFrame& other, JpegSettings wished) const {
-    return settings == wished && !frame.owner_before(other) && !other.owner_before(frame);
+  bool is_of(const render::SharedFrame& other, JpegSettings requested) const {
+    return settings == requested && !frame.owner_before(other) && !other.owner_before(frame);
   }
 };
 
@@ -84,9 +84,9 @@ struct JpegPool::Impl {
         work.took_ms = elapsed.count();
         ++encoded;
       }
-      const auto wanted = std::exchange(work.wanted, {});
+      const auto waiting = std::exchange(work.waiting, {});
       lock.unlock();
-      for (const Done& done : wanted) done(work.jpegs, work.took_ms);
+      for (const Done& done : waiting) done(work.jpegs, work.took_ms);
     }
   }
 };
@@ -114,9 +114,9 @@ void JpegPool::encode(render::SharedFrame frame, JpegSettings settings, Done don
   const auto work = same != impl_->known.end() ? *same
                                                : impl_->known.emplace_back(std::make_shared<Work>(
                                                      Work{frame, settings, {}, false, {}, 0}));
-  work->wanted.push_back(std::move(done));
-  // Who asks while it is being encoded is served with the others.
-  if (work->wanted.size() > 1 || (same != impl_->known.end() && !work->encoded)) return;
+  work->waiting.push_back(std::move(done));
+  // A request during the encoding is answered together with the others.
+  if (work->waiting.size() > 1 || (same != impl_->known.end() && !work->encoded)) return;
   impl_->jobs.push_back({work, std::move(frame)});
   impl_->changed.notify_one();
 }

@@ -13,15 +13,15 @@ namespace strata::stream {
 // One for each rectangle of a frame, in order.
 using Jpegs = std::shared_ptr<const std::vector<std::vector<std::uint8_t>>>;
 
-// A few threads that encode pictures, each once, however many viewers it is for. The queue is
-// bounded by the viewers' credit (one picture in work per viewer).
+// A few threads that encode pictures, each picture once for any number of viewers. The viewers'
+// credit limits the queue (one picture in work per viewer).
 class JpegPool {
  public:
   using Done = std::function<void(const Jpegs&, double)>;
   explicit JpegPool(int threads);
   ~JpegPool();
-  // `done` runs on a pool thread with the bytes and the milliseconds it took; null where encoding
-  // failed (logged). Not called for pictures that still wait when the pool is destroyed.
+  // `done` runs on a pool thread with the bytes and the milliseconds of the encoding; null if
+  // encoding failed (logged). Not called for pictures that still wait when the pool is destroyed.
   void encode(render::SharedFrame frame, JpegSettings settings, Done done);
   std::uint64_t encoded() const;  // pictures so far
 

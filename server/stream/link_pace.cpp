@@ -7,13 +7,16 @@
 namespace strata::stream {
 namespace {
 
+// Smaller ones are rectangles of edits.
+constexpr double kLargeStill_bytes = 20'000;
+
 constexpr std::array<MovingPicture, LinkPace::kSteps> kReductions{
     // each of about half the bytes
     {{{75, false}, 1}, {{65, false}, 0.7}, {{60, false}, 0.5}, {{50, false}, 0.35}}};
 // weights in running means
 constexpr double kNewPair = 0.3, kNewWait = 0.3;
 constexpr double kDrawnApart = 1.25;
-// acknowledgements closer than that came together
+// acknowledgments with a smaller gap came together
 constexpr std::chrono::milliseconds kMinGap{5};
 
 }  // namespace
@@ -37,8 +40,9 @@ void LinkPace::on_ack(std::uint64_t frame, Clock::time_point at) {
   last_sent_ = last->at;
   last_ack_ = at;
   const Passed passed{last->bytes, at - last->at};
+  if (last->step < 0 && last->bytes >= kLargeStill_bytes) still_took_ = passed.took;
   note_delay(passed, at);
-  // Frames of another step or window, or behind such, say nothing about these.
+  // Frames of another step or window, or after such frames, are no measure of the present ones.
   if (last->step == step_ && last->alike && last->wide == wide_) judge(passed.took - delay(), at);
 }
 
@@ -46,7 +50,7 @@ void LinkPace::note_rate(const Sent& sent, Clock::time_point acked) {
   const auto gap = acked - last_ack_;
   if (sent.at >= last_ack_ || gap < kMinGap) return;
   const double s_per_byte = Seconds(gap).count() / sent.bytes;
-  // it was busy with the first while the second came
+  // the link was busy with the first frame when the second was sent
   if (kDrawnApart * (sent.at - last_sent_) < gap)
     s_per_byte_ =
         s_per_byte_ == 0 ? s_per_byte : s_per_byte_ + kNewPair * (s_per_byte - s_per_byte_);
@@ -92,7 +96,7 @@ void LinkPace::judge(Seconds wait, Clock::time_point at) {
   short_waits_ = wait > kShortWait ? 0 : short_waits_ + 1;
   if (!wide_ && delay() > kLongDelay && short_waits_ == kFirstTrial) wide_ = true;
   if (step_ == 0 || short_waits_ < trial_) return;
-  // A step that held as long as this was no mere trial.
+  // A step that stayed for this long has succeeded.
   if (trying_) trial_ = kFirstTrial;
   trying_ = true;
   change_step(step_ - 1);

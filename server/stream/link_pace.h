@@ -10,41 +10,44 @@
 
 namespace strata::stream {
 
-// How far pictures of a moving camera are reduced, so that they come in time over one client's
-// link. What stands still is always of full quality.
+// The reduction of pictures of a moving camera, so that they arrive in time over one client's link.
+// Pictures of a still camera are always of full quality.
 struct MovingPicture {
   JpegSettings jpeg;
   double scale = 1;  // of the window's width and height
   bool operator==(const MovingPicture&) const = default;
 };
 
-// What one client's link and browser manage, judged by when frames were sent and acknowledged. Two
-// frames that were sent close together and acknowledged further apart tell the link's rate (a
-// packet pair); the shortest that a frame of late took, without what its bytes need at that rate,
-// is the link's delay (as TCP Vegas has it). What a frame takes beyond the delay is its wait: for
-// those before it, and for itself. Waits beyond `kMaxWait` reduce pictures, unless that
-// shortens them little, since then something else is slow; a series of short ones makes pictures
-// better again, step by step; a better step that did not hold is tried again later and later. Where
-// the delay is long and waits are short the link lies idle between two frames: then three may be on
-// their way, until they wait for each other. Without clocks or threads.
+// The capacity of one client's link and browser, estimated from the times when frames were sent and
+// acknowledged. Two frames that were sent close together and acknowledged further apart measure the
+// link's rate (a packet pair); the shortest recent time of a frame, without the time for its bytes
+// at that rate, is the link's delay (as in TCP Vegas). The time of a frame beyond the delay is its
+// wait: for earlier frames, and for itself. Waits beyond `kMaxWait` reduce pictures, unless that
+// shortens the waits little, because then something else is slow. A series of short waits improves
+// pictures again, step by step; a better step that did not hold is tried again after longer and
+// longer periods. If the delay is long and waits are short, the link is idle between two frames:
+// then three may be on their way, until they wait for each other. Without clocks or threads.
 class LinkPace {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds kMaxWait{100}, kShortWait{50}, kLongDelay{50};
-  // a delay is of the last one to two of these
+  // a delay is the shortest of the last one to two of these periods
   static constexpr std::chrono::seconds kDelayKept{15};
+  static constexpr std::chrono::milliseconds kRoomy{400};
   static constexpr int kSteps = 4;
   // frames with a short wait, until a better step is tried
   static constexpr int kFirstTrial = 12, kLastTrial = 384;
   static constexpr int kJudged = 3;  // frames until a step is judged
-  // of the wait before, that a reduction must leave at most
+  // maximum share of the wait before a reduction that must remain after it
   static constexpr double kWorthIt = 0.85;
 
   void on_sent(std::uint64_t frame, std::size_t bytes, bool moving, Clock::time_point at);
   void on_ack(std::uint64_t frame, Clock::time_point at);
 
   MovingPicture moving() const;
-  int step() const { return step_; }            // 0: not reduced
+  int step() const { return step_; }  // 0: not reduced
+  // Whether a whole picture of full quality arrives without delay for the frames after it.
+  bool has_room() const { return step_ == 0 && (!still_took_ || *still_took_ <= kRoomy); }
   int window() const { return wide_ ? 3 : 2; }  // frames that may be on their way
 
  private:
@@ -53,7 +56,7 @@ class LinkPace {
     double bytes;
     int step;  // -1: not of a moving camera
     bool wide;
-    bool alike;  // as all that were before it on their way
+    bool alike;  // same step as all frames that were on their way before it
     Clock::time_point at;
   };
   using Seconds = std::chrono::duration<double>;
@@ -70,19 +73,22 @@ class LinkPace {
   void change_step(int step);
 
   std::deque<Sent> on_the_way_;
-  Clock::time_point last_sent_{}, last_ack_{};        // of the last frame that was acknowledged
-  double s_per_byte_ = 0;                             // 0: not known, as if nothing took any time
-  std::optional<Passed> shortest_, shortest_before_;  // of this span and the last
+  Clock::time_point last_sent_{}, last_ack_{};        // of the last acknowledged frame
+  double s_per_byte_ = 0;                             // 0: not known, as for an infinitely fast
+                                                      // link
+  std::optional<Passed> shortest_, shortest_before_;  // of this period and the last
   Clock::time_point span_ends_{};
   int step_ = 0;
   int judged_ = 0;       // frames of this step
-  Seconds mean_wait_{};  // of them
+  Seconds mean_wait_{};  // of these frames
   struct Reduced {
     int from;
-    Seconds wait;  // before
+    Seconds wait;  // before the reduction
   };
-  std::optional<Reduced> reduced_;  // until it is known whether that was worth it
+  std::optional<Reduced> reduced_;  // until its effect is known
   Clock::time_point no_reduction_until_{};
+  // the time of the last large picture of full quality, until it was acknowledged
+  std::optional<Seconds> still_took_;
   bool wide_ = false;  // the window
   int short_waits_ = 0;
   int trial_ = kFirstTrial;

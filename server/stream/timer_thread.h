@@ -9,12 +9,12 @@
 
 namespace strata::stream {
 
-// One thread that calls functions later. They must be quick. Shared by every viewer of the process.
+// One thread that calls functions later. They must be quick. All viewers of the process share it.
 class TimerThread {
  public:
   static TimerThread& shared();
   TimerThread();
-  ~TimerThread();  // drops what waits, joins
+  ~TimerThread();  // drops waiting calls, joins
 
   void after(std::chrono::milliseconds delay, std::function<void()> call);
 
@@ -26,7 +26,7 @@ class TimerThread {
   std::condition_variable changed_;
   std::multimap<Clock::time_point, std::function<void()>> calls_;
   bool stopping_ = false;
-  std::thread thread_;  // last: it uses the others
+  std::thread thread_;  // last: it uses the other members
 };
 
 }  // namespace strata::stream

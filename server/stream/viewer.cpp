@@ -24,15 +24,17 @@ using Clock = std::chrono::steady_clock;
 // the full-quality picture follows within 250 ms of the last input
 constexpr auto kQuietAfter = 200ms;
 constexpr auto kActsFor = 2s;
+// The refinement waits longer after an edit: people who paint make pauses between their strokes.
+constexpr std::chrono::milliseconds kRestAfterCamera{700}, kRestAfterChange{2000};
 constexpr auto kFirstRetry = 50ms;
 constexpr auto kLastRetry = 5000ms;
 
-// Full colour at full quality: thin coloured lines of a layer smear in 4:2:0, and parts drawn anew
-// would show as patches.
+// Full color at full quality: 4:2:0 smears thin colored lines of a layer, and redrawn parts would
+// be visible as patches.
 constexpr JpegSettings kStillPicture{90, true};
 
 bool is_superseded(const Error& problem) { return problem.code == ErrorCode::superseded; }
-// Of what was asked for, not of the state of the GPU: the same again has the same answer.
+// An error of the request, not of the state of the GPU: the same request fails again.
 bool is_refusal(const Error& problem) { return problem.code == ErrorCode::invalid; }
 
 }  // namespace
@@ -43,7 +45,7 @@ struct Viewer::Impl {
         options(o),
         send(std::move(s)),
         refused(std::move(r)),
-        flow(o.window, o.sequence) {
+        flow(o.window, o.sequence, stream.samples_at_rest) {
     adapt_window();
   }
 
@@ -64,13 +66,13 @@ struct Viewer::Impl {
   std::recursive_mutex send_mutex;
   Send send;
   Refused refused;
-  // the detail of what `refused` was told since the last picture; under `send_mutex`
-  std::string told;
+  // the detail of the last call of `refused` since the last picture; under `send_mutex`
+  std::string last_reported;
 
   mutable std::mutex mutex;
   FlowControl flow;
   LinkPace link;
-  MovingPicture moving;  // how the last whole picture of a moving camera is reduced
+  MovingPicture moving;  // reduction of the last whole picture of a moving camera
   render::ViewStyle style;
   render::ModelHandle model = 0;
   render::ViewHandle view = 0;
@@ -79,16 +81,18 @@ struct Viewer::Impl {
   std::deque<Picture> drawn;
   bool encoding = false;
   bool closed = false;
-  Clock::time_point last_camera{};  // when the newest camera came
-  Clock::time_point last_act{};     // and the newest camera or edit
-  bool quiet_timer_runs = false;
+  Clock::time_point last_camera{};  // time of the newest camera
+  Clock::time_point last_act{};     // time of the newest camera or edit
+  Clock::time_point last_change{};  // when somebody last changed what the picture shows
+  Clock::time_point last_not_refined{};
+  bool quiet_timer_runs = false, rest_timer_runs = false;
   std::chrono::milliseconds retry_in = kFirstRetry;
   Stats stats;
 };
 
 namespace {
 
-// The largest size of the window's shape within the limits, reduced.
+// Returns the largest size of the window's shape within the limits, reduced.
 std::pair<int, int> picture_size(const Camera& camera, const Viewer::Options& options,
                                  double reduced) {
   const double scale = reduced * std::min({1.0, double(options.max_width) / camera.width,
@@ -171,8 +175,8 @@ void Viewer::add_view() {
   renderer->add_view(
       model, [self = weak_from_this(), renderer, generation](Result<render::ViewHandle> view) {
         auto viewer = self.lock();
-        const bool wanted = viewer && viewer->on_view(generation, view);
-        if (!wanted && view) renderer->remove_view(*view);
+        const bool is_needed = viewer && viewer->on_view(generation, view);
+        if (!is_needed && view) renderer->remove_view(*view);
       });
 }
 
@@ -186,9 +190,10 @@ bool Viewer::on_view(std::uint64_t generation, const Result<render::ViewHandle>&
       impl_->flow.on_ready();
     }
   }
-  if (view)
+  if (view) {
     step();
-  else
+    wait_for_rest();
+  } else {
     retry_later([generation](Viewer& viewer) {
       {
         std::lock_guard lock(viewer.impl_->mutex);
@@ -196,10 +201,11 @@ bool Viewer::on_view(std::uint64_t generation, const Result<render::ViewHandle>&
       }
       viewer.add_view();
     });
+  }
   return true;
 }
 
-// Calls `action` after a pause that doubles each time, until something succeeds.
+// Calls `action` after a pause that doubles each time, until it succeeds.
 void Viewer::retry_later(std::function<void(Viewer&)> action) {
   std::chrono::milliseconds pause;
   {
@@ -221,10 +227,11 @@ void Viewer::set_camera(std::uint64_t camera_seq, const Camera& camera, bool mov
   }
   if (moving) wait_for_quiet();
   step();
+  wait_for_rest();
 }
 
-// One timer a viewer: when it rings too early, because cameras came meanwhile, it is set again for
-// the rest.
+// Runs one timer for each viewer: if it fires too early, because cameras came after its start, it
+// is set again for the rest.
 void Viewer::wait_for_quiet() {
   std::chrono::milliseconds left;
   {
@@ -247,6 +254,32 @@ void Viewer::wait_for_quiet() {
   });
 }
 
+// One timer for each viewer, as above.
+void Viewer::wait_for_rest() {
+  std::chrono::milliseconds left;
+  {
+    std::lock_guard lock(impl_->mutex);
+    if (impl_->rest_timer_runs || impl_->closed || !impl_->flow.wants_rest_timer()) return;
+    const auto rests_at =
+        std::max({impl_->last_camera + kRestAfterCamera, impl_->last_change + kRestAfterChange,
+                  impl_->last_not_refined + kRestAfterChange});
+    left = std::chrono::ceil<std::chrono::milliseconds>(rests_at - Clock::now());
+    impl_->rest_timer_runs = left > 0ms;
+    // Over a slow link the next camera would wait for the refined picture.
+    if (left <= 0ms && impl_->link.has_room()) impl_->flow.on_rest();
+  }
+  if (left <= 0ms) return step();
+  TimerThread::shared().after(left, [self = weak_from_this()] {
+    auto viewer = self.lock();
+    if (!viewer) return;
+    {
+      std::lock_guard lock(viewer->impl_->mutex);
+      viewer->impl_->rest_timer_runs = false;
+    }
+    viewer->wait_for_rest();
+  });
+}
+
 void Viewer::acts() {
   std::lock_guard lock(impl_->mutex);
   impl_->last_act = Clock::now();
@@ -255,27 +288,33 @@ void Viewer::acts() {
 void Viewer::set_style(render::ViewStyle style) {
   {
     std::lock_guard lock(impl_->mutex);
-    if (style == impl_->style) return;  // others' looks and layers of the model changed
+    if (style == impl_->style) return;  // surface images or layers of other views changed
     impl_->style = std::move(style);
+    impl_->last_camera = Clock::now();
     impl_->flow.on_style();
   }
   step();
+  wait_for_rest();
 }
 
 void Viewer::changed(const render::FrameRequest::Box& box, std::int64_t sequence) {
   {
     std::lock_guard lock(impl_->mutex);
+    impl_->last_change = Clock::now();
     impl_->flow.on_change(box, sequence);
   }
   step();
+  wait_for_rest();
 }
 
 void Viewer::changed_everywhere(std::int64_t sequence) {
   {
     std::lock_guard lock(impl_->mutex);
+    impl_->last_change = Clock::now();
     impl_->flow.on_change_everywhere(sequence);
   }
   step();
+  wait_for_rest();
 }
 
 void Viewer::ack(std::uint64_t frame) {
@@ -292,8 +331,8 @@ void Viewer::reset_model(render::ModelHandle model, render::ViewStyle style) {
   {
     std::lock_guard lock(impl_->mutex);
     if (impl_->closed) return;
-    // After a lost context the old handle means nothing and removing it is refused; after another
-    // reload it frees the view.
+    // After a lost context, the old handle is invalid and removing it is refused; after another
+    // reload, it frees the view.
     if (impl_->view != 0) impl_->context.renderer->remove_view(impl_->view);
     impl_->model = model;
     impl_->view = 0;
@@ -311,8 +350,8 @@ Viewer::Stats Viewer::stats() const {
   return stats;
 }
 
-// Starts the draw that the flow asks for. The renderer may answer at once, so it is called without
-// the lock.
+// Starts the next draw of the flow. The renderer may answer at once, so it is called without the
+// lock.
 void Viewer::step() {
   FlowControl::Draw draw;
   MovingPicture reduced{kStillPicture, 1};
@@ -323,12 +362,17 @@ void Viewer::step() {
     auto next = impl_->flow.next();
     if (!next) return;
     draw = std::move(*next);
+    if (draw.samples > 1 && !impl_->link.has_room()) {
+      impl_->flow.on_not_refined(draw.ticket, false);
+      return;
+    }
     request.view = impl_->view;
     request.model = impl_->model;
     request.style = impl_->style;
     request.acting = Clock::now() - impl_->last_act < kActsFor;
     request.moving = draw.quality == FlowControl::Quality::moving;
-    // A rectangle is added to the picture as it is.
+    request.samples = draw.samples;
+    // A rectangle is added to the existing picture.
     if (request.moving && !draw.changed) impl_->moving = impl_->link.moving();
     if (request.moving) reduced = impl_->moving;
   }
@@ -343,6 +387,8 @@ void Viewer::step() {
                                   if (!viewer) return;
                                   if (frame)
                                     viewer->on_drawn(draw, jpeg, *frame);
+                                  else if (draw.samples > 1)
+                                    viewer->on_not_refined(draw.ticket, frame.error());
                                   else
                                     viewer->on_failed(draw.ticket, frame.error());
                                 });
@@ -375,8 +421,21 @@ void Viewer::on_failed(std::uint64_t ticket, const Error& problem) {
     tell(problem);
     return step();
   }
-  log::debug("A frame was not drawn and will be tried again: " + problem.title);
+  log::debug("the server could not draw a frame and will try again: " + problem.title);
   retry_later([](Viewer& viewer) { viewer.step(); });
+}
+
+void Viewer::on_not_refined(std::uint64_t ticket, const Error& problem) {
+  {
+    std::lock_guard lock(impl_->mutex);
+    // The same request would be refused again.
+    const bool again = !is_refusal(problem) && problem.code != ErrorCode::out_of_memory &&
+                       problem.code != ErrorCode::too_large;
+    if (impl_->closed || !impl_->flow.on_not_refined(ticket, again)) return;
+    impl_->last_not_refined = Clock::now();
+  }
+  step();
+  wait_for_rest();
 }
 
 void Viewer::tell(const Error& why) {
@@ -385,11 +444,12 @@ void Viewer::tell(const Error& why) {
     std::lock_guard lock(impl_->mutex);
     if (impl_->closed) return;
   }
-  if (std::exchange(impl_->told, why.detail) != why.detail && impl_->refused) impl_->refused(why);
+  if (std::exchange(impl_->last_reported, why.detail) != why.detail && impl_->refused)
+    impl_->refused(why);
 }
 
-// One picture of a viewer is encoded at a time: that keeps frames in order and `send` from running
-// twice at once.
+// One picture of a viewer is encoded at a time: that keeps frames in order and prevents concurrent
+// calls of `send`.
 void Viewer::encode_next() {
   render::SharedFrame frame;
   JpegSettings settings;
@@ -418,7 +478,7 @@ void Viewer::on_encoded(const Jpegs& jpegs, double encode_ms) {
       const Impl::Picture picture = std::move(impl_->drawn.front());
       impl_->drawn.pop_front();
       if (!jpegs) {
-        // it never leaves, so no client can give its credit back
+        // it is never sent, so no client can return its credit
         impl_->flow.on_ack(picture.number.frame);
       } else {
         messages = frame_messages(picture.draw, picture.number, *picture.frame,
@@ -432,7 +492,7 @@ void Viewer::on_encoded(const Jpegs& jpegs, double encode_ms) {
         impl_->stats.last_encode_ms = encode_ms;
       }
     }
-    impl_->told.clear();
+    impl_->last_reported.clear();
     if (!messages.empty()) impl_->send(std::move(messages));
   }
   encode_next();

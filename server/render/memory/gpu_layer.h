@@ -11,12 +11,12 @@
 
 namespace strata::render {
 
-// A layer of the scene. One that has a mirror is on the GPU while it is shown or painted, and
-// leaves it when the memory is wanted elsewhere: its pages are freed, and brought again from the
-// mirror before they are next used. GPU thread only.
+// A layer of the scene. A layer with a mirror is on the GPU while it is shown or painted. If the
+// memory is needed for something else, the layer is evicted: its pages are freed, and uploaded
+// again from the mirror before their next use. GPU thread only.
 class GpuLayer {
  public:
-  // `mirror` is null for a layer that nobody else knows: it never leaves.
+  // `mirror` is null for a layer without another copy: it is never evicted.
   GpuLayer(std::uint64_t model, std::unique_ptr<LayerTextures> textures,
            std::shared_ptr<const TileMirror> mirror)
       : model_(model),
@@ -27,16 +27,17 @@ class GpuLayer {
   std::uint64_t model() const { return model_; }
   LayerTextures& textures() const { return *textures_; }
   std::uint64_t last_used() const { return last_used_; }
+  bool is_here() const { return is_here_; }  // all of it is on the GPU
 
-  // While the token lives the layer does not leave. `now` counts uses.
+  // The layer is not evicted during the lifetime of the token. `now` counts uses.
   std::shared_ptr<const void> use(std::uint64_t now) {
     last_used_ = now;
     return users_;
   }
-  // Brings the next of what the mirror holds, a millisecond or two; true when all of it is here. A
-  // Error brings nothing.
+  // Uploads the next part of the mirror, for a millisecond or two; true when all of it is on the
+  // GPU. After an Error nothing is uploaded.
   Result<bool> bring();
-  // Not one whose pages know of edits that the mirror does not.
+  // False if the pages contain edits that the mirror lacks.
   bool can_leave() const;
   void leave();
 
@@ -48,7 +49,7 @@ class GpuLayer {
   const std::shared_ptr<const TileMirror> mirror_;
   bool is_here_;
   std::optional<std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>>>
-      coming_;  // the next one is the last
+      coming_;  // uploaded from the back
   std::shared_ptr<const void> users_ = std::make_shared<char>();
   std::uint64_t last_used_ = 0;
 };

@@ -3,11 +3,12 @@
 namespace strata::render {
 namespace {
 
-// Of a mesh in one frame of a moving camera: with shading and encoding it makes 30 frames a second.
+// For a mesh in one frame of a moving camera: with shading and encoding this gives 30 frames a
+// second.
 constexpr double kBudgetMs = 10;
-// Before anything was drawn: llvmpipe needs 27 to 59 ns.
+// Estimates before the first drawing: llvmpipe needs 27 to 59 ns.
 constexpr double kNsSoftware = 40, kNsHardware = 1;
-// Smaller drawings tell more of what a frame costs than of what its triangles do.
+// The time of smaller drawings depends on other costs of a frame more than on triangles.
 constexpr std::size_t kFewTriangles = 50'000;
 constexpr double kShareOfNew = 0.2;
 

@@ -5,14 +5,15 @@
 
 namespace strata::render {
 
-// How fine a model may be drawn while its camera moves: the finest level that fits into a few
-// milliseconds, by what drawings of this GPU took before.
+// Chooses the level of detail of a model while its camera moves: the finest level that can be drawn
+// in a few milliseconds, by the times of earlier drawings on this GPU.
 class DetailBudget {
  public:
   DetailBudget() = default;
   explicit DetailBudget(bool software);
 
-  // `triangles`: what each level has in the window, the finest first. The coarsest where none fits.
+  // `triangles`: triangles of each level in the window, the finest first. Returns the coarsest if
+  // none fits.
   int choose(std::span<const std::size_t> triangles) const;
   void drawn(std::size_t triangles, double ms);
 

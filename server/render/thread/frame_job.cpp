@@ -10,14 +10,22 @@
 namespace strata::render {
 namespace {
 
+// The refinement of a picture on a CPU, with at least so many samples: fewer would show less than
+// they cost.
+constexpr double kRefinementBudget_ms = 2000;
+constexpr int kMinSamples = 4;
+// texture coordinates, light, depth, picture, mean
+constexpr std::uint64_t kRefinementBytesPerPixel = 4 + 4 + 4 + 4 + 8;
+constexpr int kPixelsOfMeanPerStep = 1 << 20;
+
 constexpr std::size_t kBytesCollectedPerStep = std::size_t{16} << 20;  // a few milliseconds
 
-// How far a place of a mark may lie below what is seen, in pixels of the camera's window: a coarser
-// copy's surface lies where it likes.
+// How far a point of a mark may be below the visible surface, in pixels of the camera's window: the
+// surface of a coarser copy may be anywhere in this range.
 constexpr double kFeatureReach_px = 1, kFeatureReachOfCopies_px = 10;
 
-// All marks are drawn for each rectangle: what one segment of them costs there (0.8 µs with
-// llvmpipe), as `kRectCost_px`.
+// All marks are drawn for each rectangle: the cost of one segment (0.8 µs with llvmpipe), in the
+// unit of `kRectCost_px`.
 constexpr std::int64_t kFeatureCost_px = 28;
 
 std::size_t row_bytes(const PixelRect& rect) {
@@ -29,16 +37,16 @@ double ms_since(std::chrono::steady_clock::time_point start) {
       .count();
 }
 
-ShadeInput::Patterns patterns_of(const FrameRequest& request, const mesh::Geometry& geometry) {
-  const Camera& camera = request.camera;
+ShadeInput::Patterns patterns_of(const FrameRequest& request, const Camera& camera,
+                                 const mesh::Geometry& geometry) {
   const glm::dvec3 middle = geometry.origin + glm::dvec3(geometry.box_min + geometry.box_max) * 0.5;
   const glm::dvec4 clip = camera.projection * camera.view * glm::dvec4(middle, 1);
-  // From within a model its middle may be at the eye, or behind it: the distance counts.
+  // Inside a model its center may be at the eye, or behind it: only the distance matters.
   const double w = std::max(std::abs(clip.w), 1e-9);
   const glm::dvec2 size(request.width, request.height);
   const glm::dvec2 origin = (glm::dvec2(clip) / w * 0.5 + 0.5) * size;
   const double pixel = 2 * w / (std::abs(camera.projection[0][0]) * size.x);  // model units
-  // Any cell of the pattern serves as the first; numbers that stay small keep it sharp.
+  // The pattern repeats, so any of its cells can be the first; small numbers keep it sharp.
   const auto near = [](double v) { return static_cast<float>(std::clamp(v, -1e6, 1e6)); };
   return {{near(origin.x), near(origin.y)},
           static_cast<float>(std::clamp(pixel * request.style.unit_mm, 1e-30, 1e30)),
@@ -49,10 +57,11 @@ ShadeInput::Patterns patterns_of(const FrameRequest& request, const mesh::Geomet
 
 Step FrameJob::step(GpuScene& scene) {
   const auto begin = std::chrono::steady_clock::now();
-  auto view = scene.view(task_.request.view);
+  // A refinement needs its view's model alone, once.
+  auto view = sample_view_ ? Result<View*>(sample_view_.get()) : scene.view(task_.request.view);
   const auto refuse = [&](const Error& problem) {
-    // A picture that was not finished is not to be added to.
-    if (view) {
+    // An incomplete picture must not be updated in parts.
+    if (view && !refines()) {
       (*view)->drawing = false;
       (*view)->picture_complete = false;
     }
@@ -60,6 +69,7 @@ Step FrameJob::step(GpuScene& scene) {
     return Step::done;
   };
   if (!view) return refuse(view.error());
+  if (!sample_drawn_.passed()) return Step::waiting;
   const auto advance = [&]() -> Result<Step> {
     switch (stage_) {
       case Stage::prepare:
@@ -69,6 +79,7 @@ Step FrameJob::step(GpuScene& scene) {
       case Stage::layers: {
         auto here = STRATA_TRY(bring_layers(scene));
         if (here) stage_ = (*view)->gbuffer_complete ? Stage::area : Stage::gbuffer;
+        samples_begin_ms_ = busy_ms_;
         return Step::more;
       }
       case Stage::gbuffer: {
@@ -82,9 +93,16 @@ Step FrameJob::step(GpuScene& scene) {
         return Step::more;
       case Stage::shade: {
         auto complete = STRATA_TRY(shade_band(scene, **view));
-        if (complete) stage_ = Stage::readback;
+        if (complete && !refines()) stage_ = Stage::readback;
+        if (complete && refines()) {
+          auto last = STRATA_TRY(add_sample(scene));
+          stage_ = last ? Stage::mean : Stage::gbuffer;
+        }
         return Step::more;
       }
+      case Stage::mean:
+        if (read_mean()) stage_ = Stage::readback;
+        return Step::more;
       case Stage::readback: break;
     }
     if (!pixels_.ready()) return Step::waiting;
@@ -96,14 +114,15 @@ Step FrameJob::step(GpuScene& scene) {
   if (*step == Step::done) {
     (*view)->drawing = false;
     if (scene.lost())
-      return refuse({ErrorCode::gpu_lost,
-                     "GPU lost",
-                     "The GPU context was lost and is being rebuilt. Ask for the frame again.",
-                     {}});
+      return refuse(
+          {ErrorCode::gpu_lost,
+           "GPU lost",
+           "The server lost the GPU context and is restoring it. Request the frame again.",
+           {}});
     pixels_ = {};
     frame_.render_ms = busy_ms_;
     frame_.level = (*view)->key.level;
-    if (progress_.cleared && !scene.info().software)
+    if (progress_.cleared && !scene.info().software && !refines())
       scene.detail_budget().drawn(progress_.triangles(), ms_since(mesh_begin_));
     answer(std::make_shared<const Frame>(std::move(frame_)));
   }
@@ -114,23 +133,26 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   const FrameRequest& request = task_.request;
   view.last_used = scene.next_use();
   if (request.model != 0 && request.model != view.model)
-    return fail(ErrorCode::invalid, "View of another model",
-                "A request names its view's model, or none.", "model");
+    return fail(ErrorCode::invalid, "Wrong model",
+                "The request names another model than its view. Send the model of the view, or "
+                "no model.",
+                "model");
   STRATA_TRY(validate(request.camera));
   if (request.width < 1 || request.height < 1 || request.width > kMaxViewSize ||
       request.height > kMaxViewSize) {
     return fail(ErrorCode::invalid, "Size out of range",
-                "A picture is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.", "width");
+                "A picture must be 1 to " + std::to_string(kMaxViewSize) + " pixels on each side.",
+                "width");
   }
   for (const LayerStyle& style : request.style.layers) {
     auto layer = STRATA_TRY(scene.layer(style.layer));
     if (layer->model() != view.model)
       return fail(ErrorCode::invalid, "Layer of another model",
-                  "A view shows layers of its own model.", "layers");
+                  "A view can show only layers of its own model.", "layers");
     const bool has_colors = style.palette && (style.palette->mode == PaletteMode::categorical ||
                                               !style.palette->points.empty());
     if (!has_colors || !std::isfinite(style.opacity)) {
-      return fail(ErrorCode::invalid, "Palette not usable",
+      return fail(ErrorCode::invalid, "Invalid palette",
                   "A layer in a view needs a palette with points, and a finite opacity.", "layers");
     }
     layer_uses_.push_back(layer->use(view.last_used));
@@ -139,24 +161,32 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   if (request.style.images.size() > kMaxSurfaceImagesShown)
     return fail(
         ErrorCode::invalid, "Too many surface images",
-        "A view shows at most " + std::to_string(kMaxSurfaceImagesShown) + " surface images.",
+        "A view can show at most " + std::to_string(kMaxSurfaceImagesShown) + " surface images.",
         "looks");
   for (const SurfaceImageStyle& style : request.style.images) {
     auto image = STRATA_TRY(scene.image(style.image));
     if (image->model != view.model)
-      return fail(ErrorCode::invalid, "Look of another model",
-                  "A view shows surface images of its own model.", "looks");
+      return fail(ErrorCode::invalid, "Image of another model",
+                  "A view can show only surface images of its own model.", "looks");
     if (!std::isfinite(style.opacity))
-      return fail(ErrorCode::invalid, "Opacity not finite", "An opacity is 0 to 1.", "looks");
+      return fail(ErrorCode::invalid, "Invalid opacity", "The opacity must be from 0 to 1.",
+                  "looks");
   }
+  if (request.samples < 1 || request.samples > kMaxSamples)
+    return fail(
+        ErrorCode::invalid, "Samples out of range",
+        "The number of samples per pixel must be from 1 to " + std::to_string(kMaxSamples) + ".",
+        "samples");
+  camera_ = request.camera;
+  if (refines()) return start_refinement(scene, view.model);
   auto key = depth_key(view.model, request.camera, request.width, request.height);
   view.drawing = true;
-  const auto has_gbuffer = [&](const DepthKey& wanted) {
-    return view.gbuffer_complete && view.key == wanted && view.images == request.style.images &&
+  const auto has_gbuffer = [&](const DepthKey& needed) {
+    return view.gbuffer_complete && view.key == needed && view.images == request.style.images &&
            view.lighting == request.style.light;
   };
   if (request.moving) {
-    key.level = view.key.level;  // what there is of this camera serves
+    key.level = view.key.level;  // any level drawn for this camera is fine
     if (has_gbuffer(key)) return {};
     auto level = STRATA_TRY(choose_level(scene, view));
     key.level = level;
@@ -165,6 +195,64 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   view.images = request.style.images;
   view.lighting = request.style.light;
   return prepare_gbuffer(view, key, scene.depths(), scene.memory());
+}
+
+// The view keeps its own picture and g-buffer: rectangles of later edits are added to them.
+Result<void> FrameJob::start_refinement(GpuScene& scene, ModelHandle model) {
+  const FrameRequest& request = task_.request;
+  const auto pixels =
+      static_cast<std::uint64_t>(request.width) * static_cast<std::uint64_t>(request.height);
+  // Nothing is evicted for it.
+  if (!has_layers(scene) || !scene.memory().fits(pixels * kRefinementBytesPerPixel))
+    return tl::unexpected(
+        scene.memory().used_up(pixels * kRefinementBytesPerPixel, "a refined picture"));
+  samples_ = request.samples;
+  mean_ = STRATA_TRY(Accumulation::create(request.width, request.height, scene.memory()));
+  sample_view_ = std::make_unique<View>();
+  sample_view_->model = model;
+  return start_sample(scene);
+}
+
+bool FrameJob::has_layers(GpuScene& scene) const {
+  return std::ranges::all_of(task_.request.style.layers, [&](const LayerStyle& style) {
+    const auto layer = scene.layer(style.layer);
+    return layer && (*layer)->is_here();
+  });
+}
+
+Result<void> FrameJob::start_sample(GpuScene& scene) {
+  const FrameRequest& request = task_.request;
+  camera_ = jittered(request.camera, request.width, request.height, sample_offset(sample_, samples_));
+  sample_view_->images = request.style.images;
+  sample_view_->lighting = request.style.light;
+  progress_ = {};
+  shaded_ = {};
+  return prepare_gbuffer(*sample_view_,
+                         depth_key(sample_view_->model, camera_, request.width, request.height),
+                         scene.depths(), scene.memory());
+}
+
+Result<bool> FrameJob::add_sample(GpuScene& scene) {
+  // A software renderer works while it is called.
+  if (sample_ == 0 && scene.info().software) {
+    const double sample_ms = std::max(busy_ms_ - samples_begin_ms_, 1.0);
+    const int least = std::min(kMinSamples, samples_);
+    samples_ = std::min(static_cast<int>(kRefinementBudget_ms / sample_ms), samples_);
+    if (samples_ < least)
+      return fail(ErrorCode::too_large, "Picture not refined",
+                  "One sample of each pixel takes " + std::to_string(std::lround(sample_ms)) +
+                      " ms, so the time is too short for " + std::to_string(least) + " samples.");
+  }
+  scene.accumulation_pass().add(sample_view_->picture, *mean_, samples_);
+  sample_drawn_ = gl::Fence::place();
+  if (++sample_ < samples_) {
+    STRATA_TRY(start_sample(scene));
+    return false;
+  }
+  auto pixels = STRATA_TRY(scene.readback().begin(rgba_bytes(frame_.rects.front())));
+  pixels_ = std::move(pixels);
+  shaded_ = {};
+  return true;
 }
 
 Result<bool> FrameJob::bring_layers(GpuScene& scene) {
@@ -179,7 +267,7 @@ Result<bool> FrameJob::bring_layers(GpuScene& scene) {
 Result<int> FrameJob::choose_level(GpuScene& scene, const View& view) const {
   auto model = STRATA_TRY(scene.model(view.model));
   if (model->levels.size() == 1) return 0;
-  // All levels have the origin of the full mesh.
+  // All levels have the same origin as the full mesh.
   const glm::mat4 clip = clip_from_model(task_.request.camera, model->mesh().geometry().origin);
   std::vector<std::size_t> triangles;
   for (const auto& mesh : model->levels) triangles.push_back(mesh->visible_triangles(clip));
@@ -190,7 +278,7 @@ Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
   auto model = STRATA_TRY(scene.model(view.model));
   const MeshBuffers& mesh = *model->levels[static_cast<std::size_t>(view.key.level)];
   if (!progress_.cleared) mesh_begin_ = std::chrono::steady_clock::now();
-  auto mesh_look = mesh_view(task_.request.camera, mesh.geometry().origin, view.lighting);
+  auto mesh_look = mesh_view(camera_, mesh.geometry().origin, view.lighting);
   for (std::size_t i = 0; i < view.images.size(); ++i) {
     auto image = STRATA_TRY(scene.image(view.images[i].image));
     mesh_look.images.push_back(&image->texture->texture());
@@ -201,8 +289,8 @@ Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
                                                   {view.gbuffer, view.depth->texture}, progress_);
   if (!complete || !*complete) return complete;
   view.gbuffer_complete = view.depth->complete = true;
-  // A software renderer works while it is called, a GPU until the picture can be read.
-  if (scene.info().software)
+  // A software renderer works during the calls, a GPU until the picture can be read.
+  if (scene.info().software && !refines())
     scene.detail_budget().drawn(progress_.triangles(), ms_since(mesh_begin_));
   return true;
 }
@@ -211,11 +299,11 @@ Result<void> FrameJob::choose_area(GpuScene& scene, View& view) {
   const FrameRequest& request = task_.request;
   auto model = STRATA_TRY(scene.model(view.model));
   const mesh::Geometry& geometry = model->mesh().geometry();
-  const glm::dmat4 clip = request.camera.projection * request.camera.view *
-                          glm::translate(glm::dmat4(1.0), geometry.origin);
+  const glm::dmat4 clip =
+      camera_.projection * camera_.view * glm::translate(glm::dmat4(1.0), geometry.origin);
   frame_.width = request.width;
   frame_.height = request.height;
-  if (request.changed && view.shows(request)) {
+  if (request.changed && !refines() && view.shows(request)) {
     const auto features = static_cast<std::int64_t>(view.seen_features.count);
     frame_.rects = screen_rects(*request.changed, clip, request.width, request.height,
                                 request.align_to_16, kRectCost_px + features * kFeatureCost_px,
@@ -223,24 +311,29 @@ Result<void> FrameJob::choose_area(GpuScene& scene, View& view) {
     if (frame_.rects.empty()) return {};
   } else {
     frame_.rects = {{0, 0, request.width, request.height}};
-    std::vector<shader::FeatureSegment> pieces;
-    if (request.style.features)
-      pieces =
-          project_features(*request.style.features, request.camera, request.width, request.height,
-                           {view.key.level == 0 ? kFeatureReach_px : kFeatureReachOfCopies_px,
-                            glm::distance(geometry.box_min, geometry.box_max)});
-    const bool cut_open = !request.camera.section.empty() && eye_is_cut_away(request.camera);
-    auto looked =
-        scene.feature_pass().test_sight(pieces, view.depth->texture, cut_open, view.seen_features);
-    if (!looked) return looked;
+    STRATA_TRY(test_features(scene, view));
   }
   surface_ =
       screen_rect({geometry.box_min, geometry.box_max}, clip, request.width, request.height, false);
+  if (refines()) return {};
   std::size_t bytes = 0;
   for (const PixelRect& rect : frame_.rects) bytes += rgba_bytes(rect);
   auto pixels = STRATA_TRY(scene.readback().begin(bytes));
   pixels_ = std::move(pixels);
   return {};
+}
+
+Result<void> FrameJob::test_features(GpuScene& scene, View& view) const {
+  const FrameRequest& request = task_.request;
+  auto model = STRATA_TRY(scene.model(view.model));
+  const mesh::Geometry& geometry = model->mesh().geometry();
+  std::vector<shader::FeatureSegment> pieces;
+  if (request.style.features)
+    pieces = project_features(*request.style.features, camera_, request.width, request.height,
+                              {view.key.level == 0 ? kFeatureReach_px : kFeatureReachOfCopies_px,
+                               glm::distance(geometry.box_min, geometry.box_max)});
+  const bool cut_open = !camera_.section.empty() && eye_is_cut_away(camera_);
+  return scene.feature_pass().test_sight(pieces, view.depth->texture, cut_open, view.seen_features);
 }
 
 Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
@@ -260,7 +353,7 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
                    request.style.background,
                    request.background_rows,
                    {},
-                   patterns_of(request, model->mesh().geometry())};
+                   patterns_of(request, camera_, model->mesh().geometry())};
   for (const LayerStyle& style : request.style.layers) {
     auto layer = STRATA_TRY(scene.layer(style.layer));
     input.layers.push_back({&layer->textures(), style.palette, style.opacity, style.bare});
@@ -271,17 +364,11 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
                                           request.height, band);
   if (!marked) return tl::unexpected(marked.error());
 
-  const int rows_below = rect.height - shaded_.done - band.height;
-  const std::size_t offset =
-      shaded_.before + row_bytes(rect) * static_cast<std::size_t>(rows_below);
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, pixels_.buffer().id());
-  // NOLINTNEXTLINE(performance-no-int-to-ptr): GL takes the offset into the buffer as a pointer
-  void* const into = reinterpret_cast<void*>(offset);
-  glGetTextureSubImage(view.picture.id(), 0, band.x, request.height - band.y - band.height, 0,
-                       band.width, band.height, 1, GL_RGBA, GL_UNSIGNED_BYTE,
-                       static_cast<GLsizei>(rgba_bytes(band)), into);
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-  advance(shaded_, band.height);
+  if (refines()) {
+    advance(shaded_, band.height);
+    return complete(shaded_);
+  }
+  read_band(view.picture, band);
   if (!complete(shaded_)) return false;
   pixels_.submit();
   view.picture_complete = true;
@@ -291,6 +378,31 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   view.unit_mm = request.style.unit_mm;
   view.features = request.style.features;
   return true;
+}
+
+bool FrameJob::read_mean() {
+  const PixelRect& rect = frame_.rects.front();
+  const int rows = std::max(1, kPixelsOfMeanPerStep / rect.width);
+  read_band(mean_->sum, {0, shaded_.done, rect.width, std::min(rows, rect.height - shaded_.done)});
+  if (!complete(shaded_)) return false;
+  pixels_.submit();
+  return true;
+}
+
+// Of the rectangle that `shaded_` is in.
+void FrameJob::read_band(const gl::Texture& picture, const PixelRect& band) {
+  const PixelRect& rect = frame_.rects[shaded_.rect];
+  const int rows_below = rect.height - shaded_.done - band.height;
+  const std::size_t offset =
+      shaded_.before + row_bytes(rect) * static_cast<std::size_t>(rows_below);
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, pixels_.buffer().id());
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): GL takes the offset into the buffer as a pointer
+  void* const into = reinterpret_cast<void*>(offset);
+  glGetTextureSubImage(picture.id(), 0, band.x, task_.request.height - band.y - band.height, 0,
+                       band.width, band.height, 1, GL_RGBA, GL_UNSIGNED_BYTE,
+                       static_cast<GLsizei>(rgba_bytes(band)), into);
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+  advance(shaded_, band.height);
 }
 
 // Textures have their lowest row first, pictures their highest.

@@ -1,22 +1,26 @@
 #pragma once
 
 #include <chrono>
+#include <memory>
+#include <optional>
 
+#include "gl/fence.h"
 #include "render/thread/frame_queue.h"
 #include "render/thread/gpu_scene.h"
 #include "render/thread/gpu_thread.h"
 
 namespace strata::render {
 
-// One frame, drawn by one view: the g-buffer in slices when the camera changed, then what changed
-// is shaded and read back in bands.
+// One frame, drawn by one view: the g-buffer in slices if the camera changed, then the changed
+// parts are shaded and read back in bands. A refinement does so for each of its samples, into
+// buffers of its own, and reads back their mean.
 class FrameJob {
  public:
   explicit FrameJob(FrameTask task) : task_(std::move(task)) {}
 
   const FrameTask& task() const { return task_; }
   double busy_ms() const { return busy_ms_; }
-  // With what its asker has been served by now.
+  // With the current served time of its requester.
   FrameTask::Turn turn() const {
     return {task_.turn.acting, task_.turn.ms + busy_ms_ / static_cast<double>(task_.askers.size()),
             task_.turn.large};
@@ -28,16 +32,24 @@ class FrameJob {
   void answer(const Result<SharedFrame>& frame) {
     for (const auto& asker : task_.askers) asker.done(frame);
   }
-  enum class Stage { prepare, layers, gbuffer, area, shade, readback };
+  enum class Stage { prepare, layers, gbuffer, area, shade, mean, readback };
+  bool refines() const { return task_.request.samples > 1; }
+  Result<void> start_refinement(GpuScene& scene, ModelHandle model);
+  bool has_layers(GpuScene& scene) const;  // all are on the GPU
+  Result<void> start_sample(GpuScene& scene);
+  Result<bool> add_sample(GpuScene& scene);  // true when it was the last
   Result<void> prepare(GpuScene& scene, View& view);
   Result<bool> bring_layers(GpuScene& scene);  // true when all are on the GPU
   Result<int> choose_level(GpuScene& scene, const View& view) const;
   Result<bool> draw_slice(GpuScene& scene, View& view);  // true when complete
   Result<void> choose_area(GpuScene& scene, View& view);
+  Result<void> test_features(GpuScene& scene, View& view) const;
   Result<bool> shade_band(GpuScene& scene, View& view);  // true when complete
-  bool collect_rows();                                   // true when complete
+  bool read_mean();                                      // true when complete
+  void read_band(const gl::Texture& picture, const PixelRect& band);
+  bool collect_rows();  // true when complete
 
-  // How far one walk over the rows of all rectangles has come, each from its top.
+  // Progress of a walk over the rows of all rectangles, each from its top.
   struct Rows {
     std::size_t rect = 0;    // of `frame_.rects`
     std::size_t before = 0;  // bytes of the rectangles before it
@@ -47,12 +59,19 @@ class FrameJob {
   bool complete(const Rows& rows) const { return rows.rect == frame_.rects.size(); }
 
   FrameTask task_;
+  Camera camera_;  // of the picture, or of the current sample
+  // Of a refinement.
+  std::unique_ptr<View> sample_view_;
+  std::optional<Accumulation> mean_;
+  int samples_ = 1, sample_ = 0;
+  double samples_begin_ms_ = 0;  // `busy_ms_` before the first
+  gl::Fence sample_drawn_;       // so that the GPU has at most one sample to do before an edit
   Stage stage_ = Stage::prepare;
   std::vector<std::shared_ptr<const void>> layer_uses_;
   MeshProgress progress_;
   std::chrono::steady_clock::time_point mesh_begin_;  // when its first slice was drawn
   Frame frame_;
-  PixelRect surface_;  // of the picture: may show surface
+  PixelRect surface_;  // part of the picture that may show surface
   Rows shaded_, collected_;
   gl::Readback pixels_;  // of one rectangle after the other, lowest row first
   double busy_ms_ = 0;

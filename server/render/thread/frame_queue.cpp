@@ -11,11 +11,11 @@ namespace strata::render {
 namespace {
 
 constexpr std::size_t kMaxBoxes = 64;
-// One is drawn while the other is read back: more would take the places of smaller pictures
+// One is drawn while the other is read back: more would occupy the places of smaller pictures
 // (GpuThread).
 constexpr std::size_t kMaxLarge = 2;
 
-// Everything that either had to redraw is to be redrawn.
+// Merges the changes, so that everything that either request had to redraw is redrawn.
 void inherit(FrameRequest& request, const FrameRequest& other) {
   if (!request.changed) return;
   if (!other.changed) {
@@ -25,16 +25,14 @@ void inherit(FrameRequest& request, const FrameRequest& other) {
   for (const auto& box : *other.changed) add_box(*request.changed, box, kMaxBoxes);
 }
 
-// Whether a view that drew one of them has the other's picture, but for what changed on the
-// surface.
+}  // namespace
+
 bool same_picture(const FrameRequest& a, const FrameRequest& b) {
   return a.model != 0 && a.model == b.model && a.moving == b.moving && a.width == b.width &&
          a.height == b.height && a.camera == b.camera && a.style == b.style &&
-         a.background_rows == b.background_rows && a.large == b.large &&
+         a.background_rows == b.background_rows && a.large == b.large && a.samples == b.samples &&
          a.align_to_16 == b.align_to_16;
 }
-
-}  // namespace
 
 FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedFrame> done) {
   std::lock_guard lock(mutex_);
@@ -53,7 +51,7 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
     return {false, std::move(done)};
   }
   enter_half(state, request.acting, waited);
-  // A whole picture is not forced on those who want a part of it.
+  // A request for a part is not combined with one for a whole picture.
   auto same = std::find_if(waiting_.begin(), waiting_.end(), [&](const FrameTask& other) {
     return other.request.changed.has_value() == request.changed.has_value() &&
            same_picture(other.request, request);
@@ -71,7 +69,7 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
   return pushed;
 }
 
-// Who comes to it has no credit and no debt there.
+// A view that enters a half starts without credit or debt.
 void FrameQueue::enter_half(View& state, bool acting, bool waited) {
   Half& to = half(acting);
   const bool is_empty =
@@ -135,15 +133,15 @@ std::optional<ViewHandle> FrameQueue::drawer_of(const FrameTask& task) const {
   return task.askers.front().view;
 }
 
-template <class Wanted>
-std::optional<FrameTask> FrameQueue::take_if(const Wanted& wanted) {
+template <class Predicate>
+std::optional<FrameTask> FrameQueue::take_if(const Predicate& predicate) {
   std::set<const FrameTask*> cannot;
   for (;;) {
     Place next = waiting_.end();
     FrameTask::Turn turn;
     for (auto place = waiting_.begin(); place != waiting_.end(); ++place) {
       const auto its = turn_of(*place);
-      if (cannot.contains(&*place) || !wanted(*place, its)) continue;
+      if (cannot.contains(&*place) || !predicate(*place, its)) continue;
       if (next != waiting_.end() && !is_before(its, turn)) continue;
       turn = its;
       next = place;
@@ -185,17 +183,17 @@ std::optional<FrameTask> FrameQueue::take() {
 
 std::optional<FrameTask> FrameQueue::take_part(std::span<const FrameTask::Turn> under_way) {
   std::lock_guard lock(mutex_);
-  // What is next in each half. A rectangle does not take the other half's turn, nor that of a whole
-  // picture to go before the other half: rectangles alone would use up all the time that their half
-  // has.
+  // The next turn of each half. A rectangle does not take the turn of the other half, nor the turn
+  // of a whole picture to precede the other half: otherwise rectangles alone would use all the time
+  // of their half.
   std::array<std::optional<FrameTask::Turn>, 2> next;
   for (const FrameTask& task : waiting_) {
     auto& first = next[task.turn.acting ? 0 : 1];
     if (is_under_way(task)) continue;
     if (const auto its = turn_of(task); !first || its.ms < first->ms) first = its;
   }
-  // A band of a large picture takes longer than most other pictures: they need not wait until it is
-  // done.
+  // A band of a large picture takes longer than most other pictures, which need not wait until it
+  // is done.
   const bool only_large =
       !under_way.empty() && std::ranges::all_of(under_way, &FrameTask::Turn::large);
   const auto may_go_before = [&](const FrameTask& task) {
@@ -224,7 +222,7 @@ void FrameQueue::finished(const FrameTask& task, double took_ms) {
     rests(asker.view, took_ms / static_cast<double>(task.askers.size()));
   rests(task.request.view, 0);
   Half& its = half(task.turn.acting);
-  if (its.under_way == 0) return;  // `take_all` came between
+  if (its.under_way == 0) return;  // after `take_all`
   large_under_way_ -= task.request.large;
   its.served_ms += took_ms;
   --its.under_way;
@@ -236,7 +234,8 @@ void FrameQueue::forget(ViewHandle view) {
   if (state == views_.end()) return;
   state->second.gone = true;
   state->second.drew.reset();
-  // Who still waits is answered when its turn comes, that there is no such view.
+  // A waiting request of this view is answered in its turn, with the error that the view does not
+  // exist.
   if (!state->second.waits && !state->second.under_way) views_.erase(state);
 }
 

@@ -36,7 +36,7 @@ GpuInfo read_info() {
   return info;
 }
 
-// 70 % of the dedicated memory where the driver tells it.
+// 70 % of the dedicated memory if the driver reports it.
 std::uint64_t default_budget() {
   if (epoxy_has_gl_extension("GL_NVX_gpu_memory_info")) {
     const int total_kib = integer(GL_GPU_MEMORY_INFO_DEDICATED_VIDMEM_NVX);
@@ -97,11 +97,12 @@ Result<void> GpuScene::load() {
   STRATA_TRY(keep(tile_reader_, TileReader::create(dir, readback_)));
   STRATA_TRY(keep(gbuffer_pass_, MeshPass::create(MeshPass::Kind::gbuffer, dir, slice)));
   STRATA_TRY(keep(feature_pass_, FeaturePass::create(dir)));
+  STRATA_TRY(keep(accumulation_pass_, AccumulationPass::create(dir)));
   return keep(shade_pass_, ShadePass::create(dir, info_.software));
 }
 
-// Pages that no layer uses go first, then depth buffers of cameras that no view has, then the layer
-// and at last the buffers of the view that were not used for the longest time.
+// Evicts pages that no layer uses first, then depth buffers of cameras that no view has, then the
+// layer that was unused for the longest time, and at last the buffers of such a view.
 bool GpuScene::evict_one() {
   for (PagePool* pool : {&pool_1_, &pool_2_, &pool_4_}) {
     if (pool->drop_empty_chunk()) return true;
@@ -131,11 +132,11 @@ bool GpuScene::let_a_layer_leave(const PagePool* pool) {
 
 Error GpuScene::unknown(const char* what, std::uint64_t handle) const {
   const bool old = handle != 0 && handle >> 40 != generation_;
-  return {
-      ErrorCode::not_found, std::string("Unknown ") + what,
-      old ? std::string("The handle is of a GPU context that was lost. Add the ") + what + " again."
-          : std::string("There is no such ") + what + " on the GPU; it may have been removed.",
-      what};
+  return {ErrorCode::not_found, std::string("Unknown ") + what,
+          old ? std::string("The handle belongs to a GPU context that was lost. Add the ") + what +
+                    " again."
+              : std::string("The GPU has no such ") + what + ". It may have been removed.",
+          what};
 }
 
 ModelHandle GpuScene::add(Model model) {
@@ -156,7 +157,8 @@ Result<LayerHandle> GpuScene::add_layer(ModelHandle model_handle, ValueType type
   if (resolution < kLowestResolution || resolution > kMaxResolution ||
       !std::has_single_bit(static_cast<unsigned>(resolution))) {
     return fail(ErrorCode::invalid, "Resolution out of range",
-                "A layer's resolution is a power of two from 128 to 16384.", "resolution");
+                "The resolution of a layer must be a power of two from 128 to 16384.",
+                "resolution");
   }
   const int bytes = strata::bytes_per_texel(type);
   auto textures = STRATA_TRY(LayerTextures::create(type, resolution, tables_,

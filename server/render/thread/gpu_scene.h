@@ -12,13 +12,14 @@
 #include "render/memory/tile_reader.h"
 #include "render/thread/detail_budget.h"
 #include "render/thread/view_cache.h"
+#include "render/view/accumulation.h"
 #include "render/view/feature_pass.h"
 #include "render/view/shade_pass.h"
 
 namespace strata::render {
 
-// Everything that lives in one GL context: passes, pools, models, layers, views. Made and destroyed
-// as a whole, so that nothing of a lost context is left over. GPU thread only.
+// Everything in one GL context: passes, pools, models, layers, views. Created and destroyed as a
+// whole, so that nothing of a lost context remains. GPU thread only.
 class GpuScene {
  public:
   struct Model {
@@ -31,7 +32,7 @@ class GpuScene {
     std::unique_ptr<SurfaceImageTexture> texture;
   };
 
-  // `generation` goes into handles; `memory` and `messages` must outlive the scene.
+  // `generation` is part of handles; `memory` and `messages` must outlive the scene.
   static Result<std::unique_ptr<GpuScene>> create(const RendererOptions& options,
                                                   std::uint64_t generation, GpuMemory& memory,
                                                   gl::DebugMessages& messages);
@@ -49,13 +50,14 @@ class GpuScene {
   EditCuller& edit_culler() { return *edit_culler_; }
   EditPass& edit_pass() { return *edit_pass_; }
   TileReader& tile_reader() { return *tile_reader_; }
-  // Strokes are painted by KernelPainter, which needs no surface maps on the GPU.
+  // Whether KernelPainter paints strokes, which needs no surface maps on the GPU.
   bool edits_on_cpu() const { return info_.edit_path == EditPath::kernel; }
   MeshPass& gbuffer_pass() { return *gbuffer_pass_; }
   ShadePass& shade_pass() { return *shade_pass_; }
   FeaturePass& feature_pass() { return *feature_pass_; }
+  AccumulationPass& accumulation_pass() { return *accumulation_pass_; }
   DetailBudget& detail_budget() { return detail_budget_; }
-  // How much of a picture is shaded in a step, in pixels of one layer.
+  // The number of pixels of one layer that a step shades.
   int pixels_per_band() const {
     return info_.software ? kPixelsPerBandSoftware : kPixelsPerBandHardware;
   }
@@ -84,12 +86,12 @@ class GpuScene {
   GpuScene(const RendererOptions& options, std::uint64_t generation, GpuMemory& memory);
   Result<void> load();
   bool evict_one();
-  // The layer that was not used for the longest time; of `pool`, if one is given.
+  // Evicts the layer that was unused for the longest time; of `pool`, if given.
   bool let_a_layer_leave(const PagePool* pool = nullptr);
   std::uint64_t next_handle() { return generation_ << 40 | ++handles_; }
   Error unknown(const char* what, std::uint64_t handle) const;
 
-  gl::EglContext context_;  // first: destroyed after all that lives in it
+  gl::EglContext context_;  // first: destroyed after all its objects
   const RendererOptions options_;
   const std::uint64_t generation_;
   GpuMemory& memory_;
@@ -105,6 +107,7 @@ class GpuScene {
   std::optional<MeshPass> gbuffer_pass_;
   std::optional<ShadePass> shade_pass_;
   std::optional<FeaturePass> feature_pass_;
+  std::optional<AccumulationPass> accumulation_pass_;
   DetailBudget detail_budget_;
   std::unordered_map<ModelHandle, Model> models_;
   std::unordered_map<LayerHandle, GpuLayer> layers_;

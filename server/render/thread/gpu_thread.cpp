@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 
+#include <algorithm>
 #include <future>
 
 #include "core/log.h"
@@ -9,21 +10,22 @@
 namespace strata::render {
 namespace {
 
-// Polls so long without sleeping while the GPU works: what an edit reads back is usually there
+// Time of polling without sleep while the GPU works: the read-back of an edit is usually ready
 // within microseconds.
 constexpr auto kBusyPolling = std::chrono::microseconds(200);
 constexpr auto kPollPause = std::chrono::microseconds(100);
 constexpr auto kRecoveryPause = std::chrono::seconds(1);
-// Frames that were drawn and wait for their read-back; more would only hold memory.
+// Frames that are drawn and wait for their read-back; more would only use memory.
 constexpr std::size_t kMaxActiveFrames = 4;
-// Of edits before frames: a stroke is some milliseconds, so that only a flood of them takes as
-// long.
+// How long edits may run before frames: a stroke takes some milliseconds, so only very many edits
+// take this long.
 constexpr std::chrono::milliseconds kMaxAhead{30};
 
 Error lost_problem() {
   return {ErrorCode::gpu_lost,
           "GPU lost",
-          "The GPU context was lost and is being rebuilt. The work was not done; send it again.",
+          "The server lost the GPU context and is restoring it, so it could not do this. "
+          "Send the request again.",
           {}};
 }
 
@@ -101,10 +103,14 @@ void GpuThread::run() {
     if (broken_) abort_all(lost_problem());
     std::unique_lock lock(mutex_);
     const auto has_news = [&] {
-      return stopping_ || !replies_.empty() || frame_queued_ ||
-             (!current_[0] && !ordered_.empty()) || (!current_[1] && !background_.empty());
+      bool has_job = false;
+      for (std::size_t i = 0; i < lanes_.size(); ++i)
+        has_job = has_job || (!current_[i] && !lanes_[i].empty());
+      return stopping_ || !replies_.empty() || frame_queued_ || has_job;
     };
-    if (current_[0] || current_[1] || !frames_.empty()) {
+    const bool is_under_way =
+        std::ranges::any_of(current_, [](const auto& job) { return job.has_value(); });
+    if (is_under_way || !frames_.empty()) {
       // Something waits for the GPU.
       if (Clock::now() - last_progress > kBusyPolling)
         changed_.wait_for(lock, kPollPause, has_news);
@@ -115,13 +121,19 @@ void GpuThread::run() {
     }
     frame_queued_ = false;
   }
-  abort_all({ErrorCode::unavailable, "Renderer stopped", "The server is shutting down.", {}});
+  abort_all({ErrorCode::unavailable,
+             "Renderer stopped",
+             "The server is shutting down. Try again when it is running again.",
+             {}});
   hooks_.stop();
   {
     std::lock_guard lock(mutex_);
     stopped_ = true;
   }
-  abort_all({ErrorCode::unavailable, "Renderer stopped", "The server is shutting down.", {}});
+  abort_all({ErrorCode::unavailable,
+             "Renderer stopped",
+             "The server is shutting down. Try again when it is running again.",
+             {}});
   run_replies();
 }
 
@@ -145,11 +157,15 @@ bool GpuThread::run_some() {
 bool GpuThread::step_behind_edits() {
   if (step_frames()) return true;
   const auto step = step_lane(Lane::background);
-  return step && *step != Step::waiting;
+  if (step && *step != Step::waiting) return true;
+  // A frame that waits for the GPU would wait for the work of an idle job, too.
+  if (step || !frames_.empty() || current_[0]) return false;
+  const auto idle = step_lane(Lane::idle);
+  return idle && *idle != Step::waiting;
 }
 
 std::optional<Step> GpuThread::step_lane(Lane lane) {
-  auto& current = current_[static_cast<int>(lane)];
+  auto& current = current_[static_cast<std::size_t>(lane)];
   if (!current) {
     std::lock_guard lock(mutex_);
     if (queue(lane).empty()) return std::nullopt;
@@ -161,7 +177,7 @@ std::optional<Step> GpuThread::step_lane(Lane lane) {
   return step;
 }
 
-// The first frame that can go on does; a new one starts when all others wait for the GPU, or when
+// Runs the first frame that does not wait. A new one starts if all others wait for the GPU, or if
 // it is a small one whose turn it is.
 bool GpuThread::step_frames() {
   if (!frames_.empty() && frames_.size() < kMaxActiveFrames)
@@ -208,9 +224,9 @@ void GpuThread::abort_all(const Error& problem) {
   frames_.clear();
   {
     std::lock_guard lock(mutex_);
-    for (auto* lane : {&ordered_, &background_}) {
-      for (auto& job : *lane) jobs.push_back(std::move(job));
-      lane->clear();
+    for (auto& lane : lanes_) {
+      for (auto& job : lane) jobs.push_back(std::move(job));
+      lane.clear();
     }
   }
   for (auto& job : jobs) job.abort(problem);

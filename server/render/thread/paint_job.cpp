@@ -18,8 +18,8 @@ Result<void> validate(const StrokeBatch& stroke) {
   STRATA_TRY(validate(stroke.camera));
   if (stroke.path.empty() || stroke.path.size() > kMaxPathPoints) {
     return fail(ErrorCode::invalid, "Path length out of range",
-                "A stroke has 1 to " + std::to_string(kMaxPathPoints) +
-                    " points; send a longer one in parts.",
+                "A stroke must have 1 to " + std::to_string(kMaxPathPoints) +
+                    " points. Send a longer stroke in parts.",
                 "path");
   }
   for (const auto& point : stroke.path) {
@@ -29,34 +29,36 @@ Result<void> validate(const StrokeBatch& stroke) {
     }
   }
   if (!stroke.widths.empty() && stroke.widths.size() != stroke.path.size())
-    return fail(ErrorCode::invalid, "Widths do not fit",
-                "Give one width for each point of the path, or none.", "widths");
+    return fail(ErrorCode::invalid, "Wrong number of widths",
+                "Send one width for each point of the path, or no widths.", "widths");
   for (const double width : stroke.widths)
     if (!(width > 0 && width <= 1))
       return fail(ErrorCode::invalid, "Width out of range",
-                  "A width is a share of the radius: above 0, 1 at most.", "widths");
+                  "A width is a fraction of the radius: more than 0, and at most 1.", "widths");
   const double radius = stroke.radius_px > 0 ? stroke.radius_px : stroke.radius_world;
   if (!std::isfinite(radius) || radius <= 0) {
     return fail(ErrorCode::invalid, "Radius out of range",
-                "Give radius_px or radius_world as a number above 0.", "radius");
+                "Send radius_px or radius_world as a number above 0.", "radius");
   }
   if (stroke.shape == ToolShape::texture && !stroke.texture)
     return fail(ErrorCode::invalid, "Shape missing",
-                "A stroke with a shape of its own needs the shape's texture.", "shape");
+                "A stroke with a custom shape needs the texture of the shape.", "shape");
   if (const auto angle = stroke.max_angle_deg) {
     if (!(*angle > 0 && *angle <= 90))
       return fail(ErrorCode::invalid, "Angle out of range",
-                  "Give the largest angle in degrees: above 0, 90 at most.", "max_angle_deg");
+                  "Send the largest angle in degrees: more than 0, and at most 90.",
+                  "max_angle_deg");
     if (stroke.through)
-      return fail(ErrorCode::invalid, "Angle of what is hidden",
-                  "What is hidden is seen at no angle: leave out `through` or `max_angle_deg`.",
+      return fail(ErrorCode::invalid, "Angle for hidden surfaces",
+                  "A hidden surface has no viewing angle. Leave out either `through` or "
+                  "`max_angle_deg`.",
                   "max_angle_deg");
   }
   if (const auto bias = stroke.fixed_depth_bias; bias && !(*bias >= 0 && *bias <= 1)) {
-    return fail(
-        ErrorCode::invalid, "Depth bias out of range",
-        "A fixed depth bias is a share of the window's depth, 0 to 1. Leave it out to let it follow the surface.",
-        "depth_bias");
+    return fail(ErrorCode::invalid, "Depth bias out of range",
+                "A fixed depth bias is a fraction of the depth of the window, from 0 to 1. "
+                "Leave it out to let the server compute it from the surface.",
+                "depth_bias");
   }
   return {};
 }
@@ -77,7 +79,7 @@ Result<PaintTarget> PaintJob::target(GpuScene& scene) {
   if (map == model->maps.end()) {
     return fail(ErrorCode::conflict, "Surface map missing",
                 "The surface map of " + std::to_string(textures.resolution()) +
-                    " texels is not on the GPU yet. Try again soon.");
+                    " texels is not on the GPU yet. Try again in a moment.");
   }
   return PaintTarget{model->mesh(), *map->second, textures};
 }
@@ -135,13 +137,13 @@ Result<void> PaintJob::find_depth(GpuScene& scene) {
 }
 
 void PaintJob::finish(GpuScene& scene) {
-  // A reset between dispatch and read-back leaves rubbish in the mapped memory.
+  // A reset between dispatch and read-back leaves undefined data in the mapped memory.
   if (scene.lost()) {
-    abort(
-        {ErrorCode::gpu_lost,
-         "GPU lost",
-         "The GPU context was lost and is being rebuilt. The stroke was not painted; send it again.",
-         {}});
+    abort({ErrorCode::gpu_lost,
+           "GPU lost",
+           "The server lost the GPU context and is restoring it, so it did not paint the "
+           "stroke. Send the stroke again.",
+           {}});
     return;
   }
   done_(painter_->take_outcome());

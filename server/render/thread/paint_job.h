@@ -4,8 +4,8 @@
 
 namespace strata::render {
 
-// One stroke batch: the layer where it left the GPU, depth of the mesh where no view has it, then
-// what the StrokePainter does. A refused stroke has painted nothing.
+// Paints one stroke batch: uploads the layer if it was evicted, draws the depth of the mesh if no
+// view has it, then runs the StrokePainter. A refused stroke has painted nothing.
 class PaintJob {
  public:
   PaintJob(LayerHandle layer, StrokeBatch stroke, Renderer::Done<StrokeOutcome> done)
@@ -27,12 +27,12 @@ class PaintJob {
   Renderer::Done<StrokeOutcome> done_;
   Stage stage_ = Stage::layer;
   std::shared_ptr<const void> layer_use_;
-  std::shared_ptr<DepthBuffer> depth_;  // null where nothing asks for it
+  std::shared_ptr<DepthBuffer> depth_;  // null if the stroke does not need it
   MeshProgress drawn_;
   std::unique_ptr<StrokePainter> painter_;
 };
 
-// Bad paths, radii and cameras, before any GPU work.
+// Refuses bad paths, radii and cameras, before any GPU work.
 Result<void> validate(const StrokeBatch& stroke);
 
 }  // namespace strata::render

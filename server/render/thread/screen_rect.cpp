@@ -10,8 +10,8 @@
 namespace strata::render {
 namespace {
 
-// A texel's colour reaches the pixels around it, and so does its outline, which is wider in
-// pictures of more pixels than their window.
+// A texel's color affects the pixels around it, and so does its outline, which is wider in pictures
+// with more pixels than their window.
 double padding_px(double pixel_scale) {
   return 1.5 + shader::kOutlinePixels * std::max(1.0, pixel_scale);
 }
@@ -24,12 +24,12 @@ PixelRect around(const PixelRect& a, const PixelRect& b) {
           std::max(a.y + a.height, b.y + b.height) - y};
 }
 
-// Pixels that one rectangle around both has more than they have. Below zero where they overlap.
+// Additional pixels of one rectangle around both. Negative if they overlap.
 std::int64_t growth(const PixelRect& a, const PixelRect& b) {
   return area(around(a, b)) - area(a) - area(b);
 }
 
-// One more of `rects`, together with those that are cheaper to draw with it than apart.
+// Adds a rectangle to `rects`, merged with those that are cheaper to draw together.
 void add_rect(std::vector<PixelRect>& rects, PixelRect rect, std::int64_t rect_cost_px) {
   for (std::size_t i = 0; i < rects.size();) {
     if (growth(rects[i], rect) > rect_cost_px) {
@@ -43,7 +43,7 @@ void add_rect(std::vector<PixelRect>& rects, PixelRect rect, std::int64_t rect_c
   rects.push_back(rect);
 }
 
-// The two that grow least, taken out as one.
+// Removes the two that grow least by merging and returns the merged one.
 PixelRect take_nearest(std::vector<PixelRect>& rects) {
   std::size_t first = 0, second = 1;
   for (std::size_t i = 0; i < rects.size(); ++i)
@@ -107,7 +107,7 @@ std::vector<PixelRect> screen_rects(std::span<const FrameRequest::Box> boxes,
     if (rects.size() > kMaxScreenRects) add_rect(rects, take_nearest(rects), rect_cost_px);
   }
   if (rects.size() < 2) return rects;
-  // No two may be worth joining where all are: four that lie along the sides of a picture.
+  // Merging all may pay even if merging no two does, for example four along the sides of a picture.
   PixelRect all = rects.front();
   std::int64_t apart = -rect_cost_px;
   for (const PixelRect& rect : rects) {

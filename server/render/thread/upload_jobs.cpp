@@ -54,8 +54,9 @@ Result<bool> SurfaceImageUpload::advance(GpuScene& scene) {
   STRATA_TRY(scene.model(model_));
   if (!texture_) {
     if (!image_ || image_->levels.empty())
-      return fail(ErrorCode::invalid, "Look is empty",
-                  "A look needs a picture that is no larger than the GPU takes.", "look");
+      return fail(ErrorCode::invalid, "Invalid surface image",
+                  "A surface image needs a picture that is not larger than the GPU supports.",
+                  "look");
     auto texture = STRATA_TRY(
         SurfaceImageTexture::create(std::move(image_), scene.info().software, scene.memory()));
     texture_ = std::move(texture);
@@ -132,12 +133,12 @@ Result<bool> TilesUpload::advance(GpuScene& scene) {
 Result<void> TilesUpload::prepare(LayerTextures& layer, const TileUpload& tile) {
   if (!layer.contains(tile.address)) {
     return fail(ErrorCode::invalid, "Tile out of range",
-                "A tile's address must lie inside the layer.", "tiles");
+                "The address of a tile must be inside the layer.", "tiles");
   }
   if (is_empty(tile)) return {};
   if (tile.data->values.size() != static_cast<std::size_t>(kTexelsPerTile * pool_->texel_bytes())) {
-    return fail(ErrorCode::invalid, "Tile of another type",
-                "A tile must hold 128 x 128 values of the layer's type.", "tiles");
+    return fail(ErrorCode::invalid, "Wrong type of tile",
+                "A tile must contain 128 x 128 values of the type of the layer.", "tiles");
   }
   if (layer.page(tile.address) != shader::kNoPage) return {};
   auto page = STRATA_TRY(pool_->allocate());

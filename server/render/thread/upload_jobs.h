@@ -5,7 +5,7 @@
 
 namespace strata::render {
 
-// Uploads in slices of a few milliseconds. Each ends by `step` returning done or by `abort`.
+// Uploads in slices of a few milliseconds. Each ends by a `step` that returns done or by `abort`.
 
 class ModelUpload {
  public:
@@ -54,8 +54,9 @@ class SurfaceMapUpload {
   std::unique_ptr<SurfaceMapTextures> textures_;
 };
 
-// All pages are had before the first tile is written: an Error leaves the layer as it was. A page
-// is seen only once it holds its tile, so that frames may be drawn between the steps.
+// All pages are allocated before the first tile is written: after an Error the layer is unchanged.
+// A page becomes visible only when it contains its tile, so that frames may be drawn between the
+// steps.
 class TilesUpload {
  public:
   TilesUpload(LayerHandle layer, std::vector<TileUpload> tiles, Renderer::Done<void> done)
@@ -75,7 +76,7 @@ class TilesUpload {
   std::shared_ptr<const void> layer_use_;
   std::size_t prepared_ = 0, written_ = 0;  // tiles
   PagePool* pool_ = nullptr;                // of the layer
-  std::vector<PageId> pages_;               // of `pool_`, for tiles that have none yet
+  std::vector<PageId> pages_;               // of `pool_`, for tiles without a page
 };
 
 }  // namespace strata::render

@@ -8,11 +8,11 @@
 
 namespace strata::render {
 
-// What a view keeps between frames: the g-buffer of its camera and its last picture, which partial
-// frames add to. Without buffers (new, or evicted) it is only a name.
+// The state of a view between frames: the g-buffer of its camera and its last picture, which
+// partial frames update. Without buffers (new, or evicted) only the handle remains.
 struct View {
   ModelHandle model = 0;
-  bool drawing = false;  // a frame is under way: not to be evicted
+  bool drawing = false;  // a frame is in progress: must not be evicted
   std::uint64_t last_used = 0;
 
   DepthKey key;
@@ -31,16 +31,16 @@ struct View {
   glm::vec2 background_rows{0, 1};
   double unit_mm = 0;
   FeaturesShown features;
-  FeatureBuffer seen_features;  // the marks, as the camera of the g-buffer sees them
+  FeatureBuffer seen_features;  // the marks as seen by the camera of the g-buffer
 
   bool has_buffers() const { return static_cast<bool>(picture); }
   void drop_buffers();
-  // Whether the picture shows this request, but for what changed on the surface.
+  // Whether the picture shows this request, except for changes on the surface.
   bool shows(const FrameRequest& request) const;
 };
 
-// Makes `view`'s buffers fit the size and the camera of `key`, as new: a depth buffer that an edit
-// uses is left to it.
+// Prepares new buffers of `view` for the size and the camera of `key`. A depth buffer that an edit
+// uses is left to that edit.
 Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& depths,
                              GpuMemory& memory);
 

@@ -1,6 +1,7 @@
-"""A Strata server of the test's own: real PostgreSQL, real GL, any free port, a temporary data folder.
+"""A separate Strata server for a test: real PostgreSQL, real GL, any free port, a temporary data
+folder.
 
-Reads STRATA_BINARY. Nothing here waits for a time: everything waits for a condition, up to LONG_S.
+Reads STRATA_BINARY. Functions here wait for conditions, up to LONG_S, never for a fixed time.
 """
 import ctypes
 import http.client
@@ -20,16 +21,16 @@ from .contract import Contract
 
 LONG_S = 180
 IN_MEMORY = "/dev/shm"
-OFTEN = ["--recheck-every", "1"]  # so that tests need not wait for it
+OFTEN = ["--recheck-every", "1"]  # so that tests do not wait for the default
 ROOM_BYTES = 8 << 30  # for several tests at once, of which one writes gigabytes
 
-# Calls that tokens for scripts may not make, the owner's among them once an administrator has a
+# Calls that are refused for tokens of scripts; the owner's token is one once an administrator has a
 # password.
 OF_ACCOUNTS = re.compile(r"/(users|groups|me/)|/projects/[^/]+/(members|groups)(/|$)|.*/kiosks$")
 
 
 def _place_of_data():
-    """In memory where there is room, since a disk is slow for a database; open to all in any case."""
+    """In memory if there is room, because a disk is slow for a database; open to all."""
     wanted = os.environ.get("STRATA_TEST_TMP")
     if wanted:
         return wanted
@@ -38,7 +39,7 @@ def _place_of_data():
 
 
 def wait_for(condition, what, limit_s=LONG_S, every_s=0.02):
-    """The first true result of `condition`."""
+    """Returns the first true result of `condition`."""
     end = time.monotonic() + limit_s
     while True:
         found = condition()
@@ -50,7 +51,7 @@ def wait_for(condition, what, limit_s=LONG_S, every_s=0.02):
 
 
 def _end_with_parent():
-    """A test that is killed (by CTest's time limit) takes its server with it."""
+    """If a test is killed (by CTest's time limit), its server is killed, too."""
     ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
 
 
@@ -68,7 +69,7 @@ class Answer:
 
 
 class StrataServer:
-    running = []  # those in a `with`, whose logs a failure shows
+    running = []  # servers in a `with`; a failure shows their logs
 
     def __init__(self, demo=False, options=()):
         self.binary = os.environ["STRATA_BINARY"]
@@ -78,8 +79,8 @@ class StrataServer:
         self.data = tempfile.mkdtemp(prefix="strata-e2e-", dir=_place_of_data())
         os.chmod(self.data, 0o755)
         self.process = None
-        self.session = None  # of the owner, for calls on accounts
-        self.tls = None  # an ssl.SSLContext when the server is spoken to by https
+        self.session = None  # the owner's session, for calls on accounts
+        self.tls = None  # an ssl.SSLContext if the server uses https
         self.contract = Contract()
         self.host, self.port, self.link = "127.0.0.1", None, None
         self.log = []
@@ -87,13 +88,14 @@ class StrataServer:
         self.demo = demo
 
     def _fill(self):
-        """Copies what tests/support/prepare made, or makes it where that did not run. What a test has put into the folder stays."""
+        """Copies the result of tests/support/prepare, or makes the data if that did not run. Keeps
+        files that a test has put into the folder."""
         if os.listdir(self.data):
             return
         prepared = os.environ.get("STRATA_TEST_PREPARED")
         if prepared:
             kind = "demo" if self.demo else "empty"
-            # With owners and modes: PostgreSQL insists on both.
+            # With owners and modes: PostgreSQL requires both.
             subprocess.run(["cp", "-a", os.path.join(prepared, kind, "."), self.data], check=True)
         elif self.demo:
             done = subprocess.run(
@@ -130,15 +132,16 @@ class StrataServer:
         return "\n".join(self.log[-200:])
 
     def remove(self):
-        # The kernel ends PostgreSQL with its server; it writes until then.
+        # The kernel ends PostgreSQL with its server; until then it writes.
         wait_for(lambda: self.postmaster() is None, "the private PostgreSQL to end")
         shutil.rmtree(self.data, ignore_errors=True)
 
     def environment(self):
-        return {**os.environ, "STRATA_OWNER_TOKEN": self.token}
+        # Pictures that are not refined have the same pixels at any moment of rest.
+        return {"STRATA_SAMPLES_AT_REST": "1", **os.environ, "STRATA_OWNER_TOKEN": self.token}
 
     def start(self):
-        """Starts it (again) and returns once it listens."""
+        """Starts it (again) and returns when it listens."""
         self._fill()
         self.process = subprocess.Popen(
             [
@@ -183,19 +186,19 @@ class StrataServer:
         return f"{'https' if self.tls else 'http'}://{self.host}:{self.port}"
 
     def kill(self):
-        """kill -9, and waits for the end."""
+        """Sends kill -9, and waits for the end."""
         with self.changed:
             self.port = None
         self.process.kill()
         self.process.wait()
 
     def stop(self):
-        """SIGTERM; the exit status."""
+        """Sends SIGTERM; returns the exit status."""
         self.process.send_signal(signal.SIGTERM)
         return self.process.wait(LONG_S)
 
     def postmaster(self):
-        """Process id of the private PostgreSQL, or None."""
+        """Returns the process id of the private PostgreSQL, or None."""
         try:
             with open(
                 os.path.join(self.data, "postgres", "pgdata", "postmaster.pid"), encoding="ascii"
@@ -207,7 +210,8 @@ class StrataServer:
             return None
 
     def assert_clean_log(self, warnings=()):
-        """No errors, and only those warnings and lines of libraries that contain one of the given words (of a fault that the test made)."""
+        """Checks that the log has no errors, and only warnings and lines of libraries that contain
+        one of the given words (about a fault that the test made)."""
         bad = []
         for line in self.log:
             level = line.split(" ")[1:2]
@@ -222,7 +226,8 @@ class StrataServer:
         assert not bad, "the log of the server is not clean:\n" + "\n".join(bad[:50])
 
     def sql(self, statement):
-        """By the private database's own door, for what no other door does. What it answers, without names of columns."""
+        """Runs SQL in the private database, for effects that the API does not offer. Returns the
+        result without names of columns."""
         with open(
             os.path.join(self.data, "postgres", "pgdata", "postmaster.pid"), encoding="ascii"
         ) as file:
@@ -257,7 +262,8 @@ class StrataServer:
         return http.client.HTTPConnection(self.host, port, timeout=LONG_S)
 
     def owners_secret(self, path):
-        """What a call of the owner's carries: the token, or for accounts a session, which stays the owner's whoever chooses a password."""
+        """Returns the headers of a call as the owner: the token, or for accounts a session, which
+        stays the owner's after anybody chooses a password."""
         if not OF_ACCOUNTS.match(path):
             return self.token
         if self.session is None:
@@ -269,7 +275,8 @@ class StrataServer:
         self.session = signed.headers["Set-Cookie"].split(";")[0].partition("=")[2]
 
     def request(self, method, path, body=None, headers=None, token=True, connection=None):
-        """One request; its answer must be one that the contract has. `path` after /api/v1 unless it starts with //; a dict or list as body is sent as JSON."""
+        """Makes one request; the contract must have its answer. `path` follows /api/v1 unless it
+        starts with //; a dict or list as body is sent as JSON."""
         target = path[1:] if path.startswith("//") else "/api/v1" + path
         sent = {}
         if token:
@@ -311,7 +318,7 @@ class StrataServer:
         )
 
     def add_person(self, user, role):
-        """A token for scripts of a new person."""
+        """Creates a person; returns a token for their scripts."""
         invitation = (
             self.ok("POST", "/users", {"user": user, "role": role}).json()["path"].partition("#")[2]
         )

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using Variants = std::vector<std::vector<std::string>>;
 
-// Every program the server builds: files and the defines they are built with.
+// Every program of the server: its files and its defines.
 const std::map<std::vector<std::string>, Variants> kPrograms{
     {{"mesh.vert", "depth_pass.frag"}, {{}, {"SECTION"}}},
     {{"mesh.vert", "gbuffer_pass.frag"},
@@ -42,6 +42,7 @@ const std::map<std::vector<std::string>, Variants> kPrograms{
       {"TOOL_TEXTURE", "TEXEL_FORMAT r16ui"},
       {"TOOL_TEXTURE", "TEXEL_FORMAT r32ui"}}},
     {{"tile_read_pass.comp"}, {{"TEXEL_BYTES 1"}, {"TEXEL_BYTES 2"}, {"TEXEL_BYTES 4"}}},
+    {{"picture.vert", "accumulate_pass.frag"}, {{}}},
     {{"picture.vert", "background_pass.frag"}, {{}}},
     {{"feature_pass.vert", "feature_pass.frag"}, {{}}},
     {{"feature_sight_pass.comp"}, {{"CLOSE_GAPS 0"}, {"CLOSE_GAPS 1"}}},

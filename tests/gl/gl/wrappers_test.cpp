@@ -35,8 +35,8 @@ class GlWrapper : public testing::Test {
   EglContext context_;
 };
 
-// Constructed, moved, assigned over another, moved-from is empty, and the name lives as long as its
-// last owner.
+// Objects are constructed, moved and assigned over another; a moved-from object is empty, and the
+// name exists as long as its last owner.
 template <class T, class IsName>
 void expect_moves(T first, T second, IsName is_name) {
   const GLuint name = first.id(), other = second.id();

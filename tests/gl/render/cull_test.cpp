@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kResolution = 2048;
 
-// Both cullers over one scene, in the GL context of a renderer.
+// Both cullers for one scene, in the GL context of a renderer.
 class Cullers {
  public:
   explicit Cullers(const Scene& scene)
@@ -125,7 +125,7 @@ TEST(EditCuller, lists_the_parts_that_the_cpu_lists_and_few_others) {
       std::set<TileAddress> tiles;
       for (const auto& tile : expected.tiles) {
         for (const auto& part : std::span(expected.parts).subspan(tile.first, tile.count)) {
-          // The CPU takes eight parts at once where the tool covers them, without a look at each.
+          // Where the tool covers eight parts, the CPU takes them at once without testing each.
           const auto listed = found.parts.find(part.part);
           if (listed == found.parts.end()) {
             EXPECT_TRUE(part.in_tool);

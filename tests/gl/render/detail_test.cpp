@@ -13,8 +13,7 @@
 namespace strata::test {
 namespace {
 
-// A sphere with more triangles than a moving camera has time for on a CPU, whatever the machine
-// does meanwhile.
+// A sphere with too many triangles for a moving camera on a CPU, on any machine under any load.
 class Detail : public testing::Test {
  protected:
   Detail() : scene_(make_scene(bumpy_sphere(300), 512)) {
@@ -67,7 +66,7 @@ TEST_F(Detail, never_reaches_the_depth_of_an_edit) {
   const auto fresh = renderer_.add_layer(model_, ValueType::u8, 512);
   const auto stroke = dab(request_.camera, 160, 120, 60);
   request_.moving = true;
-  renderer_.draw(request_);  // a coarse depth of the very camera
+  renderer_.draw(request_);  // leaves a coarse depth of the same camera
   const auto after_moving = renderer_.paint(layer, stroke);
   request_.moving = false;
   renderer_.draw(request_);
@@ -81,7 +80,7 @@ TEST_F(Detail, never_reaches_the_depth_of_an_edit) {
 }
 
 TEST_F(Detail, does_not_matter_for_clusters_outside_the_window) {
-  // The same mesh with boxes that are never outside: everything is drawn.
+  // The same mesh with boxes that are never outside, so that everything is drawn.
   auto unculled = std::make_shared<mesh::Geometry>(*scene_.geometry);
   for (auto& box : unculled->clusters) box = {unculled->box_min, unculled->box_max};
   Scene all;
@@ -102,7 +101,7 @@ TEST_F(Detail, does_not_matter_for_clusters_outside_the_window) {
 // A sphere of 380 clusters, drawn until it is complete.
 class Hidden : public testing::Test {
  protected:
-  // Commands that lost their draw.
+  // Returns the number of commands that lost their draw.
   static std::size_t draw(render::MeshPass& pass, const render::MeshBuffers& mesh,
                           const Camera& camera, render::DepthBuffer& buffer) {
     render::MeshProgress progress;
@@ -153,7 +152,7 @@ TEST_F(Hidden, clusters_of_the_far_side_are_most_of_it) {
     auto mesh = render::MeshBuffers::create(scene_.geometry, memory);
     while (!(*mesh)->upload_slice()) {
     }
-    // However much is drawn at once.
+    // For any amount that is drawn at once.
     for (const std::size_t slice : {std::size_t{1} << 13, std::size_t{1} << 30}) {
       auto pass = render::MeshPass::create(render::MeshPass::Kind::depth, shader_dir(), slice);
       ASSERT_TRUE(pass);
@@ -180,7 +179,7 @@ TEST(DetailBudget, learns_from_what_drawings_took) {
   EXPECT_EQ(budget.choose(levels), 0);
   for (int i = 0; i < 50; ++i) budget.drawn(1'000'000, 60);
   EXPECT_EQ(budget.choose(levels), 1);
-  for (int i = 0; i < 50; ++i) budget.drawn(100, 1);  // too few to tell
+  for (int i = 0; i < 50; ++i) budget.drawn(100, 1);  // too few for a decision
   EXPECT_EQ(budget.choose(levels), 1);
 }
 

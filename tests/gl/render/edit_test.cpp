@@ -126,7 +126,7 @@ TEST(Edit, an_occluded_texel_is_not_painted) {
     front += tile.written.count();
   }
   EXPECT_GT(front, 5000);
-  // From behind, the other sheet is the one that is seen.
+  // From behind, the other sheet is visible.
   for (const auto& tile :
        renderer
            .paint(layer, dab(perspective_camera({0, 0, -2}, {0, 0, 0}, 800, 600), 400, 300, 100))
@@ -176,7 +176,7 @@ TEST(Edit, a_radius_in_model_units_grows_towards_the_eye_along_a_segment) {
   TestRenderer renderer;
   const auto scene = make_scene(flat_square(8), 1024);
   const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, 1024);
-  // Looking along the square at a slant: the lower end of the path is nearer.
+  // A view of the square at an angle: the lower end of the path is nearer.
   const auto camera = perspective_camera({0, -1.2, 0.9}, {0, 0, 0}, 800, 600);
   auto stroke = dab(camera, 400, 250, 0);
   stroke.path = {{400, 220}, {400, 420}};
@@ -204,7 +204,7 @@ TEST(Edit, a_radius_in_model_units_does_not_depend_on_the_units_of_the_view) {
     stroke.radius_world = 0.2;
     return written_texels(renderer.paint(renderer.add_layer(model, ValueType::u8, 1024), stroke));
   };
-  auto scaled = camera;  // sees the same: only the units of its view space are others
+  auto scaled = camera;  // the same view; only the units of its view space differ
   scaled.view = glm::scale(glm::dmat4(1.0), glm::dvec3(2.5)) * camera.view;
   EXPECT_NEAR(written_from(scaled), written_from(camera), 20);
 }
@@ -225,8 +225,8 @@ TEST(Edit, a_radius_far_beyond_the_window_paints_all_that_is_seen) {
   EXPECT_EQ(written_by(1e300, 0), all);
 }
 
-// While one lives on the GPU thread, the driver refuses to map the buffer after the next `granted`
-// ones.
+// While an object exists, the driver refuses to map the buffer after the next `granted` times. GPU
+// thread only.
 class MapRefusal {
  public:
   explicit MapRefusal(int granted) : real_(epoxy_glMapNamedBufferRange) {
@@ -252,7 +252,7 @@ TEST(Edit, a_stroke_that_is_refused_for_want_of_memory_has_painted_nothing) {
     GTEST_SKIP() << "the kernel maps no buffer";
   int refusals = 0;
   for (bool painted = false; !painted; ++refusals) {
-    TestRenderer renderer;  // a new one has no buffer that would serve again
+    TestRenderer renderer;  // a new one has no buffer to reuse
     const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, 256);
     std::optional<MapRefusal> refusal;
     renderer->run_on_gpu_thread_for_test([&] { refusal.emplace(refusals); });
@@ -338,7 +338,7 @@ TEST(Edit, gutter_texels_follow_their_owner) {
     for (int x = 0; x < kResolution; ++x) {
       const Texel gutter = texel(x, y);
       if (!gutter.owned || gutter.surface) continue;
-      // Its owner is the surface texel nearby that has its position.
+      // Its owner is the nearby surface texel with the same position.
       float nearest = 1e-5f;
       std::size_t owner = 0;
       for (int dy = -3; dy <= 3; ++dy) {
@@ -384,7 +384,7 @@ TEST(Edit, strokes_that_cannot_be_painted_are_refused_with_a_reason) {
   auto stroke = dab(camera, 50, 50, 10);
   refused(layer + 100, stroke, ErrorCode::not_found);
   refused(renderer.add_layer(model, ValueType::u8, 512), stroke,
-          ErrorCode::conflict);  // no surface map of 512
+          ErrorCode::conflict);  // the model has no surface map of 512
   stroke.path.clear();
   refused(layer, stroke, ErrorCode::invalid);
   refused(layer, dab(camera, std::nan(""), 0, 10), ErrorCode::invalid);

@@ -74,7 +74,7 @@ TEST(Layers, memory_grows_with_what_is_painted_and_is_freed_when_erased) {
   eraser.erase = true;
   renderer.paint(layer, eraser);
   EXPECT_EQ(renderer->layer_bytes_used(layer), empty);
-  // Pages of the erased paint serve again, and hold nothing of it.
+  // Pages of the erased texels are reused, and have no texels of them.
   const auto pool = renderer->gpu_bytes_used();
   const auto again = renderer.paint(layer, dab(camera, 700, 700, 60, 9));
   EXPECT_EQ(renderer->gpu_bytes_used(), pool);
@@ -154,7 +154,7 @@ TEST(Layers, memory_of_removed_layers_serves_layers_of_other_widths) {
 class Leaving : public testing::Test {
  protected:
   static constexpr int kResolution = 2048, kTilesPerSide = kResolution / kTileSize;
-  // What the model takes, and two chunks of 256 pages of four bytes at 20 MiB, and views.
+  // The memory of the model, two chunks of 256 pages of four bytes at 20 MiB, and views.
   static render::RendererOptions options() {
     static const std::uint64_t model_bytes = [] {
       TestRenderer renderer;
@@ -170,7 +170,7 @@ class Leaving : public testing::Test {
     std::shared_ptr<TileMirror> mirror;
     render::LayerHandle handle = 0;
   };
-  // Filled with `value`.
+  // Makes a layer filled with `value`.
   Mirrored add(std::uint32_t value) {
     Mirrored layer{std::make_shared<TileMirror>(ValueType::u32, kResolution)};
     auto tile = std::make_shared<TileData>(ValueType::u32);
@@ -314,7 +314,7 @@ TEST(Layers, painting_beyond_the_memory_budget_is_refused_and_changes_nothing) {
       [&](auto done) { renderer->paint(layer, dab(camera, 100, 100, 40), std::move(done)); });
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::out_of_memory);
-  EXPECT_NE(refused.error().detail.find("budget of 12 MiB of GPU memory is used up"),
+  EXPECT_NE(refused.error().detail.find("budget of 12 MiB of GPU memory is exhausted"),
             std::string::npos)
       << refused.error().detail;
   EXPECT_EQ(renderer->layer_bytes_used(layer), empty);

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "render/thread/frame_queue.h"
+#include "render/thread/refinements.h"
 
 namespace strata::render {
 namespace {
@@ -16,7 +17,7 @@ const Box kBox{{0, 0, 0}, {1, 1, 1}}, kOther{{2, 2, 2}, {3, 3, 3}};
 using Answer = std::optional<ErrorCode>;
 constexpr Answer kDrawn = std::nullopt;
 
-// Requests are told apart by what they answered.
+// The answers identify the requests.
 class FrameTurns : public testing::Test {
  protected:
   FrameQueue::Pushed push(FrameQueue& queue, const FrameRequest& request, int number = 0) {
@@ -47,7 +48,7 @@ class FrameTurns : public testing::Test {
     request.model = model;
     return request;
   }
-  // Takes what is next and says whose it was.
+  // Takes the next task and returns its view.
   static ViewHandle draw(FrameQueue& queue, double took_ms = 1) {
     const auto task = queue.take();
     if (!task) return 0;
@@ -69,7 +70,7 @@ TEST_F(FrameTurns, the_latest_request_of_a_view_wins_and_inherits_what_was_to_be
   ASSERT_TRUE(taken);
   EXPECT_EQ(taken->request.width, 20);
   EXPECT_EQ(*taken->request.changed, (Boxes{kOther, kBox}));
-  // A replaced request for everything makes its successor one for everything.
+  // A request that follows a request for the whole picture is also for the whole picture.
   queue.finished(*taken, 1);
   push(queue, whole(1, 10));
   push(queue, part(1, {kOther}, 20));
@@ -114,7 +115,7 @@ TEST_F(FrameTurns, who_only_looks_is_served_before_the_next_picture_of_who_turns
   for (ViewHandle turning = 1; turning <= 4; ++turning) push(queue, whole(turning));
   push(queue, part(9));
   EXPECT_EQ(draw(queue, 1), 9u);
-  // Rest is no credit for later: who asked for nothing so long takes turns from now on.
+  // Time without requests is no credit: such a view takes turns from now on.
   int looked = 0;
   for (int i = 0; i < 20; ++i) {
     push(queue, part(9));
@@ -158,7 +159,7 @@ TEST_F(FrameTurns, any_smaller_picture_whose_turn_it_is_goes_before_a_band_of_a_
   const auto small = queue.take_part(half_done(5));
   ASSERT_TRUE(small);
   EXPECT_EQ(small->request.view, 3u);
-  // Beside a picture that is not large they wait as ever.
+  // In addition to a picture that is not large, they wait as usual.
   push(queue, whole(4));
   EXPECT_FALSE(queue.take_part(
       std::vector{FrameTask::Turn{false, 100, false}, FrameTask::Turn{false, 100, true}}));
@@ -174,7 +175,7 @@ TEST_F(FrameTurns, bands_of_large_pictures_take_turns_with_live_views_and_leave_
   EXPECT_EQ(draw(queue), 4u);
   queue.finished(*first, 50);
   queue.finished(*second, 50);
-  // Large ones of three and a view that always wants more: by time all have the same.
+  // Large pictures of three views and a view with constant requests: all get the same time.
   std::map<ViewHandle, int> drawn;
   push(queue, large(whole(1)));
   push(queue, large(whole(2)));
@@ -209,7 +210,7 @@ TEST_F(FrameTurns, a_hundred_onlookers_and_one_who_acts_have_half_of_the_time_ea
   EXPECT_NEAR(turns[kActor], 200, 2);
   EXPECT_EQ(turns.size(), 101u) << "everybody sees something";
   for (const auto& [view, count] : turns) EXPECT_LE(count, view == kActor ? 202 : 3) << view;
-  // Alone, onlookers have all of it, which is no credit for who acts later.
+  // Alone, onlookers get all the time, which gives no credit to a view that acts later.
   for (int i = 0; i < 400; ++i) surface_image_on(draw(queue, 20));
   int acted = 0;
   for (int i = 0; i < 20; ++i) {
@@ -243,12 +244,12 @@ TEST_F(FrameTurns, rectangles_do_not_use_up_the_time_of_whole_pictures_of_those_
     FrameTask task;
     double busy_ms = 0;
   };
-  std::deque<Drawing> under_way;  // as GpuThread has them: what comes before others in front
+  std::deque<Drawing> under_way;  // as in GpuThread: urgent work is in front
   double turning_ms = 0, painting_ms = 0, onlookers_ms = 0;
   const auto surface_image_on = [&](ViewHandle view) { push(queue, part(view)); };
   for (ViewHandle view = 1; view <= 100; ++view) surface_image_on(view);
   for (int now_ms = 0; now_ms < 20'000; now_ms += 5) {
-    // Newer requests take the place of what waits all the time.
+    // Newer requests replace those that wait all the time.
     push(queue, acting(whole(kTurning, now_ms + 1)));
     push(queue, acting(part(kPainting)));
     if (under_way.empty()) {
@@ -308,7 +309,7 @@ TEST_F(FrameTurns, a_picture_that_one_of_its_askers_acts_in_is_theirs) {
   EXPECT_TRUE(task->turn.acting);
   EXPECT_EQ(task->askers.size(), 2u);
   queue.finished(*task, 0);
-  // Who acted asks for something else meanwhile: what is left is an onlooker's.
+  // The active view now requests something else: the rest belongs to an onlooker.
   push(queue, shared(part(1)));
   push(queue, acting(shared(part(3))));
   push(queue, acting(whole(3, 5)));
@@ -320,7 +321,7 @@ TEST_F(FrameTurns, the_same_picture_of_several_views_is_drawn_once_by_the_view_t
   FrameQueue queue(8);
   push(queue, shared(whole(1)), 1);
   EXPECT_EQ(draw(queue), 1u);
-  // An edit: view 1 draws, and the others, of which none has drawn anything, wait for it.
+  // After an edit: view 1 draws, and the other views, of which none has drawn, wait for it.
   push(queue, shared(part(1)), 1);
   const auto first = queue.take();
   push(queue, shared(part(2)), 2);
@@ -349,15 +350,15 @@ TEST_F(FrameTurns, pictures_that_differ_in_anything_are_not_shared) {
   others[5].style.images = {{1, 1}};
   others[6].style.features = std::make_shared<const std::vector<DrawnFeature>>();
   others[7].style.unit_mm = 1;
-  others[8].changed.reset();  // nobody is sent a whole picture who lacks a rectangle
+  others[8].changed.reset();  // a view that lacks a rectangle gets no whole picture
   push(queue, base);
   ViewHandle view = 1;
   for (auto& other : others) {
     other.view = ++view;
     push(queue, other);
   }
-  auto not_told = part(++view);
-  push(queue, not_told);
+  auto not_reported = part(++view);
+  push(queue, not_reported);
   for (ViewHandle i = 1; i <= view; ++i) EXPECT_EQ(queue.take()->askers.size(), 1u);
   EXPECT_FALSE(queue.take());
 }
@@ -381,7 +382,7 @@ TEST_F(FrameTurns, a_view_that_is_removed_draws_no_more_for_others) {
   queue.forget(1);
   push(queue, shared(part(2)));
   EXPECT_EQ(queue.take()->request.view, 2u);
-  // One that waits meanwhile is answered all the same, when its turn comes.
+  // A request that waits in the meantime is still answered in its turn.
   push(queue, part(3));
   queue.forget(3);
   EXPECT_EQ(queue.take()->request.view, 3u);
@@ -399,6 +400,59 @@ TEST_F(FrameTurns, a_request_that_leaves_a_shared_picture_leaves_the_others_ther
   push(queue, whole(4));
   EXPECT_EQ(queue.take_all().size(), 1u);
   EXPECT_FALSE(queue.take());
+}
+
+// Refinements of views, and what they were answered.
+class RefinementTasks : public testing::Test {
+ protected:
+  using Answer = std::optional<ErrorCode>;
+  std::shared_ptr<Refinements::Task> push(ViewHandle view, int width = 100) {
+    FrameRequest request;
+    request.view = view;
+    request.model = 7;
+    request.width = width;
+    request.samples = 16;
+    return refinements_.push(request, [this, view](const Result<SharedFrame>& frame) {
+      answers_[view] = frame ? kDrawn : Answer(frame.error().code);
+    });
+  }
+  Refinements refinements_;
+  std::map<ViewHandle, Answer> answers_;
+};
+
+TEST_F(RefinementTasks, equal_pictures_that_wait_are_one_task) {
+  const auto task = push(1);
+  ASSERT_TRUE(task);
+  EXPECT_FALSE(push(2));
+  EXPECT_TRUE(push(3, 200)) << "another size";
+  EXPECT_TRUE(refinements_.continues(*task));
+  EXPECT_TRUE(push(4)) << "a task that was started may show an older state";
+  refinements_.answer(*task, std::make_shared<const Frame>());
+  EXPECT_EQ(answers_, (std::map<ViewHandle, Answer>{{1, kDrawn}, {2, kDrawn}}));
+}
+
+TEST_F(RefinementTasks, news_of_one_view_do_not_end_the_refinement_of_others) {
+  const auto task = push(1);
+  push(2);
+  push(3);
+  EXPECT_TRUE(refinements_.continues(*task));
+  refinements_.overtake(1);
+  EXPECT_TRUE(refinements_.continues(*task));
+  EXPECT_EQ(answers_, (std::map<ViewHandle, Answer>{{1, ErrorCode::superseded}}));
+  refinements_.forget(3);
+  EXPECT_TRUE(refinements_.continues(*task));
+  EXPECT_EQ(answers_[3], ErrorCode::superseded);
+  refinements_.answer(*task, std::make_shared<const Frame>());
+  EXPECT_EQ(answers_[2], kDrawn);
+}
+
+TEST_F(RefinementTasks, a_refinement_that_nobody_waits_for_ends) {
+  const auto task = push(1);
+  refinements_.overtake(1);
+  refinements_.overtake(2);  // never asked for one
+  EXPECT_FALSE(refinements_.continues(*task));
+  EXPECT_EQ(answers_[1], ErrorCode::superseded);
+  EXPECT_TRUE(refinements_.continues(*push(1))) << "what it asks for afterwards is new";
 }
 
 }  // namespace

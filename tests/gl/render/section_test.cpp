@@ -11,10 +11,10 @@ namespace strata::test {
 namespace {
 
 constexpr int kResolution = 1024, kSize = 400;
-constexpr int kUndecidedOneIn = 5'000;              // the planes are a further threshold
+constexpr int kUndecidedOneIn = 5'000;              // the planes are an additional threshold
 constexpr std::array<int, 3> kInside{120, 92, 79};  // gbuffer_pass.frag
 
-// A ball of radius 1 with a hollow of radius 0.7: the outer surface lies in the left half of the
+// A ball of radius 1 with a hollow of radius 0.7: the outer surface is in the left half of the
 // atlas.
 mesh::TriangleMesh hollow_ball() {
   auto ball = bumpy_sphere(40);
@@ -42,7 +42,7 @@ class Section : public testing::Test {
  protected:
   Section() : scene_(make_scene(hollow_ball(), kResolution)), model_(renderer_.add(scene_)) {
     camera_ = orthographic_camera({4, 0, 0}, {0, 0, 0}, kSize, kSize, 1.25);
-    camera_.section = {{-2, 0, 0, 0}};  // keeps x below 0: the half that is away from the eye
+    camera_.section = {{-2, 0, 0, 0}};  // keeps x below 0: the half on the far side
   }
   std::array<int, 3> pixel(const Camera& camera, int x, int y) {
     render::FrameRequest request;
@@ -54,7 +54,8 @@ class Section : public testing::Test {
     const auto* p = &frame.pixels[4 * static_cast<std::size_t>(y * frame.width + x)];
     return {p[0], p[1], p[2]};
   }
-  // From the middle to the right, where the ball's wall is cut between 0.7 and 1.
+  // Returns the pixel at a radius to the right of the center; the cut wall of the ball is between
+  // 0.7 and 1.
   static int at_radius(double radius) { return static_cast<int>(kSize / 2 * (1 + radius / 1.25)); }
   render::StrokeOutcome paint(const StrokeBatch& stroke) {
     return renderer_.paint(renderer_.add_layer(model_, ValueType::u8, kResolution), stroke);
@@ -143,7 +144,7 @@ TEST_F(Section, painting_through_stops_at_the_planes) {
 }
 
 TEST_F(Section, an_edit_does_not_use_the_depth_of_another_section) {
-  (void)pixel(camera_, 0, 0);  // a view of the cut ball leaves its depth behind
+  (void)pixel(camera_, 0, 0);  // a view of the cut ball leaves its depth
   StrokeBatch uncut = dab(camera_, kSize / 2, kSize / 2, 20);
   uncut.camera.section.clear();
   expect_as_oracle(renderer_, scene_, uncut, {100, kUndecidedOneIn}, model_);

@@ -12,9 +12,8 @@ namespace {
 
 constexpr int kSize = 256;
 
-// A flat square that fills the picture: pixel (x, y) shows texel 0.05 … 0.95 of the atlas. One
-// renderer with layers that are filled everywhere with one value make every pixel a sample of the
-// palette.
+// A flat square that fills the picture: pixel (x, y) shows texel 0.05 … 0.95 of the atlas. With one
+// renderer and layers of a single value, every pixel is a sample of the palette.
 class Shade : public testing::Test {
  protected:
   Shade()
@@ -39,7 +38,7 @@ class Shade : public testing::Test {
     const auto* p = &frame.pixels[4 * static_cast<std::size_t>(y * frame.width + x)];
     return {double(p[0]), double(p[1]), double(p[2])};
   }
-  // Light on the square, from a layer that is plain white.
+  // Returns the light on the square, measured with a white layer.
   double light() {
     auto white = std::make_shared<Palette>(
         Palette{PaletteMode::step, 0, 1, {{0, {255, 255, 255, 255}, {}}}, {}});
@@ -52,7 +51,7 @@ class Shade : public testing::Test {
     const auto got = pixel(renderer_.draw(request_), 100, 90);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(got[i], unlit[i] * lit, 2.0) << "channel " << i;
   }
-  // A bumpy sphere with an empty layer, seen whole.
+  // A bumpy sphere with an empty layer, completely visible.
   struct Sphere {
     render::LayerHandle layer;
     std::shared_ptr<const Palette> palette;
@@ -159,8 +158,8 @@ TEST_F(Shade, a_palette_lists_as_many_keys_as_a_table_has_records) {
   }
 }
 
-// What shaders/shade_pass.frag says of hatch and dots, in plain C++: the share of a pixel (origin
-// bottom left) that is covered. Between them lies a tint, unless they are bare.
+// The hatch and dots of shaders/shade_pass.frag in plain C++: the covered share of a pixel (origin
+// bottom left). Between them is a tint, unless they are bare.
 double pattern_cover(Pattern pattern, double angle_deg, double spacing_px, glm::dvec2 from,
                      bool bare) {
   const double angle = angle_deg / 180 * 3.14159265358979;
@@ -178,8 +177,8 @@ TEST_F(Shade, patterns_let_what_is_below_be_seen_between_their_lines_and_dots) {
   const auto lower = filled_layer(ValueType::u8, 1), upper = filled_layer(ValueType::u16, 7);
   const auto red =
       std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, {255, 0, 0, 255}}}, {}});
-  // The square is 1 m wide in 256 px of 1000 / 256 mm; its middle is pixel 128, and the camera
-  // looks there.
+  // The square is 1 m wide in 256 px of 1000 / 256 mm; its center is pixel 128, and the camera is
+  // aimed at it.
   const double mm_per_pixel = 1000.0 / kSize;
   struct Case {
     Pattern pattern;
@@ -219,8 +218,8 @@ TEST_F(Shade, patterns_let_what_is_below_be_seen_between_their_lines_and_dots) {
 }
 
 TEST_F(Shade, hatched_paint_is_seen_at_every_zoom_by_its_tint_and_its_border) {
-  // A tile of the four holds the value: a quarter of the square, which is seen from so far away
-  // that it has few pixels, and so near that lines of 40 mm are far from each other.
+  // One of the four tiles has the value: a quarter of the square, once so far away that it has few
+  // pixels, and once so near that lines of 40 mm are far apart.
   const auto layer = renderer_.add_layer(model_, ValueType::u8, 256);
   auto tile = std::make_shared<TileData>(ValueType::u8);
   for (int i = 0; i < kTexelsPerTile; ++i) tile->write(i, 7u);
@@ -242,7 +241,7 @@ TEST_F(Shade, hatched_paint_is_seen_at_every_zoom_by_its_tint_and_its_border) {
             {layer,
              std::make_shared<Palette>(Palette{PaletteMode::categorical, 0, 10, {point}, {}}), 1}};
         const auto frame = renderer_.draw(request);
-        // Blue over what is there: the tint everywhere, and more of it along the border.
+        // Blue over the other content: the tint everywhere, and more of it along the border.
         std::size_t tinted = 0, full = 0;
         for (int y = 0; y < frame.height; ++y)
           for (int x = 0; x < frame.width; ++x) {
@@ -264,7 +263,7 @@ TEST_F(Shade, hatched_paint_is_seen_at_every_zoom_by_its_tint_and_its_border) {
 }
 
 TEST_F(Shade, an_outline_is_drawn_where_the_value_ends_and_not_inside) {
-  // One tile of the four holds 7, the one beside it 8: the square's texels 0…127 and 128…255.
+  // One of the four tiles has 7, the one next to it 8: the square's texels 0…127 and 128…255.
   const auto layer = renderer_.add_layer(model_, ValueType::u8, 256);
   std::vector<render::TileUpload> tiles;
   for (std::uint16_t x = 0; x < 2; ++x) {
@@ -287,8 +286,8 @@ TEST_F(Shade, an_outline_is_drawn_where_the_value_ends_and_not_inside) {
       const auto got = pixel(frame, x, y);
       if (got[2] > got[0] + 60 && got[2] > got[1] + 60) {
         ++outline;
-        // Along the edge to the other value (x = 128) or to what is not painted (y = 128, a row of
-        // tiles is half the square).
+        // Along the edge to the other value (x = 128) or to unpainted texels (y = 128, a row of
+        // tiles is half of the square).
         EXPECT_TRUE(std::abs(x + 0.5 - 128) < 3 || std::abs(y + 0.5 - 128) < 3) << x << " " << y;
       } else if (got == pixel(bare, x, y)) {
         ++inside;
@@ -347,7 +346,7 @@ TEST_F(Shade, a_large_picture_is_shaded_in_bands_without_a_seam) {
   for (int i = 0; i < 3; ++i) request.style.layers.push_back({layer, palette, 0.5f});
   renderer_.paint(layer, dab(request.camera, 1024, 900, 500, 100));
   const auto picture = renderer_.draw(request);
-  // The same in pieces that are one band each.
+  // The same in parts of one band each.
   for (const double y : {-0.4, 0.0, 0.4}) {
     auto part_request = request;
     part_request.changed = {{{-0.3, y - 0.1, 0.5}, {0.3, y + 0.1, 1}}};
@@ -404,7 +403,7 @@ TEST_F(Shade, a_reshaded_rectangle_equals_a_full_redraw) {
     }
   }
   EXPECT_EQ(picture.pixels, renderer_.draw(request).pixels);
-  // Nothing changed: nothing is sent. Another style: everything is.
+  // Without a change nothing is sent; with another style the whole picture is.
   auto nothing = request;
   nothing.changed.emplace();
   EXPECT_TRUE(renderer_.draw(nothing).rects.empty());
@@ -449,7 +448,7 @@ TEST_F(Shade, views_give_their_buffers_up_when_memory_runs_out_and_draw_again) {
   const auto model = renderer.add(scene_);
   std::vector<render::ViewHandle> views;
   for (int i = 0; i < 4; ++i) views.push_back(renderer.add_view(model));
-  request_.width = request_.height = 512;  // 4 MiB a view
+  request_.width = request_.height = 512;  // 4 MiB for each view
   for (int round = 0; round < 2; ++round) {
     for (const auto view : views) {
       request_.view = view;

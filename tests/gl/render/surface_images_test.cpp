@@ -13,7 +13,7 @@ namespace {
 constexpr int kSize = 256;
 using Color = std::array<int, 3>;
 
-// Pixels of a picture with `at(x, y)`, top row first.
+// Returns the pixels of a picture with `at(x, y)`, top row first.
 template <class At>
 std::shared_ptr<const render::MipmappedPicture> image_of(int width, int height, At at) {
   std::vector<std::uint8_t> rgba;
@@ -27,7 +27,7 @@ std::shared_ptr<const render::MipmappedPicture> plain(std::array<int, 4> color) 
   return image_of(8, 8, [&](int, int) { return color; });
 }
 
-// A square that fills the picture, its texture coordinates 0.05 … 0.95, seen from the front without
+// A square that fills the picture, with texture coordinates 0.05 … 0.95, from the front without
 // light.
 class SurfaceImages : public testing::Test {
  protected:
@@ -48,8 +48,8 @@ class SurfaceImages : public testing::Test {
     const auto* p = &frame.pixels[4 * static_cast<std::size_t>(y * kSize + x)];
     return {p[0], p[1], p[2]};
   }
-  static void expect_near(const Color& got, const Color& wanted, int within = 1) {
-    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(got[i], wanted[i], within) << "channel " << i;
+  static void expect_near(const Color& got, const Color& expected, int within = 1) {
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(got[i], expected[i], within) << "channel " << i;
   }
   Error refusal(const render::FrameRequest& request) {
     auto frame =
@@ -170,7 +170,7 @@ TEST_F(SurfaceImages, raking_light_shows_what_leans_towards_it) {
   const auto ball = renderer_.add(make_scene(bumpy_sphere(40), 256));
   request_.view = renderer_.add_view(ball);
   request_.camera = orthographic_camera({0, 0, 4}, {0, 0, 0}, kSize, kSize, 1.25);
-  // Mean of a patch: the ball is bumpy.
+  // The mean of a patch, because the ball is bumpy.
   const auto bright = [&](int center) {
     const auto frame = renderer_.draw(request_);
     double sum = 0;
@@ -195,7 +195,7 @@ TEST_F(SurfaceImages, raking_light_shows_what_leans_towards_it) {
   EXPECT_GE(bright(kMiddle), lit);
 }
 
-// The usual light on a plane of this normal, whose axes are the eye's.
+// Returns the standard light on a plane with this normal, in the axes of the eye.
 double museum_light(const glm::dvec3& normal) {
   const auto from = [&](const glm::dvec3& direction) {
     return glm::dot(normal, glm::normalize(direction));
@@ -207,7 +207,8 @@ double museum_light(const glm::dvec3& normal) {
 
 TEST_F(SurfaceImages,
        museum_light_is_the_same_in_each_pixel_as_at_the_vertices_of_small_triangles) {
-  // Two triangles are lit in each pixel, 80,000 of less than two pixels at their vertices.
+  // Two triangles are lit in each pixel, 80,000 triangles of less than two pixels at their
+  // vertices.
   for (const int quads : {1, 200}) {
     request_.view = renderer_.add_view(renderer_.add(make_scene(flat_square(quads), 256)));
     for (const glm::dvec3 eye :
@@ -215,14 +216,14 @@ TEST_F(SurfaceImages,
       request_.camera = orthographic_camera(eye, {0, 0, 0}, kSize, kSize, 0.5);
       const glm::dvec3 up = glm::dmat3(request_.camera.view) * glm::dvec3(0, 0, 1);
       request_.style.light.mode = LightMode::unlit;
-      Color wanted = pixel(kSize / 2, kSize / 2);
-      // as bright from behind
-      for (int& channel : wanted)
+      Color expected = pixel(kSize / 2, kSize / 2);
+      // the same brightness from behind
+      for (int& channel : expected)
         channel = static_cast<int>(std::lround(channel * museum_light(eye.z > 0 ? up : -up)));
       request_.style.light.mode = LightMode::museum;
       SCOPED_TRACE(std::to_string(quads) + " quads, eye at " + std::to_string(eye.x) + " " +
                    std::to_string(eye.z));
-      expect_near(pixel(kSize / 2, kSize / 2), wanted, 2);
+      expect_near(pixel(kSize / 2, kSize / 2), expected, 2);
     }
   }
 }

@@ -16,8 +16,8 @@ using render::Job;
 using render::Lane;
 using render::Step;
 
-// Keeps the thread's first step until released, so that a test can fill the lanes before anything
-// runs.
+// Blocks the thread's first step until it is opened, so that a test can fill the lanes before any
+// other step.
 struct Gate {
   std::promise<void> open, reached;
   std::shared_future<void> opened{open.get_future()};
@@ -58,7 +58,7 @@ class Lanes : public testing::Test {
     hooks.abort_frames = [](const Error&) {};
     ASSERT_TRUE(thread_->start(std::move(hooks)));
   }
-  // The thread stands there when this returns: what is posted next waits with everything else.
+  // Returns when the thread is blocked: the next posted jobs wait with all others.
   void hold_at(Gate& gate) {
     ASSERT_TRUE(thread_->post(Lane::ordered, gate.job()));
     gate.reached.get_future().wait();
@@ -173,7 +173,7 @@ TEST_F(Lanes, an_edit_that_yields_shares_the_gpu_with_frames_and_uploads_but_not
     frames_.push_back(noted("frame"));
   }
   gate.open.set_value();
-  // One step takes the frame from the queue, the next does it.
+  // One step takes the frame from the queue, the next one draws it.
   EXPECT_EQ(finish(), (std::vector<std::string>{"slice", "slice", "frame", "slice", "upload",
                                                 "slice", "next edit"}));
 }
@@ -213,7 +213,7 @@ TEST_F(Lanes, a_flood_of_edits_lets_frames_through) {
                        },
                        [](const Error&) {}});
   }
-  finish();  // never, were the frame to wait for the edit
+  finish();  // would not end if the frame waited for the edit
   EXPECT_TRUE(*frame_ran);
 }
 
@@ -276,7 +276,7 @@ TEST_F(Lanes, stopping_answers_what_waits) {
   stopper.join();
   EXPECT_FALSE(thread_->post(Lane::ordered, noted("late")));
   std::lock_guard lock(mutex_);
-  // It may have run before the stop was seen, but it was answered once.
+  // It may have run before the stop took effect, but it was answered once.
   ASSERT_EQ(log_.size(), 1u);
   EXPECT_TRUE(log_[0] == "edit" || log_[0] == "edit unavailable Renderer stopped");
 }
@@ -312,10 +312,10 @@ TEST(LostContext, pending_work_is_answered_and_the_renderer_works_again_with_new
   const auto layer = renderer.add_layer(model, ValueType::u8, 256);
   const auto view = renderer.add_view(model);
   const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 200, 200, 0.5);
-  std::promise<void> told;
-  renderer->on_context_lost([&] { told.set_value(); });
+  std::promise<void> notified;
+  renderer->on_context_lost([&] { notified.set_value(); });
 
-  // The thread is held while work piles up behind the loss.
+  // The thread is blocked while jobs are queued behind the loss.
   std::atomic<int> lost{0};
   constexpr int kStrokes = 5;
   std::thread holder([&] {
@@ -330,7 +330,7 @@ TEST(LostContext, pending_work_is_answered_and_the_renderer_works_again_with_new
     });
   });
   holder.join();
-  told.get_future().wait();
+  notified.get_future().wait();
   EXPECT_EQ(lost, kStrokes);
 
   const auto old_layer = await<render::StrokeOutcome>(
@@ -365,7 +365,7 @@ TEST(Order, strokes_are_answered_in_the_order_they_were_given) {
                     [&, i](Result<render::StrokeOutcome> outcome) {
                       ASSERT_TRUE(outcome);
                       order.push_back(i);
-                      // `after` is what this stroke left, whatever came behind it.
+                      // `after` is the result of this stroke, independent of later ones.
                       for (const auto& tile : outcome->tiles) {
                         for (int t = 0; t < kTexelsPerTile; ++t) {
                           ASSERT_TRUE(!tile.written.test(t) || tile.after.bits(t) == i);

@@ -131,7 +131,7 @@ TEST(AngleLimit, strokes_with_one_write_the_texels_that_the_oracle_says) {
   }
 }
 
-// A square that is turned by an angle about the vertical axis is painted wholly or not at all.
+// A square that is turned by an angle about the vertical axis is painted completely or not at all.
 TEST(AngleLimit, a_plane_is_painted_up_to_its_angle_and_not_beyond) {
   TestRenderer renderer;
   const auto scene = make_scene(flat_square(), 256);
@@ -153,7 +153,7 @@ TEST(AngleLimit, a_plane_is_painted_up_to_its_angle_and_not_beyond) {
   }
 }
 
-// With perspective each place is seen at its own angle.
+// With perspective each place is visible at a different angle.
 TEST(AngleLimit, under_perspective_the_direction_to_the_eye_decides_not_the_cameras_axis) {
   TestRenderer renderer;
   const auto scene = make_scene(flat_square(), 512);

@@ -35,7 +35,7 @@ std::vector<std::uint8_t> decode_jpeg(std::span<const std::uint8_t> jpeg, int& w
   return rgba;
 }
 
-// A browser: keeps the headers, and draws every rectangle into its picture.
+// A browser: stores the headers, and draws every rectangle into its picture.
 class Client {
  public:
   Viewer::Send send() {
@@ -59,7 +59,7 @@ class Client {
     acks_ = acks;
     if (acks && !frames_.empty()) viewer_->ack(frames_.back().frame);
   }
-  // Waits for a frame, from number `after` on, that fits.
+  // Waits for a matching frame, from number `after` on.
   template <class Fits>
   FrameHeader wait_for(const Fits& fits, std::uint32_t after = 0) {
     std::unique_lock lock(mutex_);
@@ -136,13 +136,13 @@ class StreamViewer : public ::testing::Test {
     viewers_.push_back(made);
     return made;
   }
-  // Paints a dab and tells the viewer, as a room does.
+  // Paints a dab and notifies the viewer, as a room does.
   void paint(Viewer& viewer, std::int64_t sequence, double x, double y, std::uint32_t value = 2) {
     const auto outcome = renderer_.paint(layer_, test::dab(camera(0), x, y, 12, value));
     ASSERT_FALSE(outcome.tiles.empty());
     viewer.changed({outcome.written_min, outcome.written_max}, sequence);
   }
-  // What the client would see if it asked for the same picture anew.
+  // Returns the pixels that the client would get for a new request of the same picture.
   std::vector<std::uint8_t> fresh_picture(const Camera& seen) {
     render::FrameRequest request;
     request.view = renderer_.add_view(model_);
@@ -184,18 +184,42 @@ class StreamViewer : public ::testing::Test {
   render::ModelHandle model_ = 0;
   render::LayerHandle layer_ = 0;
   std::vector<std::shared_ptr<Viewer>> viewers_;
-  std::list<Client> clients_;  // they outlive the viewers, which call them
+  std::list<Client> clients_;  // the viewers call them, so they are destroyed later
 };
+
+TEST_F(StreamViewer, a_picture_at_rest_is_refined_and_a_change_is_drawn_at_once) {
+  Client& client = new_client();
+  auto view = Viewer::create({&renderer_.get(), &encoder_, 16}, model_, {}, client.send());
+  view->set_style({styles(), {}, {}, {}});
+  client.attach(view, true);
+  viewers_.push_back(view);
+  view->set_camera(1, camera(0), false);
+  const auto plain = client.wait_for([](const FrameHeader&) { return true; });
+  const auto refined =
+      client.wait_for([](const FrameHeader& header) { return header.keyframe; }, plain.frame);
+  EXPECT_TRUE(refined.still);
+  const double difference = mean_difference(client.picture(), fresh_picture(camera(0)));
+  EXPECT_GT(difference, 0.02) << "edges are smoother than with one sample";
+  EXPECT_LT(difference, 3) << "it is the same picture";
+
+  paint(*view, 1, 160, 120);
+  const auto painted = client.wait_for(
+      [](const FrameHeader& header) { return header.scene_sequence == 1; }, refined.frame);
+  EXPECT_FALSE(painted.keyframe) << "a rectangle of the view's own picture";
+  const auto again =
+      client.wait_for([](const FrameHeader& header) { return header.keyframe; }, painted.frame);
+  EXPECT_EQ(again.scene_sequence, 1u);
+}
 
 TEST_F(StreamViewer, what_cannot_be_drawn_is_told_once_and_tried_again_when_something_changes) {
   Client& client = new_client();
   std::mutex mutex;
   std::condition_variable changed;
-  std::vector<Error> told;
+  std::vector<Error> reported;
   auto view = Viewer::create({&renderer_.get(), &encoder_}, model_, {}, client.send(),
                              [&](const Error& why) {
                                std::lock_guard lock(mutex);
-                               told.push_back(why);
+                               reported.push_back(why);
                                changed.notify_all();
                              });
   client.attach(view, true);
@@ -206,14 +230,14 @@ TEST_F(StreamViewer, what_cannot_be_drawn_is_told_once_and_tried_again_when_some
   view->set_camera(1, camera(0), false);
   {
     std::unique_lock lock(mutex);
-    ASSERT_TRUE(changed.wait_for(lock, kPatience, [&] { return !told.empty(); }));
-    EXPECT_EQ(told[0].code, ErrorCode::invalid);
+    ASSERT_TRUE(changed.wait_for(lock, kPatience, [&] { return !reported.empty(); }));
+    EXPECT_EQ(reported[0].code, ErrorCode::invalid);
   }
-  view->set_camera(2, camera(0.1), false);  // refused again, but not told again
+  view->set_camera(2, camera(0.1), false);  // refused again, but not reported again
   view->set_style({styles(), {}, {}, {}});
   client.wait_for([](const FrameHeader& h) { return h.camera_seq == 2; });
   std::lock_guard lock(mutex);
-  EXPECT_EQ(told.size(), 1u);
+  EXPECT_EQ(reported.size(), 1u);
 }
 
 TEST_F(StreamViewer, a_still_camera_gives_one_whole_picture_of_full_quality) {
@@ -263,7 +287,7 @@ TEST_F(StreamViewer, an_edit_sends_only_its_rectangle_and_the_picture_is_whole_a
   auto view = viewer(client);
   view->set_camera(1, camera(0), false);
   const auto first = client.wait_for([](const FrameHeader& h) { return h.still; });
-  // A change of layers may have given a second whole picture: parts are told by their sequence.
+  // A change of layers may have caused a second whole picture: the sequence identifies the parts.
   paint(*view, 41, 150, 110);
   const FrameHeader part =
       client.wait_for([](const FrameHeader& h) { return h.scene_sequence == 41; }, first.frame);
@@ -284,8 +308,7 @@ TEST_F(StreamViewer, edits_far_apart_are_one_frame_of_small_rectangles) {
   std::vector<render::StrokeOutcome> outcomes;
   for (const double x : {315.0, 645.0})
     outcomes.push_back(renderer_.paint(layer_, test::dab(large, x, 360, 12, 2)));
-  // While the GPU is busy with something else: the first is asked for at once, the others together
-  // after it.
+  // While the GPU is busy: the first change is requested immediately, the others together after it.
   renderer_->run_on_gpu_thread_for_test([&] {
     view->changed({outcomes[0].written_min, outcomes[0].written_max}, 41);
     for (const auto& outcome : outcomes)
@@ -347,7 +370,7 @@ TEST_F(StreamViewer, who_sees_the_same_is_sent_one_drawing_and_one_encoding) {
     first.push_back(client->wait_for([](const FrameHeader& h) { return h.still; }));
   const auto outcome = renderer_.paint(layer_, test::dab(camera(0), 150, 110, 12, 2));
   const auto before = encoder_.encoded();
-  // While the GPU is busy with something else, all are told.
+  // While the GPU is busy, all viewers are notified.
   renderer_->run_on_gpu_thread_for_test([&] {
     for (auto& one : all) one->changed({outcome.written_min, outcome.written_max}, 8);
   });
@@ -368,7 +391,7 @@ TEST_F(StreamViewer,
   view->set_camera(1, camera(0), false);
   auto last = client.wait_for([](const FrameHeader& h) { return h.still; });
   client.attach(view, false);
-  // Each acknowledgement comes late, as from far behind a full buffer; the first came at once.
+  // Each acknowledgement is late, as behind a full buffer; the first one was immediate.
   std::uint64_t number = 1;
   for (int i = 0; i < 200 && last.full_width == std::uint32_t(kWidth); ++i) {
     ++number;
@@ -413,7 +436,7 @@ TEST_F(StreamViewer, after_a_lost_context_everything_comes_again) {
   std::promise<void> lost;
   renderer_->on_context_lost([&lost] { lost.set_value(); });
   renderer_->lose_context_for_test();
-  view->set_camera(2, camera(0.3), false);  // fails or is drawn: the viewer must not stall
+  view->set_camera(2, camera(0.3), false);  // fails or is drawn: the viewer must not stop
   ASSERT_EQ(lost.get_future().wait_for(kPatience), std::future_status::ready);
   load();
   view->reset_model(model_, {styles(), {}, {}, {}});
@@ -433,7 +456,7 @@ TEST_F(StreamViewer, after_close_nothing_is_sent) {
   const auto count = client.frames().size();
   view->set_camera(2, camera(1), false);
   view->changed_everywhere(5);
-  // by the time another viewer has its picture, the first one's would be there, too
+  // when another viewer has its picture, the first one's would also have arrived
   Client& other = new_client();
   viewer(other)->set_camera(1, camera(0), false);
   other.wait_for([](const FrameHeader& h) { return h.still; });

@@ -28,7 +28,7 @@ FlowControl ready(int window) {
   return flow;
 }
 
-// Draws, sends and acknowledges whatever the flow wants; returns how many draws that took.
+// Draws, sends and acknowledges all frames of the flow; returns the number of draws.
 int settle(FlowControl& flow) {
   int draws = 0;
   while (auto draw = flow.next()) {
@@ -63,7 +63,7 @@ TEST(StreamFlow, what_was_refused_waits_for_something_to_change) {
   draw = flow.next();
   ASSERT_TRUE(draw);
   EXPECT_FALSE(draw->changed) << "the refused draw gave back that everything waits";
-  flow.on_camera(2, camera_at(2), false);  // changed while it was drawn
+  flow.on_camera(2, camera_at(2), false);  // changed during the draw
   EXPECT_TRUE(flow.on_refused(draw->ticket));
   EXPECT_TRUE(flow.next());
 }
@@ -339,9 +339,96 @@ TEST(StreamFlow,
   EXPECT_FALSE(draw->changed);
 }
 
-// A client model that checks the promises under any order of events: what the screen shows in the
-// end is the newest camera with every edit, at full quality, and never more frames are under way
-// than the window allows.
+// A client model that checks the guarantees under any order of events: at the end the screen shows
+// the newest camera with every edit, at full quality, and the number of unacknowledged frames never
+// exceeds the window.
+TEST(StreamFlow, a_picture_at_rest_is_refined_once) {
+  FlowControl flow(2, 0, 16);
+  flow.on_ready();
+  flow.on_camera(1, camera_at(1), false);
+  EXPECT_TRUE(flow.wants_rest_timer());
+  EXPECT_EQ(settle(flow), 1);
+  flow.on_rest();
+  const auto draw = flow.next();
+  ASSERT_TRUE(draw);
+  EXPECT_EQ(draw->samples, 16);
+  EXPECT_FALSE(draw->changed);
+  const auto number = flow.on_drawn(draw->ticket, true);
+  ASSERT_TRUE(number);
+  EXPECT_TRUE(number->still);
+  flow.on_ack(number->frame);
+  flow.on_rest();
+  EXPECT_FALSE(flow.next());
+  EXPECT_FALSE(flow.wants_rest_timer());
+  flow.on_change(box_at(0), 1);
+  EXPECT_TRUE(flow.wants_rest_timer());
+  EXPECT_EQ(flow.next()->samples, 1);
+}
+
+TEST(StreamFlow, news_make_a_refinement_under_way_void_and_do_not_wait_for_it) {
+  FlowControl flow(2, 0, 16);
+  flow.on_ready();
+  flow.on_camera(1, camera_at(1), false);
+  settle(flow);
+  flow.on_rest();
+  const auto refinement = flow.next();
+  ASSERT_TRUE(refinement);
+  flow.on_change(box_at(3), 7);
+  const auto draw = flow.next();
+  ASSERT_TRUE(draw);
+  EXPECT_EQ(draw->samples, 1);
+  EXPECT_EQ(draw->changed, std::vector<Box>{box_at(3)});
+  EXPECT_FALSE(flow.on_drawn(refinement->ticket, true));
+  EXPECT_FALSE(flow.on_not_refined(refinement->ticket, true));
+  EXPECT_TRUE(flow.on_drawn(draw->ticket, true));
+}
+
+TEST(StreamFlow, a_moving_camera_and_changes_go_before_the_refinement) {
+  FlowControl flow(8, 0, 4);
+  flow.on_ready();
+  flow.on_camera(1, camera_at(1), true);
+  flow.on_rest();
+  auto draw = flow.next();
+  ASSERT_TRUE(draw);
+  EXPECT_EQ(draw->samples, 1);
+  flow.on_drawn(draw->ticket, true);
+  flow.on_rest();
+  EXPECT_FALSE(flow.next()) << "the camera still moves";
+  flow.on_quiet();
+  draw = flow.next();
+  ASSERT_TRUE(draw);
+  EXPECT_EQ(draw->samples, 1) << "the picture of full quality";
+  flow.on_drawn(draw->ticket, true);
+  EXPECT_FALSE(flow.next()) << "the client does not have all frames";
+  flow.on_ack(flow.last_frame());
+  draw = flow.next();
+  ASSERT_TRUE(draw);
+  EXPECT_EQ(draw->samples, 4);
+}
+
+TEST(StreamFlow, a_refinement_that_was_not_drawn_is_tried_again_only_as_told) {
+  FlowControl flow(2, 0, 4);
+  flow.on_ready();
+  flow.on_camera(1, camera_at(1), false);
+  settle(flow);
+  flow.on_rest();
+  auto draw = flow.next();
+  EXPECT_TRUE(flow.on_not_refined(draw->ticket, true));
+  EXPECT_FALSE(flow.next());
+  EXPECT_TRUE(flow.wants_rest_timer());
+  flow.on_rest();
+  draw = flow.next();
+  ASSERT_TRUE(draw);
+  EXPECT_TRUE(flow.on_not_refined(draw->ticket, false));
+  flow.on_rest();
+  EXPECT_FALSE(flow.next());
+  EXPECT_FALSE(flow.wants_rest_timer());
+  flow.on_style();
+  EXPECT_EQ(settle(flow), 1);
+  flow.on_rest();
+  EXPECT_EQ(flow.next()->samples, 4);
+}
+
 TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_complete) {
   for (unsigned seed = 0; seed < 300; ++seed) {
     std::mt19937 random(seed);
@@ -350,7 +437,7 @@ TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_
     FlowControl flow = ready(window);
     std::optional<FlowControl::Draw> out;
     std::set<int> unseen;  // edits that no sent picture shows
-    std::set<int> in_out;  // of these, the ones made before the draw began
+    std::set<int> in_out;  // the ones of them that were made before the draw began
     std::uint64_t sent = 0, acked = 0, camera_seq = 0;
     Camera newest = camera_at(0), shown;
     bool shown_still = false;

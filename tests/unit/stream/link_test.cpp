@@ -12,18 +12,18 @@ using namespace std::chrono_literals;
 using Clock = LinkPace::Clock;
 
 // A link with a delay and a rate, and a renderer that makes a picture whenever the pace's window
-// has room. In time of its own.
+// has room. With simulated time.
 class Simulation {
  public:
-  Clock::duration delay = 0ms;  // there and back
+  Clock::duration delay = 0ms;  // round trip
   double bytes_per_s = 1e9;
   Clock::duration drawing = 25ms;
-  Clock::duration showing = 0ms;  // what the browser needs for a picture of any size
+  Clock::duration showing = 0ms;  // the browser's time for a picture of any size
   bool moving = true;
 
   LinkPace pace;
 
-  // Returns the moving frames shown in that time.
+  // Returns the number of moving frames shown in that time.
   int run(Clock::duration how_long) {
     const auto end = now_ + how_long;
     int shown = 0;

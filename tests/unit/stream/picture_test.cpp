@@ -133,12 +133,12 @@ TEST(StreamPicture, a_picture_for_many_is_encoded_once_for_each_setting) {
     pool.encode(frame, {90, true}, into(more));
   }
   wait_for(40);
-  pool.encode(frame, {20, false}, into(few));  // long after it was encoded
+  pool.encode(frame, {20, false}, into(few));  // long after its encoding
   wait_for(41);
   EXPECT_EQ(pool.encoded(), 2u);
   for (const Jpegs& jpegs : few) EXPECT_EQ(jpegs, few[0]) << "one object for all";
   EXPECT_LT(few[0]->at(0).size(), more[0]->at(0).size());
-  // Another frame with the same pixels is another picture.
+  // Another frame with the same pixels is a different picture.
   pool.encode(frame_of(gradient(64, 64), 64, 64), {20, false}, into(few));
   wait_for(42);
   EXPECT_EQ(pool.encoded(), 3u);

@@ -1,5 +1,4 @@
-// A Strata server of the test's own, for the tests in JavaScript: see strata_server.py, which does
-// the same.
+// A separate Strata server for a test in JavaScript; strata_server.py does the same.
 import { execFileSync, spawn } from "node:child_process";
 import { randomBytes } from "node:crypto";
 import {
@@ -16,11 +15,11 @@ import { createInterface } from "node:readline";
 
 export const kLong_ms = 120_000;
 
-const kOften = ["--recheck-every", "1"]; // so that tests need not wait for it
+const kOften = ["--recheck-every", "1"]; // so that tests do not wait for the default
 const kInMemory = "/dev/shm";
 const kRoom_bytes = 8 * 2 ** 30; // for several tests at once, of which one writes gigabytes
 
-/** In memory where there is room, since a disk is slow for a database. */
+/** In memory if there is room, because a disk is slow for a database. */
 function place_of_data() {
   if (process.env.STRATA_TEST_TMP) return process.env.STRATA_TEST_TMP;
   if (!existsSync(kInMemory)) return "/tmp";
@@ -39,7 +38,7 @@ export async function wait_for(condition, what, every_ms = 50) {
 }
 
 export class StrataServer {
-  /** `env`: variables that this server has beside those of the test. */
+  /** `env`: additional environment variables of this server. */
   constructor({ demo = false, env = {} } = {}) {
     this.binary = process.env.STRATA_BINARY;
     if (!this.binary) throw new Error("STRATA_BINARY names the server");
@@ -54,12 +53,12 @@ export class StrataServer {
     this.env = env;
   }
 
-  /** Copies what tests/support/prepare made, or makes it where that did not run. */
+  /** Copies the result of tests/support/prepare, or makes the data if that did not run. */
   #fill() {
-    if (readdirSync(this.data).length > 0) return; // it starts again
+    if (readdirSync(this.data).length > 0) return; // a restart
     const prepared = process.env.STRATA_TEST_PREPARED;
     if (prepared) {
-      // With owners and modes: PostgreSQL insists on both.
+      // With owners and modes: PostgreSQL requires both.
       execFileSync("cp", ["-a", `${prepared}/${this.demo ? "demo" : "empty"}/.`, this.data]);
     } else if (this.demo) {
       execFileSync(this.binary, ["demo", "--data", this.data], {
@@ -68,14 +67,19 @@ export class StrataServer {
     }
   }
 
-  /** Starts it (again, on the port that it had) and returns once it listens. */
+  /** Starts it (again on the same port), and returns when it listens. */
   async start() {
     this.#fill();
     this.process = spawn(
       this.binary,
       ["serve", "--data", this.data, "--listen", `127.0.0.1:${this.port}`, ...kOften],
       {
-        env: { ...process.env, ...this.env, STRATA_OWNER_TOKEN: this.token },
+        env: {
+          STRATA_SAMPLES_AT_REST: "1", // the same pixels at any moment of rest
+          ...process.env,
+          ...this.env,
+          STRATA_OWNER_TOKEN: this.token,
+        },
         stdio: ["ignore", "pipe", "pipe"],
       },
     );
@@ -119,8 +123,8 @@ export class StrataServer {
   }
 
   /**
-   * No errors, and only those warnings that contain one of the words (of a fault that the test
-   * made).
+   * Checks that the log has no errors, and only warnings that contain one of the words (about a
+   * fault that the test made).
    */
   assert_clean_log(words = []) {
     const bad = this.log.filter((line) => {
@@ -135,8 +139,9 @@ export class StrataServer {
   }
 
   /**
-   * What a call of the owner's carries: the token, or for accounts a session, since tokens for
-   * scripts change none, the owner's among them once an administrator has a password.
+   * Returns the secret for a call as the owner: the token, or for accounts a session, since tokens
+   * for scripts cannot change accounts; the owner's token is one once an administrator has a
+   * password.
    */
   async owners_secret(path) {
     if (!/^\/(users|groups|me\/)|^\/projects\/[^/]+\/(members|groups)(\/|$)|\/kiosks$/.test(path))
@@ -154,7 +159,7 @@ export class StrataServer {
     this.session = answer.headers.get("set-cookie").split(";")[0].split("=")[1];
   }
 
-  /** A person beside the owner: what they sign in with, and a token for their scripts. */
+  /** A person other than the owner: with the secrets to sign in, and a token for scripts. */
   async add_person(user, role) {
     const password = `${user} and seven blue herons`;
     const invitation = (await this.json("POST", "/users", { user, role })).path.split("#")[1];
@@ -175,7 +180,7 @@ export class StrataServer {
     return { user, password, token: (await made.json()).secret };
   }
 
-  /** A session of the owner's that a call under test has ended meanwhile is replaced. */
+  /** Replaces the owner's session if a call under test has ended it. */
   async request(method, path, body, headers = {}, tries = 5) {
     const secret = await this.owners_secret(path);
     const answer = await fetch(`${this.url}/api/v1${path}`, {

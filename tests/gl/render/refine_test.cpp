@@ -1,0 +1,208 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "render/view/accumulation.h"
+#include "support/gl_scene.h"
+
+namespace strata::test {
+namespace {
+
+constexpr int kWidth = 200, kHeight = 150;
+constexpr int kSamples = 16;
+
+using Means = std::vector<double>;  // red, green and blue of each pixel
+
+Means colors(const render::Frame& frame) {
+  Means all;
+  for (std::size_t i = 0; i < frame.pixels.size(); ++i)
+    if (i % 4 != 3) all.push_back(frame.pixels[i]);
+  return all;
+}
+
+// A bumpy sphere with classes in rings, so that there are silhouettes and borders of classes.
+class Refine : public testing::Test {
+ protected:
+  Refine() : model_(renderer_.add(make_scene(bumpy_sphere(24), 512))) {
+    const auto layer = renderer_.add_layer(model_, ValueType::u8, 512);
+    request_.view = renderer_.add_view(model_);
+    request_.model = model_;
+    request_.camera = perspective_camera({1.2, 1.0, 2.4}, {0, 0, 0}, kWidth, kHeight);
+    request_.width = kWidth;
+    request_.height = kHeight;
+    for (int ring = 0; ring < 4; ++ring)
+      renderer_.paint(layer, dab(request_.camera, 100, 75, 52 - 13 * ring, 1 + ring % 2));
+    const Palette classes{
+        PaletteMode::categorical, 0, 2, {{1, {230, 159, 0, 255}}, {2, {0, 114, 178, 255}}}, {}};
+    request_.style.layers = {{layer, std::make_shared<const Palette>(classes), 1}};
+  }
+  render::Frame refined(int samples = kSamples) {
+    render::FrameRequest request = request_;
+    request.samples = samples;
+    return renderer_.draw(request);
+  }
+  // The oracle: the mean of pictures with one sample each, from cameras on a regular grid of
+  // `side` × `side` places in the pixel. Its projections are moved here, not by the renderer.
+  Means reference(int side) {
+    Means mean(static_cast<std::size_t>(kWidth) * kHeight * 3, 0.0);
+    render::FrameRequest request = request_;
+    for (int i = 0; i < side * side; ++i) {
+      const double x = (i % side + 0.5) / side - 0.5, y = (i / side + 0.5) / side - 0.5;
+      request.camera = request_.camera;
+      for (int column = 0; column < 4; ++column) {
+        auto& p = request.camera.projection[column];
+        p[0] += 2 * x / kWidth * p[3];
+        p[1] += 2 * y / kHeight * p[3];
+      }
+      const Means one = colors(renderer_.draw(request));
+      for (std::size_t at = 0; at < mean.size(); ++at) mean[at] += one[at] / (side * side);
+    }
+    return mean;
+  }
+  static double root_mean_square(const Means& a, const Means& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return std::sqrt(sum / static_cast<double>(a.size()));
+  }
+
+  TestRenderer renderer_;
+  render::ModelHandle model_;
+  render::FrameRequest request_;
+};
+
+TEST(RefineSamples, they_cover_a_pixel_evenly_around_its_middle) {
+  EXPECT_EQ(render::sample_offset(0, 1), glm::dvec2(0));
+  for (const int count : {4, 8, 16, 32, 64}) {
+    SCOPED_TRACE(count);
+    glm::dvec2 mean{0}, low{1}, high{-1};
+    for (int i = 0; i < count; ++i) {
+      const glm::dvec2 at = render::sample_offset(i, count);
+      mean += at / double(count);
+      low = glm::min(low, at);
+      high = glm::max(high, at);
+    }
+    EXPECT_LT(glm::length(mean), 1e-9);
+    for (int axis = 0; axis < 2; ++axis) {
+      EXPECT_LT(high[axis] - low[axis], 1);
+      // As many in each quarter of their square.
+      std::array<int, 4> quarters{};
+      for (int i = 0; i < count; ++i) {
+        const double at = render::sample_offset(i, count)[axis] - low[axis];
+        ++quarters[static_cast<std::size_t>(std::min(at / (high[axis] - low[axis]), 0.999) * 4)];
+      }
+      for (const int in_quarter : quarters) EXPECT_NEAR(in_quarter, count / 4.0, 2);
+    }
+  }
+}
+
+TEST_F(Refine, edges_differ_from_256_samples_by_a_quarter_of_what_one_sample_does_at_most) {
+  const Means truth = reference(16);
+  const double plain = root_mean_square(colors(renderer_.draw(request_)), truth);
+  const double fine = root_mean_square(colors(refined()), truth);
+  std::printf("root mean square to 256 samples: 1 sample %.3f, %d samples %.3f\n", plain, kSamples,
+              fine);
+  EXPECT_GT(plain, 2) << "there are edges";
+  EXPECT_LE(fine, plain / 4);
+}
+
+TEST_F(Refine, flat_colors_are_the_same) {
+  const render::Frame plain = renderer_.draw(request_), fine = refined();
+  ASSERT_EQ(fine.rects, (std::vector<render::PixelRect>{{0, 0, kWidth, kHeight}}));
+  const auto same_around = [&](std::size_t at) {
+    for (const int dy : {-2, -1, 0, 1, 2})
+      for (const int dx : {-2, -1, 0, 1, 2})
+        for (std::size_t c = 0; c < 3; ++c) {
+          const auto other = at + static_cast<std::size_t>(4 * (dy * kWidth + dx)) + c;
+          if (std::abs(int(plain.pixels[other]) - int(plain.pixels[at + c])) > 3) return false;
+        }
+    return true;
+  };
+  std::size_t flat = 0;
+  for (int y = 2; y < kHeight - 2; ++y)
+    for (int x = 2; x < kWidth - 2; ++x) {
+      const auto at = static_cast<std::size_t>(4 * (y * kWidth + x));
+      if (!same_around(at)) continue;
+      ++flat;
+      for (std::size_t c = 0; c < 3; ++c)
+        ASSERT_NEAR(plain.pixels[at + c], fine.pixels[at + c], 4) << x << ", " << y;
+      ASSERT_EQ(fine.pixels[at + 3], 255);
+    }
+  EXPECT_GT(flat, std::size_t{kWidth} * kHeight / 3);
+}
+
+TEST_F(Refine, the_picture_of_the_view_stays_and_takes_rectangles) {
+  const render::Frame before = renderer_.draw(request_);
+  refined();
+  render::FrameRequest part = request_;
+  part.changed = {{glm::vec3(-0.2f), glm::vec3(0.2f)}};
+  part.align_to_16 = false;
+  const render::Frame changed = renderer_.draw(part);
+  ASSERT_EQ(changed.rects.size(), 1u);
+  const auto& rect = changed.rects.front();
+  ASSERT_LT(rect.width, kWidth) << "the view still had its picture";
+  for (int y = 0; y < rect.height; ++y)
+    for (int i = 0; i < rect.width * 4; ++i)
+      ASSERT_EQ(changed.pixels[static_cast<std::size_t>(y * rect.width * 4 + i)],
+                before.pixels[static_cast<std::size_t>(((rect.y + y) * kWidth + rect.x) * 4 + i)]);
+}
+
+TEST_F(Refine, a_newer_request_of_its_view_ends_it) {
+  render::FrameRequest refinement = request_;
+  refinement.samples = render::kMaxSamples;
+  refinement.width *= 4;
+  refinement.height *= 4;
+  auto ended = std::make_shared<std::promise<Result<render::SharedFrame>>>();
+  auto end = ended->get_future();
+  renderer_->draw(refinement,
+                  [ended](Result<render::SharedFrame> frame) { ended->set_value(frame); });
+  const render::Frame news = renderer_.draw(request_);
+  EXPECT_EQ(news.width, kWidth);
+  const auto result = end.get();
+  ASSERT_FALSE(result) << "64 samples were drawn before one picture";
+  EXPECT_EQ(result.error().code, ErrorCode::superseded);
+}
+
+TEST_F(Refine, wrong_numbers_of_samples_are_refused) {
+  for (const int samples : {-1, 0, render::kMaxSamples + 1}) {
+    SCOPED_TRACE(samples);
+    render::FrameRequest request = request_;
+    request.samples = samples;
+    const auto frame =
+        await<render::SharedFrame>([&](auto done) { renderer_->draw(request, std::move(done)); });
+    ASSERT_FALSE(frame);
+    EXPECT_EQ(frame.error().code, ErrorCode::invalid);
+  }
+}
+
+TEST_F(Refine, its_buffers_are_gone_with_it) {
+  renderer_.draw(request_);
+  const auto before = renderer_->gpu_bytes_used();
+  refined();
+  EXPECT_EQ(renderer_->gpu_bytes_used(), before);
+}
+
+TEST_F(Refine, nothing_is_evicted_for_it) {
+  renderer_.draw(request_);
+  render::RendererOptions options;
+  options.gpu_memory_bytes = renderer_->gpu_bytes_used() + 100'000;
+  TestRenderer small(options);
+  render::FrameRequest request = request_;
+  request.style.layers.clear();
+  request.model = small.add(make_scene(bumpy_sphere(24), 512));
+  request.view = small.add_view(request.model);
+  small.draw(request);
+  // So much that the view's own buffers, or the surface map, would have to go.
+  const auto used = small->gpu_bytes_used();
+  request.width = request.height = 2048;
+  request.samples = 2;
+  const auto frame =
+      await<render::SharedFrame>([&](auto done) { small->draw(request, std::move(done)); });
+  ASSERT_FALSE(frame);
+  EXPECT_EQ(frame.error().code, ErrorCode::out_of_memory);
+  EXPECT_EQ(small->gpu_bytes_used(), used);
+}
+
+}  // namespace
+}  // namespace strata::test
